@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The module, its Python package, the plugin and the package files, in the order they need each other.
+# The module, the Python package, the plugin and the package files, in the order of their dependencies.
 
 set(avianlidar_vtk_components
   CommonComputationalGeometry
@@ -33,8 +33,8 @@ endif ()
 if (AVIANLIDAR_BUILD_BENCHMARKS)
   list(APPEND avianlidar_vtk_components FiltersFlowPaths)
 endif ()
-# What image tests link to. Not TEST_OPTIONAL_DEPENDS of the module: an imported target is there even when
-# the libraries below it were not looked for.
+# Modules that image tests link to. TEST_OPTIONAL_DEPENDS of the module cannot replace this list: an imported
+# target exists even if its own libraries are missing.
 set(avianlidar_rendering_modules
   VTK::IOImage
   VTK::InteractionStyle
@@ -59,10 +59,10 @@ if (AVIANLIDAR_VTK_SDK)
 endif ()
 
 if (AVIANLIDAR_BUILD_PLUGIN)
-  # What Qt 6 prepares for programs that bring their own Qt: it visits each folder below the project's, which is the
-  # module's, too, and so below itself.
+  # Without Qt 6's preparation of programs with their own Qt: the preparation visits every folder below the project. The
+  # module has the same folder as the project, so the preparation would not end.
   set(QT_SKIP_SETUP_DEPLOYMENT ON)
-  # Its VTK is found with it.
+  # ParaView's package also finds ParaView's VTK.
   find_package(ParaView 5.11 REQUIRED
     COMPONENTS RemotingCore WrapClientServer)
 endif ()
@@ -73,8 +73,8 @@ set(AVIANLIDAR_HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/avianlidar")
 
 include(AvianLidarTesting)
 
-# vtk_module_build() places a module's build folder by its path below CMAKE_SOURCE_DIR, which is empty
-# here and would name the build tree itself: within this function the build tree is a sub-folder.
+# vtk_module_build() names a module's build folder after its path below CMAKE_SOURCE_DIR. Here this path is
+# empty, and the build folder would be the build tree. In this function the build tree is therefore a sub-folder.
 function (avianlidar_build_module)
   set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/AvianLidar")
   vtk_module_scan(

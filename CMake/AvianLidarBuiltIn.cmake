@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Data files of Filters/ that are built in. The plugin makes a source of each sensor.
+# Built-in data files of Filters/. The plugin makes a source from each sensor.
 
 set(built_in_files
   Birds/species.csv

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Every library that is not VTK's: found here, as imported targets, and nowhere else.
+# Imported targets of all libraries outside VTK. Other files do not search for libraries.
 
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
 find_package(hwy 1.0 CONFIG REQUIRED)
 
-# avianlidar_find_library(<target> <header> [<library>]): an imported target for a library that brings
-# no CMake package; without <library> it is headers only.
+# avianlidar_find_library(<target> <header> [<library>]): defines an imported target for a library without a
+# CMake package. Without <library> the target has only headers.
 function (avianlidar_find_library target header)
   string(MAKE_C_IDENTIFIER "AVIANLIDAR_${target}" prefix)
   find_path("${prefix}_INCLUDE_DIR" "${header}" REQUIRED)
@@ -25,7 +25,7 @@ avianlidar_find_library(glm glm/glm.hpp)
 avianlidar_find_library(boost boost/version.hpp)
 avianlidar_find_library(xxhash xxhash.h xxhash)
 
-# Without it LAZ files are neither read nor written.
+# Optional: without LASzip the project cannot read or write LAZ files.
 find_path(AVIANLIDAR_LASZIP_INCLUDE_DIR laszip/laszip_api.h)
 find_library(AVIANLIDAR_LASZIP_LIBRARY laszip)
 mark_as_advanced(AVIANLIDAR_LASZIP_INCLUDE_DIR AVIANLIDAR_LASZIP_LIBRARY)
@@ -41,7 +41,7 @@ if (BUILD_TESTING)
   avianlidar_find_library(Random123 Random123/philox.h)
 endif ()
 if (BUILD_TESTING OR AVIANLIDAR_BUILD_BENCHMARKS)
-  find_package(embree REQUIRED) # 3 or 4
+  find_package(embree REQUIRED) # version 3 or 4
 endif ()
 
 if (NOT AVIANLIDAR_KERNEL_ONLY)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Says by ParaView_DIR and VTK_DIR where find_package() finds ParaView and VTK, whichever their version: what the user set;
-# VTK 9.1 unpacked into a folder; for the plugin ParaView and its VTK; else the system's VTK, and where there is none,
-# ParaView's.
+# Sets ParaView_DIR and VTK_DIR, the folders in which find_package() finds ParaView and VTK of any version. In this order: the
+# folders that the user has set; VTK 9.1 unpacked into a folder; for the plugin, ParaView and its VTK; the system's VTK;
+# ParaView's VTK.
 
 include(AvianLidarPythonTargets)
 
-# Folders are found by a small file of each package that defines no target yet.
+# The search uses a small file of each package that does not define targets.
 if (NOT ParaView_DIR)
   find_package(AvianLidarParaViewFolder QUIET NAMES ParaView CONFIGS paraview-prefix.cmake
     HINTS "${ParaView_ROOT}" "$ENV{ParaView_ROOT}" "$ENV{ParaView_DIR}")

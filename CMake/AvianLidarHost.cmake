@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What the module needs where another project builds it with vtk_module_scan() and vtk_module_build(): the kernel and the
-# program that reads mesh files; no tests, no Python package, no plugin.
+# Parts that the module needs if another project builds it with vtk_module_scan() and vtk_module_build(): the kernel and the
+# program that reads mesh files, without tests, Python package and plugin.
 
 set(BUILD_TESTING OFF)
 foreach (part IN ITEMS BUILD_PYTHON BUILD_PLUGIN KERNEL_TESTS RENDERING_TESTS BUILD_BENCHMARKS BUILD_FUZZERS)

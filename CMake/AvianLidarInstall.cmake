@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# find_package(AvianLidar) for the build tree and for the install tree.
+# Files for find_package(AvianLidar) in the build tree and in the install tree.
 
 include(CMakePackageConfigHelpers)
-# The folder of the files that vtk_module_build() writes, seen from AvianLidarConfig.cmake.
+# Folder of the files that vtk_module_build() writes, relative to AvianLidarConfig.cmake.
 set(AVIANLIDAR_PACKAGE_FILES "/AvianLidar/${AVIANLIDAR_CMAKE_DESTINATION}")
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/CMake/AvianLidarConfig.cmake.in"

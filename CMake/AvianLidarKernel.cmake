@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Options, libraries and the kernel: what every build of the project begins with, also within another project.
+# Options, libraries and the kernel, for every build of the project, also within another project.
 
 list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_SOURCE_DIR}/CMake")
 include(GNUInstallDirs)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests of the kernel with GoogleTest: executables, and one ctest entry per file (a process of its own each).
+# Tests of the kernel with GoogleTest: executables, and one ctest entry with its own process per file.
 
 set(avianlidar_kernel_test_timeout 300)
 set(avianlidar_kernel_test_labels kernel)
@@ -7,27 +7,27 @@ if (AVIANLIDAR_SANITIZE)
   set(avianlidar_kernel_test_timeout 900)
 endif ()
 
-# Archer, which comes with clang's OpenMP runtime, tells ThreadSanitizer what that runtime synchronises, and asks for
-# silence about the runtime itself.
+# Archer, a part of clang's OpenMP runtime, reports the synchronisation of the runtime to ThreadSanitizer. With Archer,
+# ThreadSanitizer must ignore the runtime itself.
 set(avianlidar_sanitizer_environment)
 if (AVIANLIDAR_SANITIZE MATCHES "thread")
   if (NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "ThreadSanitizer takes GCC's OpenMP runtime for a crowd of races: use clang (preset tsan)")
   endif ()
   set(avianlidar_kernel_test_labels kernel nightly) # not in continuous integration
-  # The child of a fork begins threads, which ThreadSanitizer refuses unless it is told to go on.
+  # The child of a fork starts threads. With die_after_fork=0, ThreadSanitizer allows these threads.
   set(avianlidar_sanitizer_environment "TSAN_OPTIONS=ignore_noninstrumented_modules=1:die_after_fork=0")
 endif ()
 
-# Clang's OpenMP runtime keeps what it has allocated for its threads. It lies below every parallel loop, too: only what it
-# allocates itself has it in the two uppermost frames.
+# Clang's OpenMP runtime does not free the memory of its threads. The runtime is in the call stacks of all parallel loops.
+# With two frames per stack, only the runtime's own allocations match the suppression.
 if (AVIANLIDAR_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   file(WRITE "${CMAKE_BINARY_DIR}/leaks.txt" "leak:libomp\n")
   set(avianlidar_sanitizer_environment
     "ASAN_OPTIONS=malloc_context_size=2" "LSAN_OPTIONS=suppressions=${CMAKE_BINARY_DIR}/leaks.txt:print_suppressions=0")
 endif ()
 
-# Cases that take seconds. The tests of their files leave them out; Kernel-Slow runs them.
+# Slow cases (seconds). The tests of their files leave out slow cases. The test Kernel-Slow runs all slow cases.
 set(avianlidar_slow_kernel_cases)
 foreach (list IN ITEMS slow-cases slow-cases-sanitized)
   set(file "${PROJECT_SOURCE_DIR}/Testing/Kernel/${list}.txt")
@@ -39,11 +39,11 @@ foreach (list IN ITEMS slow-cases slow-cases-sanitized)
 endforeach ()
 list(JOIN avianlidar_slow_kernel_cases ":" avianlidar_slow_kernel_cases)
 
-# avianlidar_add_kernel_tests(<executable> <name> <file>...): finish the executable that holds these
-# files, and add a test <name>-<file without ending> for each. TestX.cxx holds the suites X, XFoo, XBar,
-# ...: found by reading the file, checked again by the filter, which must match at least one test.
+# avianlidar_add_kernel_tests(<executable> <name> <file>...): sets options and libraries of the executable
+# that contains these files, and adds a test <name>-<file without extension> for each file. The names of the
+# suites come from the text of the file. A test fails if its filter does not match at least one case.
 function (avianlidar_add_kernel_tests target prefix)
-  # The tests themselves need no optimised code, which takes half as long again to compile.
+  # Low optimisation, because full optimisation increases the compile time by half.
   target_compile_options("${target}" PRIVATE -Wall -Wextra -Wshadow -O1)
   target_link_libraries("${target}"
     PRIVATE
@@ -53,7 +53,7 @@ function (avianlidar_add_kernel_tests target prefix)
       hwy::hwy
       GTest::gtest_main)
   if (AVIANLIDAR_SANITIZE)
-    # Tests of millions of rays may take fewer where each costs ten times as much.
+    # Tests may use fewer rays, because each ray takes ten times as long with a sanitizer.
     target_compile_definitions("${target}" PRIVATE AVIANLIDAR_SANITIZED)
   endif ()
   foreach (file IN LISTS ARGN)

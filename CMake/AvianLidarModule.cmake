@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The module's own lines.
+# The module vtkAvianLidar.
 
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSources.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")
@@ -10,7 +10,7 @@ vtk_module_add_module(AvianLidar::AvianLidar
     Filters/vtkAvianLidarFilePath.h
   SOURCES ${private_sources})
 
-# Data files that are built in, as text.
+# Built-in data files, as text.
 set(built_in_texts "")
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarBuiltIn.cmake")
 foreach(built_in IN LISTS built_in_files)
@@ -23,7 +23,7 @@ endforeach()
 configure_file(CMake/BuiltInTexts.cxx.in "${CMAKE_CURRENT_BINARY_DIR}/BuiltInTexts.cxx" @ONLY)
 target_sources(AvianLidar PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/BuiltInTexts.cxx")
 
-# Classes live in folders: users and wrappers still include them by name.
+# The classes are in folders, but users and wrappers include their headers by name.
 vtk_module_include(AvianLidar::AvianLidar
   PUBLIC
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/Filters>"
@@ -33,7 +33,7 @@ vtk_module_include(AvianLidar::AvianLidar
     "$<TARGET_PROPERTY:avianlidarKernel,INTERFACE_INCLUDE_DIRECTORIES>"
     "$<TARGET_PROPERTY:avianlidarVolumeTree,INTERFACE_INCLUDE_DIRECTORIES>")
 
-# None of these shows in an installed header.
+# Installed headers do not use these libraries.
 vtk_module_link(AvianLidar::AvianLidar
   PRIVATE
     avianlidarVolumeTree

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Options, and what holds for every target of the project.
+# Options, and settings of all targets of the project.
 
 option(BUILD_SHARED_LIBS "Build vtkAvianLidar as a shared library" ON)
 option(BUILD_TESTING "Build the tests" ON)
@@ -28,7 +28,7 @@ if (PROJECT_IS_TOP_LEVEL)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 20)
 endif ()
 
-# Where ccache is installed it spares what was compiled before, also in another build tree.
+# If ccache is installed, objects compiled before are reused, also from another build tree.
 find_program(AVIANLIDAR_CCACHE ccache)
 mark_as_advanced(AVIANLIDAR_CCACHE)
 foreach (language IN ITEMS C CXX)
@@ -52,26 +52,26 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}"
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
 
-# The same bits on every machine: a fused multiply-add rounds once where two operations round twice,
-# so the compiler must not choose.
+# No fused multiply-add, so that all machines give the same bits: a fused multiply-add rounds once, and two
+# operations round twice.
 add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>")
-# Nothing here reads errno or floating-point flags, and loops over lanes need to be free of them. No
-# result changes.
+# The project does not read errno or floating-point flags. Without errno and flags, the compiler can vectorize
+# loops over lanes. The options do not change results.
 add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-fno-math-errno>" "$<$<COMPILE_LANGUAGE:C,CXX>:-fno-trapping-math>")
 
-# Whatever VTK has deprecated is a warning, also what it announces for a later version.
+# Every deprecated function of VTK gives a warning, also a function that only a later version deprecates.
 add_compile_definitions(VTK_DEPRECATION_LEVEL=99900000000ULL)
 
 if (CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>") # a source among eight is taken for a header
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>") # GCC treats a source in a unity file as a header
 endif ()
 
 if (AVIANLIDAR_SANITIZE)
   add_compile_options("-fsanitize=${AVIANLIDAR_SANITIZE}" -fno-sanitize-recover=all
     -fno-omit-frame-pointer
-    "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-pass-failed>") # a loop that is watched is not vectorized
+    "$<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-pass-failed>") # with a sanitizer, loops are not vectorized
   add_link_options("-fsanitize=${AVIANLIDAR_SANITIZE}")
-  # An index beyond a vector's end may lie within what it has allocated, where no sanitizer sees it.
+  # An index beyond the end of a vector may lie in memory that the vector has allocated. Sanitizers miss such an index.
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
 endif ()
 

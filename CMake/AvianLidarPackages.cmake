@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Debian packages: `cpack` in the build tree makes one of each install component (Documentation/start/install.md). They are for
-# the Debian and the ParaView that they are built on.
+# Debian packages: `cpack` in the build tree makes a package from each install component (Documentation/start/install.md).
+# A package is for the Debian release and the ParaView of its build.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME avian-lidar)
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # it would come before the packages' own
-# The version is that of project(). Debian's changelog, which adds the revision and the maintainer, and CITATION.cff repeat it.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # empty, because CPack would put it before the summaries of the packages
+# Debian's changelog and CITATION.cff repeat the version of project(). The changelog also has the revision and the maintainer.
 set(avianlidar_debian "${CMAKE_CURRENT_LIST_DIR}/debian")
 file(READ "${avianlidar_debian}/changelog" changelog)
 string(REGEX MATCH "^avian-lidar \\(([0-9.]+)-([0-9]+)\\)" ignored "${changelog}")
@@ -23,7 +23,7 @@ set(CPACK_PACKAGE_CONTACT "${CMAKE_MATCH_1}")
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-# Whatever the umask.
+# Permissions of folders, independent of the umask.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
@@ -33,7 +33,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SOURCE avian-lidar)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON) # needs dpkg-dev and file
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON) # this setting needs dpkg-dev and file
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}")
 set(avianlidar_same_version
   "avian-lidar (= ${CPACK_DEBIAN_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
@@ -63,7 +63,7 @@ string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
   python3-numpy
   python3-paraview
   python3-tqdm)
-# What single helpers import: pictures, maps, reports, plans and scenarios, fits, tables.
+# Imports of some helpers, for pictures, maps, reports, plans and scenarios, fits, tables.
 string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
   python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
@@ -96,9 +96,10 @@ install(FILES README.md CONTRIBUTING.md DESTINATION share/doc/avian-lidar-doc CO
 install(DIRECTORY Documentation Examples DESTINATION share/doc/avian-lidar-doc COMPONENT doc EXCLUDE_FROM_ALL
   PATTERN site EXCLUDE PATTERN make_site.sh EXCLUDE PATTERN page_tables.py EXCLUDE PATTERN __pycache__ EXCLUDE)
 
-# What makes paraview, pvpython, pvbatch and pvserver list the plugin and load it. They read one paraview.conf when they
-# start, a list of lists of plugins. Debian 13's names a list for other packages, /usr/share/paraview/plugins, which is ours.
-# Debian 12 has none: ours, beside the programs, names the list of ParaView's own plugins and ours.
+# Files by which paraview, pvpython, pvbatch and pvserver find and load the plugin. At start, these programs read one file
+# paraview.conf, which names lists of plugins. Debian 13's paraview.conf names the list /usr/share/paraview/plugins for other
+# packages, and this project installs that list. Debian 12 does not have a paraview.conf. There this project installs a
+# paraview.conf beside the programs, which names the list of ParaView's own plugins and this project's list.
 set(folder "${CMAKE_BINARY_DIR}/packages.in")
 set(plugins "${AVIANLIDAR_PLUGIN_SUBDIR}")
 if (EXISTS "${ParaView_DIR}/../../${plugins}/../paraview.conf")
@@ -115,11 +116,11 @@ else ()
   install(FILES "${folder}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime EXCLUDE_FROM_ALL)
 endif ()
 
-# CPack's own would be of every package, and it warns of each module without a version.
+# Not CPack's shlibs, because CPack would add the file to every package and warn of each module without a version.
 file(WRITE "${folder}/shlibs"
   "libvtkAvianLidar ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${avianlidar_same_version}\n")
 
-# What Debian asks of every package.
+# Files that Debian requires in every package.
 file(COPY_FILE "${PROJECT_SOURCE_DIR}/CHANGELOG.md" "${folder}/changelog")
 file(COPY_FILE "${avianlidar_debian}/changelog" "${folder}/changelog.Debian")
 execute_process(COMMAND gzip -9nf "${folder}/changelog" "${folder}/changelog.Debian" COMMAND_ERROR_IS_FATAL ANY)

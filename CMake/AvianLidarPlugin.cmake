@@ -3,7 +3,7 @@
 
 set(AVIANLIDAR_PLUGIN_SUBDIR "${PARAVIEW_PLUGIN_SUBDIR}")
 
-# Where the plugin is in the build tree and, relative to the prefix, in the install tree: what tests and scripts hand to
+# Path of the plugin in the build tree and, relative to the prefix, in the install tree. Tests and scripts pass this path to
 # LoadPlugin().
 set(AVIANLIDAR_PLUGIN_PATH
   "${CMAKE_INSTALL_LIBDIR}/${AVIANLIDAR_PLUGIN_SUBDIR}/AvianLidarPlugin/AvianLidarPlugin.so")
@@ -17,7 +17,7 @@ paraview_plugin_scan(
 paraview_plugin_build(
   PLUGINS ${avianlidar_plugins}
   PLUGINS_FILE_NAME avianlidar.plugins.xml
-  AUTOLOAD ${avianlidar_plugins} # by who reads that file
+  AUTOLOAD ${avianlidar_plugins} # for programs that read this file
   PLUGINS_COMPONENT runtime
   TARGET_COMPONENT runtime
   LIBRARY_SUBDIRECTORY "${AVIANLIDAR_PLUGIN_SUBDIR}"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Folders of Filters/Private, whose files are named uniquely and included by name. A folder uses those before it in this list,
-# never those after it, and nothing of IO, which may use all of them (Testing/Python/TestSources.py holds them to that).
+# Folders of Filters/Private. Files have unique names and are included by name. A folder uses only folders before it in this
+# list. IO may use all these folders, but the folders do not use IO (Testing/Python/TestSources.py tests this order).
 set(private_folders
   Common
   Surfaces

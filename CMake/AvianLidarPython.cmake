@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The Python package avianlidar: helpers, and `from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter`.
+# The Python package avianlidar, with helpers and the wrapped classes: `from avianlidar.vtkAvianLidar import ...`.
 
-# Where Debian's Python looks below /usr.
+# Folder below /usr in which Debian's Python finds modules.
 set(AVIANLIDAR_PYTHON_DESTINATION "lib/python3/dist-packages")
 set(AVIANLIDAR_PYTHON_BUILD_DIR "${CMAKE_BINARY_DIR}/${AVIANLIDAR_PYTHON_DESTINATION}")
 
@@ -14,7 +14,7 @@ vtk_module_wrap_python(
   INSTALL_HEADERS OFF
   BUILD_STATIC OFF)
 
-# The wrapping makes the extension module only; the package, with helpers in Python, is made here.
+# The wrapping makes only the extension module. The lines below make the package with its helpers in Python.
 set(avianlidar_python_files
   __init__.py
   __main__.py
@@ -100,7 +100,7 @@ set(avianlidar_python_files
   apps/scenario.schema.json
   apps/surfaces.json)
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
-# Modules that have moved since would still be found in a build tree.
+# Removes modules of an earlier build, because Python would still find renamed modules.
 file(GLOB old "${avianlidar_python_package}/*.py")
 file(REMOVE_RECURSE "${avianlidar_python_package}/apps" ${old})
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar/_version.py.in" "${avianlidar_python_package}/_version.py" @ONLY)
@@ -113,8 +113,8 @@ foreach (file IN LISTS avianlidar_python_files)
 endforeach ()
 set(avianlidar_python_generated "${avianlidar_python_package}/_version.py")
 
-# Type stubs of the wrapped module, by VTK's own generator, which imports the module. ParaView's VTK brings it, Debian's
-# VTK 9.1 does not.
+# Type stubs of the wrapped module, by VTK's own generator, which imports the module. ParaView's VTK has the generator, but
+# Debian's VTK 9.1 does not.
 set(avianlidar_python_command "${CMAKE_COMMAND}" -E env
   "PYTHONPATH=${AVIANLIDAR_PYTHON_BUILD_DIR}:${AVIANLIDAR_VTK_PYTHONPATH}" PYTHONDONTWRITEBYTECODE=1
   "${Python3_EXECUTABLE}")
@@ -125,7 +125,7 @@ if (result EQUAL 0)
   add_custom_command(OUTPUT "${avianlidar_stubs}"
     COMMAND ${avianlidar_python_command} -m vtkmodules.generate_pyi -p avianlidar
       -o "${avianlidar_python_package}" vtkAvianLidar
-    # That of VTK 9.3 gives properties in snake case a type without a definition.
+    # VTK 9.3's generator gives properties in snake case a type without a definition.
     COMMAND sed -i "s/:'getset_descriptor'/: Any/" "${avianlidar_stubs}"
     DEPENDS vtkAvianLidarPython
     COMMENT "Type stubs of avianlidar.vtkAvianLidar"
@@ -140,13 +140,13 @@ install(FILES ${avianlidar_python_generated}
   DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar"
   COMPONENT python)
 
-# The command `avianlidar`: beside the libraries in the build tree, and installed.
+# The command `avianlidar`, for the build tree and for the installation.
 file(RELATIVE_PATH AVIANLIDAR_COMMAND_PACKAGE "/${CMAKE_INSTALL_BINDIR}" "/${AVIANLIDAR_PYTHON_DESTINATION}")
 configure_file("${PROJECT_SOURCE_DIR}/Python/avianlidar.in" "${CMAKE_BINARY_DIR}/bin/avianlidar" @ONLY
   FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 install(PROGRAMS "${CMAKE_BINARY_DIR}/bin/avianlidar" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT python)
 
-# Its manual page and what shells complete, from the command's own parser, if the generators are there.
+# Manual page and shell completions of the command, from the command's own parser, if the generators are installed.
 execute_process(COMMAND "${Python3_EXECUTABLE}" -c "import build_manpages, shtab" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
 if (result EQUAL 0)
   set(avianlidar_share "${CMAKE_BINARY_DIR}/share")
@@ -154,7 +154,7 @@ if (result EQUAL 0)
   list(TRANSFORM avianlidar_pages PREPEND "${avianlidar_share}/" OUTPUT_VARIABLE outputs)
   add_custom_command(OUTPUT ${outputs}
     COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
-    COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # as Debian wants it
+    COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # compressed, as Debian requires
     DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
       "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py" "${PROJECT_SOURCE_DIR}/Python/avianlidar/apps/coverage.schema.json"
     COMMENT "Manual page and completions of the command"
@@ -166,5 +166,5 @@ else ()
   message(STATUS "There are no python3-argparse-manpage and python3-shtab: the command gets no manual page and no completion")
 endif ()
 
-# Where scripts find the package in the build tree.
+# File with the folder of the package in the build tree, for scripts.
 file(WRITE "${CMAKE_BINARY_DIR}/python-path" "${AVIANLIDAR_PYTHON_BUILD_DIR}\n")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# avianlidar_define_python_targets(<folder>...): where the CMake packages of VTK and ParaView in these folders name files of their
-# own Python modules that are not there, defines the targets of these modules. Debian 13's packages name them without their
-# suffix (.cpython-313-x86_64-linux-gnu), and CMake stops at an imported file that is missing. Targets that exist already it
-# does not import. Nothing here links to them.
+# avianlidar_define_python_targets(<folder>...): defines the targets of Python modules whose files are missing, for the CMake
+# packages of VTK and ParaView in these folders. Debian 13's packages name the files without the suffix
+# (.cpython-313-x86_64-linux-gnu), and CMake stops at a missing imported file. CMake does not import targets that already
+# exist. The project does not link to these targets.
 function (avianlidar_define_python_targets)
   foreach (folder IN LISTS ARGN)
     string(REGEX REPLACE "/lib[^/]*/([^/]+/)?cmake/.*" "" prefix "${folder}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sources of the module. A class has its proxy in Plugin; what shells share goes to a folder of Filters/Private.
+# Sources of the module. Each class has a proxy in Plugin. Common code of the classes is in Filters/Private.
 
 set(classes
   Filters/vtkAvianLidarBeamSource
@@ -30,7 +30,7 @@ set(classes
   IO/vtkAvianLidarSequenceReader
   IO/vtkAvianLidarUnitNames)
 
-# Files of point clouds and scenes, without the VTK classes around them: the fuzzers build them, too.
+# Sources for files of point clouds and scenes, without VTK classes. The fuzzers also build these sources.
 set(cloud_sources
   IO/Private/ByteSource.cxx
   IO/Private/CloudNotes.cxx

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of Documentation/reference/arrays.md: names, units, places and meanings of arrays, as
-Filters/Private/Common/vtkAvianLidarNames.h declares them.
+"""Writes the table of Documentation/reference/arrays.md with names, units, places and meanings of arrays, from the
+declarations in Filters/Private/Common/vtkAvianLidarNames.h.
 
     arrays_page.py
 
-In that header a comment `// Where.` stands above each group, and `/// meaning` above each name."""
+In this header a comment `// Where.` is above each group, and a comment `/// meaning` is above each name."""
 import pathlib
 import re
 
@@ -42,7 +42,7 @@ def table():
 
 
 def with_table(page):
-    """The page with the table of today. @param page its text"""
+    """The text of the page with the current table. @param page text of the page"""
     before, begin, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     return before + begin + table() + end + after

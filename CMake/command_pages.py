@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the manual page of the command `avianlidar` and what shells complete, from its own parser:
+"""Makes the manual page and the shell completions of the command `avianlidar` from the command's parser:
 
     command_pages.py FOLDER     FOLDER/man/man1, FOLDER/bash-completion/completions, FOLDER/zsh/vendor-completions
 """
@@ -18,19 +18,19 @@ from avianlidar._properties import get_property, property_names
 from avianlidar.apps._json import load_json
 
 def settings(wrapped):
-    """Names of properties that a text can set."""
+    """Names of the properties that a text can set."""
     return [name for name, there in property_names(wrapped).items() if isinstance(get_property(wrapped(), there), (int, float, str, tuple))]
 
 
 PLAN = load_json(pathlib.Path(avianlidar.__file__).parent / "apps" / "coverage.schema.json")["properties"]
-NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials()),  # names, and what begins a setting
+NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials()),  # names, and starts of settings
          **{f"{part}_set": tuple(f"{name}=" for name in names) for part, names in (
              ("sensor", settings(wrapped.vtkAvianLidarBeamSource)), ("scan", settings(wrapped.vtkAvianLidarEchoFilter)),
              ("coverage", settings(wrapped.vtkAvianLidarCoverage)), ("siting", PLAN["siting"]["properties"]), ("design", PLAN["design"]["properties"]))}}
 
 
 def files(whole):
-    """Say which arguments are names of files."""
+    """Marks the arguments that are names of files."""
     for action in whole._actions:
         if isinstance(action, argparse._SubParsersAction):
             for verb in action.choices.values():
@@ -44,8 +44,8 @@ def files(whole):
 
 
 def bash(whole):
-    """What bash completes: also names, files where one may stand for a name, and settings, after whose = comes no blank. The
-    function of shtab 1.5.5 offers the first of several choices only."""
+    """The completions for bash: also names, files as an alternative to names, and settings without a blank after =. The
+    replacements are necessary because the function of shtab 1.5.5 offers only the first of several choices."""
     newline = "\n"
     names = "".join(f"_avianlidar_{kind}() {{ compgen -W '{newline.join(words)}' -- $1; {'' if kind.endswith('_set') else 'compgen -f -- $1; '}}}\n"
                     for kind, words in NAMES.items())
@@ -63,7 +63,7 @@ def main(folder):
     page = re.sub(r"^\.TH .*", f'.TH AVIANLIDAR 1 "" "avian-lidar {avianlidar.__version__}"', str(Manpage(whole)), count=1, flags=re.M)
     page = page.replace(".SH EXAMPLES\n", ".SH EXAMPLES\n.nf\n").replace(".SH EXIT STATUS\n", ".fi\n.SH EXIT STATUS\n")
     page = re.sub(r"^(usage: .*?\n)\n", r".nf\n\1.fi\n\n", page, flags=re.M | re.S)
-    page = re.sub(r"^\.(?!br$|nf$|fi$|TP$|SH$|SH |SS$|TH |B )", r"\&.", page, flags=re.M)  # names of suffixes
+    page = re.sub(r"^\.(?!br$|nf$|fi$|TP$|SH$|SH |SS$|TH |B )", r"\&.", page, flags=re.M)  # lines that begin with a suffix such as .las
     for name, text in (("man/man1/avianlidar.1", page),
                        ("bash-completion/completions/avianlidar", bash(files(parser()))),
                        ("zsh/vendor-completions/_avianlidar", shtab.complete(files(parser()), "zsh"))):

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Unpack Debian's VTK 9.1 into a folder, for the preset `vtk`. It is not installed: its Python package
-# conflicts with ParaView's, and nobody's ParaView is to be removed.
+# Unpacks Debian's VTK 9.1 into a folder, for the preset `vtk`. An installation would remove ParaView,
+# because the Python packages of VTK and ParaView conflict.
 #
-#     CMake/fetch-vtk-9.1.sh [<folder>]        (build/vtk-9.1-sdk)
+#     CMake/fetch-vtk-9.1.sh [<folder>]        (default: build/vtk-9.1-sdk)
 #
-# Needs apt-get, dpkg-deb and patchelf. Does nothing when the folder is complete.
+# The script needs apt-get, dpkg-deb and patchelf, and ends at once if the folder is complete.
 set -eu
 
 packages="
@@ -24,10 +24,10 @@ echo "Fetching Debian's VTK 9.1 into $folder"
 rm -rf "$folder"
 mkdir -p "$folder/debs"
 cd "$folder/debs"
-# A terminal sees how far the download is, a log does not.
+# apt-get shows the progress on a terminal, but not in a log.
 quiet=
 [ -t 1 ] || quiet="-q -q"
-# The sandbox user may not write here.
+# As root, because apt's sandbox user may not have the right to write to this folder.
 download() {
   apt-get -q -q --print-uris download $packages |
     awk '{ sum += $3 } END { printf "Downloading %d packages, %.0f MB\n", NR, sum / 1e6 }'
@@ -41,7 +41,7 @@ done
 cd "$folder"
 rm -rf debs usr/share/doc usr/share/java
 
-# Let the unpacked files find each other, wherever the folder is, without LD_LIBRARY_PATH.
+# Relative search paths: the unpacked files find each other in any folder without LD_LIBRARY_PATH.
 set_rpath() {
   rpath=$1
   shift

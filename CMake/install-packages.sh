@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Install what CMake/debian-packages.txt lists and is not there yet: all, or the groups given as arguments. Needs root
-# only if something is missing, and then asks for it by sudo.
+# Installs the missing packages of CMake/debian-packages.txt, from all groups or from the groups given as arguments. Uses
+# sudo only if a package is missing.
 set -euf
 
 list="$(dirname "$0")/debian-packages.txt"
 for group in "$@"; do
   grep -qxF "[$group]" "$list" || { echo "$list has no group [$group]" >&2; exit 1; }
 done
-# Debian 12, or the newer one; derived systems name the Debian that they come from: Ubuntu 24.04 has what Debian 12 has.
+# Debian 12 or 13. A derived system gives the name of its Debian release. Ubuntu 24.04 counts as Debian 12.
 case $(cat /etc/debian_version 2> /dev/null) in
   12* | bookworm* | trixie/sid) release=12 ;;
   *) release=13 ;;
@@ -41,10 +41,10 @@ if [ "$(id -u)" -ne 0 ]; then
     echo "Run as root: apt-get install --no-install-recommends$missing" >&2
     exit 1
   fi
-  sudo -v # asks once; refused, it says so and that is the end
+  sudo -v # asks for the password once; a refusal ends the script
   as_root=sudo
 fi
-# A terminal sees how far it is. A log has a line for each step, and what apt said if one fails.
+# On a terminal, apt shows its progress. In a log, each step has one line, and a step that fails has apt's messages.
 apt() {
   if [ -t 1 ]; then
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Dpkg::Progress-Fancy=1 "$@"
@@ -59,7 +59,7 @@ download() {
   install --download-only
 }
 update() { echo "Fetching lists of packages"; apt update; }
-# Lists may be absent or out of date: then, and only then, they are fetched.
+# The lists of packages are fetched only if they are absent or out of date.
 if uris > /dev/null 2>&1; then
   download || { update && download; }
 else

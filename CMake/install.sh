@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs this project for all users: the packages that are missing, then a build, then this project's own Debian packages by
-# apt. ParaView then has the plugin, Python the package avianlidar, and the shell the command. Works on a bare Debian 12 or 13; asks
-# for your password where it needs root. Argument: "all" for the packages for development and of the documentation, too.
+# Installs this project for all users, on a bare Debian 12 or 13: installs missing packages, builds the project, and installs
+# this project's own Debian packages by apt. ParaView then has the plugin, Python has the package avianlidar, and the shell has
+# the command avianlidar. Steps that need root use sudo. With the argument "all", the script also installs the packages for
+# development and of the documentation.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -10,12 +11,12 @@ echo "Step 1 of 4: packages that are missing"
 CMake/install-packages.sh plugin python packages
 
 echo "Step 2 of 4: configuring"
-# Without the tests, which need more packages: `cmake --preset paraview` turns them on again.
+# Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
 echo "Step 3 of 4: building, about ten minutes on two cores"
 cmake --build --preset paraview
 echo "Step 4 of 4: making this project's packages, and installing them"
-rm -f build/paraview/packages/*.deb # of other versions
+rm -f build/paraview/packages/*.deb # packages of other versions
 cpack --config build/paraview/CPackConfig.cmake
 
 as_root=

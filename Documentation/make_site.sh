@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The pages as a site that can be searched, in build/site or in the folder given: open its index.html, no server is needed.
-# A link or a picture that leads nowhere is an error. After a build it has a page on the Python package, too.
+# Makes a site with search from the pages, in build/site or in the given folder. Open its index.html in a browser without a
+# server. A missing target of a link or a picture is an error. After a build, the site also has a page on the Python package.
 set -eu
 
 site=$(realpath -m "${1:-$(dirname "$0")/../build/site}")

@@ -65,7 +65,7 @@ void vtkAvianLidarCloudWriter::WriteData()
   catch (const std::bad_alloc&)
   {
     vtkErrorMacro(
-      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory for this.");
+      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory to write the file.");
   }
   catch (const std::exception& error)
   {

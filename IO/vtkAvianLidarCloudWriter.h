@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCloudWriter
- * @brief Base class of the writers of point clouds, which write a file as a whole or not at all.
+ * @brief Base class for writing a point cloud to a file, as a whole or not at all.
  *
  * Input port 0 is a vtkPointSet. Write() returns 1 if the file was written, else 0.
  *
  * The writer writes to a temporary file in the same folder (FileName with .avianpart and a number)
- * and renames this file at the end. After an error, an abort or a full disk the old file stays as
- * it was. A replaced file keeps its permissions, and a symbolic link stays a link
- * (Documentation/evidence/reliability.md). Points are written one after the other, without a copy
- * of the cloud.
+ * and renames this file at the end. After an error, an abort or a full disk the old file is
+ * unchanged. The new file has the permissions of the old file. If FileName is a symbolic link, the
+ * target of the link is replaced (Documentation/evidence/reliability.md). Points are written one
+ * after the other, without a copy of the cloud.
  *
  * An error names the file and the reason. Reasons are a missing file name, an input whose producer
  * failed, a file that cannot be written, and a point array or field data array that is missing or
@@ -34,7 +34,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Name of the file to write. Default: none, which gives an error. */
+  /** Name of the file to write. Default: no name, which gives an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
@@ -43,7 +43,7 @@ public:
   /**
    * File name as the user gave it. ParaView derives FileName from this name for each time step.
    * SetMadeFileName() sets FileName without the slash that ParaView puts before names without a
-   * folder. Default: none.
+   * folder. Default: no name.
    */
   vtkSetFilePathMacro(GivenFileName);
   vtkGetFilePathMacro(GivenFileName);

@@ -27,7 +27,8 @@ using formats::Point;
 
 namespace
 {
-/// Places of the points: from the arrays if all three are there, else from the origin.
+/// Places of the points, from the three geodetic arrays if the input has them, else from the
+/// origin.
 class Places
 {
 public:
@@ -58,7 +59,7 @@ public:
   {
     if (this->FromArrays())
     {
-      // It is checked, and stays as it is.
+      // Carry() only checks the place and does not change the place.
       return fields::Carry(this->Geodesy, Frame::Geodetic, Frame::Geodetic,
         { this->Longitude->GetComponent(i, 0), this->Latitude->GetComponent(i, 0),
           this->Height->GetComponent(i, 0) },
@@ -92,7 +93,7 @@ void appendNumber(std::string& text, const formats::Field& field, double value)
     text += "null";
     return;
   }
-  // Integers without an exponent, which would make them floating-point numbers for readers.
+  // Integers must not have an exponent, because readers would take them for floating-point numbers.
   const auto end = formats::isFloat(field.type)
     ? std::to_chars(digits, digits + sizeof digits, value)
     : std::to_chars(digits, digits + sizeof digits, static_cast<std::int64_t>(value));
@@ -104,7 +105,7 @@ std::string dumped(const json& value)
   return value.dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// A text property: what an identifier leads to in the field data.
+/// Text property of a feature: the identifier is an index of texts in the field data.
 struct TextField
 {
   const char* property;
@@ -112,7 +113,7 @@ struct TextField
   vtkStringArray* texts;
 };
 
-/// Those for which the input has both.
+/// Returns the text properties for which the input has identifiers and texts.
 std::vector<TextField> TextsOf(vtkPointSet* input)
 {
   std::vector<TextField> all;

@@ -7,9 +7,9 @@
  * arrays `longitude`, `latitude` and `height`, or else the field data `geodetic_origin` for points
  * in metres east, north and up. Without a geodetic position the writer gives an error.
  *
- * Each echo becomes a point feature, with 9 decimals of a degree and 4 of a metre. The properties
- * of a feature are all numeric point arrays, and `object`, `object_class` and `material`, whose
- * names come from the field data. An array of several components becomes the properties `name_0`,
+ * Each echo becomes a point feature, with 9 decimals for degrees and 4 decimals for metres. The
+ * properties of a feature are all numeric point arrays, and the texts `object`, `object_class` and
+ * `material` from the field data. An array of several components becomes the properties `name_0`,
  * `name_1`, ... The member `units` of the collection gives the units of the properties. Without
  * echoes the collection has no features.
  *
@@ -31,7 +31,10 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Whether field data `lower_energy_limit`, J (0 if missing), are the limit. Default: on. */
+  /**
+   * Whether the least `energy` of written echoes is the field data `lower_energy_limit`, J, or 0 J
+   * without these field data. Default: on.
+   */
   vtkSetMacro(UseFieldDataLimit, bool);
   vtkGetMacro(UseFieldDataLimit, bool);
   vtkBooleanMacro(UseFieldDataLimit, bool);

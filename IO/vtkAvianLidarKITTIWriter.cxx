@@ -26,7 +26,7 @@ using formats::Point;
 
 namespace
 {
-/// A point in the sensor's frame, which single precision holds.
+/// Returns a point in the sensor's frame. Throws FormatError if single precision cannot hold it.
 Point PlaceOf(vtkPointSet* input, const formats::SensorPose& pose, vtkIdType i)
 {
   Point p;
@@ -40,12 +40,12 @@ Point PlaceOf(vtkPointSet* input, const formats::SensorPose& pose, vtkIdType i)
     std::numeric_limits<float>::max())
   {
     throw FormatError("point " + std::to_string(i) +
-      " has a coordinate that single precision, KITTI's, has no number for");
+      " has a coordinate beyond the range of single precision, which KITTI uses");
   }
   return p;
 }
 
-/// SemanticKITTI's labels: the class in the lower 16 bits, the instance in the upper ones.
+/// Labels of SemanticKITTI, with the class in the lower and the instance in the upper 16 bits.
 class Labels
 {
 public:
@@ -77,7 +77,7 @@ public:
 private:
   vtkDataArray *Objects, *Materials;
   bool ByMaterial;
-  std::vector<int> Classes; ///< by object_id
+  std::vector<int> Classes; ///< class of SemanticKITTI of each object_id
 };
 }
 
@@ -144,8 +144,8 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   if (beyond > 0)
   {
     this->Warn(": " + std::to_string(beyond) +
-      " points have an intensity that is not within 0 and 255: the nearest of the two is written "
-      "for it.");
+      " points have an intensity that is not within 0 and 255: the nearer of the two limits is "
+      "written.");
   }
 }
 

@@ -6,14 +6,14 @@
  * Input port 0 is a vtkPointSet. For each point the file FileName holds four float32: x forward, y
  * left and z up in the sensor's frame, m, and `intensity` / 255. The field data `position` and
  * `orientation` give the sensor's frame. Without `position` the writer gives a warning and takes
- * the points as coordinates in this frame, with x right and y forward.
+ * the points as coordinates in the sensor's frame, with x right and y forward.
  *
  * With WriteLabels a file of the same name with the extension .label holds a uint32 for each point.
  * The lower 16 bits are the class of the object, or 300 + `material_id`. The upper 16 bits are
  * `object_id` + 1, or 0 without an object. Labels need the array `object_id` and, if LabelSource is
  * the material, `material_id`. With WriteLabels a FileName that ends with .label gives an error.
  *
- * The writer writes both files as a whole, or neither. Sources: Geiger et al., "Vision meets
+ * The writer writes both files as a whole, or no file. Sources: Geiger et al., "Vision meets
  * Robotics: The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019. Classes and
  * rounding: Documentation/reference/formats.md.
  *
@@ -40,7 +40,7 @@ public:
   };
 
   ///@{
-  /** Whether the file of labels is also written. Default: on. */
+  /** Whether the file of labels is written too. Default: on. */
   vtkSetMacro(WriteLabels, bool);
   vtkGetMacro(WriteLabels, bool);
   vtkBooleanMacro(WriteLabels, bool);

@@ -55,8 +55,8 @@ bool Holds(const formats::LasCoreField& core, vtkDataArray* array)
   return true;
 }
 
-/// The array of a field of LAS's own; of other sensors' arrays only one that the field holds as it
-/// is.
+/// Returns the array for a field of LAS, or null. An array of another sensor is returned only if
+/// the field can hold all values.
 vtkDataArray* FindCore(vtkPointSet* input, const formats::LasCoreField& core)
 {
   if (core.ours)
@@ -72,7 +72,7 @@ vtkDataArray* FindCore(vtkPointSet* input, const formats::LasCoreField& core)
   return Holds(core, array) ? array : nullptr;
 }
 
-/// The core of the points, from the arrays that there are.
+/// Sets the functions that give the fields of LAS, from the arrays of the input.
 void TakeCore(vtkPointSet* input, formats::LasOutput& output)
 {
   using Value = std::function<double(std::int64_t)>;
@@ -118,7 +118,8 @@ void TakeCore(vtkPointSet* input, formats::LasOutput& output)
   }
 }
 
-/// It begins as WKT does: a keyword and a bracket. What stands in it is the business of others.
+/// Returns whether a text begins as WKT does, with a keyword and a bracket. The rest is not
+/// checked.
 bool IsWkt(const std::string& text)
 {
   const std::size_t bracket = text.find_first_of("[(");
@@ -127,7 +128,7 @@ bool IsWkt(const std::string& text)
       [](unsigned char c) { return std::isalnum(c) || c == '_' || std::isspace(c); });
 }
 
-/// The arrays that go to the extra bytes, and what is to be said about those that do not.
+/// Fields of the extra bytes, and texts on the arrays that are left out or changed.
 class ExtraBytes
 {
 public:
@@ -151,8 +152,8 @@ public:
   }
 
   std::vector<formats::Field> Fields;
-  /// Names with reasons, separated by commas: arrays that are not in the file, and those that come
-  /// out of it otherwise than as they were.
+  /// Names with reasons, separated by commas: arrays that are left out of the file, and arrays
+  /// whose names or values are changed in the file.
   std::string Left, Changed;
 
 private:
@@ -182,7 +183,7 @@ private:
     const bool single = numbers->GetNumberOfComponents() == 1;
     if (name == names::Rgb.name && !single)
     {
-      return; // colours
+      return; // colours are fields of LAS
     }
     fields::RequireShape(numbers, numbers->GetNumberOfComponents(), this->Input);
     const formats::LasCoreField* core = FindCoreField(name);
@@ -197,7 +198,7 @@ private:
     this->Add(numbers);
   }
 
-  /// One field for each component.
+  /// Adds one field for each component.
   void Add(vtkDataArray* array)
   {
     const std::string name = array->GetName();
@@ -233,11 +234,11 @@ private:
   }
 
   vtkPointSet* Input;
-  std::set<std::string> Listed; ///< those that are always written, if they are there
+  std::set<std::string> Listed; ///< names of the arrays that are written without WriteAllArrays
   std::set<std::string> Names;
 };
 
-/// Where the points are to go: the frame, with its origin and zone, and the output's system.
+/// Chooses the frame of the written points. Sets origin and zone of `geodesy` and the output's WKT.
 Frame Place(vtkPointSet* input, int system, int zone, const std::function<void(std::string)>& warn,
   GeodeticFrame& geodesy, formats::LasOutput& output)
 {
@@ -254,10 +255,10 @@ Frame Place(vtkPointSet* input, int system, int zone, const std::function<void(s
   }
   if (!origin)
   {
-    warn(std::string(" gets no coordinate reference system: the input has no field data '") +
-      names::GeodeticOrigin.name + "' (nor '" + CrsName +
-      "'). Its coordinates are those of the points; CoordinateSystem Local says that this is "
-      "meant.");
+    warn(std::string(" has no coordinate reference system: the input has no field data '") +
+      names::GeodeticOrigin.name + "' or '" + CrsName +
+      "'. The coordinates of the points are written. Set CoordinateSystem to Local to write them "
+      "without this warning.");
     return Frame::ENU;
   }
   geodesy.setOrigin((*origin)[0], (*origin)[1], (*origin)[2]);

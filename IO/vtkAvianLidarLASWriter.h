@@ -10,12 +10,12 @@
  * makes of a LAS file. All other numeric arrays become extra bytes of their own type. A warning
  * names arrays with values that are cut and arrays that are left out.
  *
- * With the field data `geodetic_origin` the points are transformed to UTM or geocentric
- * coordinates, and the file names this system in WKT. With the field data `crs_wkt` the points stay
- * in the system that `crs_wkt` describes. Without `geodetic_origin` and `crs_wkt` the file names no
- * system, and a warning says so unless CoordinateSystem is local. Coordinates are 32-bit integers
- * with the finest scale, at least 1e-6 m, that the extent of the points allows. Field data become
- * one line of JSON.
+ * With the field data `geodetic_origin` the points are transformed to the UTM or geocentric system
+ * that the file describes in WKT. With the field data `crs_wkt` the points are not transformed, and
+ * the file contains `crs_wkt`. Without `geodetic_origin` and `crs_wkt` the file does not describe a
+ * system. A warning then says that the system is missing, unless CoordinateSystem is local.
+ * Coordinates are 32-bit integers with the finest scale, at least 1e-6 m, that the extent of the
+ * points allows. Field data become one line of JSON.
  *
  * The writer gives the errors of vtkAvianLidarCloudWriter, and an error for LAZ in a build without
  * LASzip or for a `crs_wkt` that is not WKT.
@@ -51,7 +51,10 @@ public:
   };
 
   ///@{
-  /** Coordinate system of the file; local: that of the points. Default COORDINATE_SYSTEM_UTM. */
+  /**
+   * Coordinate system of the file. Local is the system of the points. Default
+   * COORDINATE_SYSTEM_UTM.
+   */
   vtkSetClampMacro(CoordinateSystem, int, COORDINATE_SYSTEM_UTM, COORDINATE_SYSTEM_LOCAL);
   vtkGetMacro(CoordinateSystem, int);
   void SetCoordinateSystemToUTM() { this->SetCoordinateSystem(COORDINATE_SYSTEM_UTM); }
@@ -63,13 +66,15 @@ public:
   ///@}
 
   ///@{
-  /** UTM zone: 1 to 60 north, -1 to -60 south; 0: zone of the origin. Default 0. */
+  /**
+   * UTM zone, 1 to 60 in the north, -1 to -60 in the south. 0 is the zone of the origin. Default 0.
+   */
   vtkSetClampMacro(UTMZone, int, -60, 60);
   vtkGetMacro(UTMZone, int);
   ///@}
 
   ///@{
-  /** Source id of the file and of each point, 0 (none) to 65535. Default 0. */
+  /** Source id of the file and of each point, 0 (no id) to 65535. Default 0. */
   vtkSetClampMacro(SourceId, int, 0, 65535);
   vtkGetMacro(SourceId, int);
   ///@}
@@ -85,7 +90,7 @@ public:
   vtkBooleanMacro(WriteAllArrays, bool);
   ///@}
 
-  /// Largest rounding error of a coordinate in the last file, m; 0 before the first file.
+  /// Largest rounding error of a coordinate in the last file, m, or 0 before the first file.
   vtkGetMacro(RoundingBound, double);
 
 protected:

@@ -26,7 +26,7 @@ using formats::Scalar;
 
 namespace
 {
-/// Returns the colours as PCL stores them: in the bytes of a float.
+/// Returns the colours in the bytes of a float, as PCL stores them.
 std::vector<Field> ToPackedColour(vtkDataArray* colours)
 {
   return { { "rgb", "", Scalar::Float32,
@@ -43,7 +43,8 @@ std::vector<Field> ToPackedColour(vtkDataArray* colours)
     } } };
 }
 
-/// The pattern of the scan, from the field data of the beam source; what is missing otherwise.
+/// Reads the pattern of the scan from the field data of the beam source. Returns an empty text, or
+/// a sentence that names the missing field data.
 std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
 {
   vtkFieldData* data = input->GetFieldData();
@@ -75,7 +76,7 @@ std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
   {
     pattern.elevations.push_back(table->GetComponent(i, 0));
   }
-  // The clock of a scan is no matter of its grid.
+  // The grid does not depend on the clock of the scan.
   pattern.firingInterval = 0.0;
   return avianlidar::checkPattern(pattern);
 }
@@ -83,7 +84,7 @@ std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
 std::int64_t BeamOf(vtkDataArray* beams, std::int64_t i)
 {
   const double beam = fields::ValueOf(beams, i, 0.0);
-  constexpr double most = 9007199254740992.0; // 2^53
+  constexpr double most = 9007199254740992.0; // 2^53, limit of exact integers
   if (!(beam >= 0.0 && beam <= most && beam == std::floor(beam)))
   {
     throw FormatError("the point array 'beam_id' is not a whole number from 0 to 2^53, at point " +
@@ -92,25 +93,26 @@ std::int64_t BeamOf(vtkDataArray* beams, std::int64_t i)
   return static_cast<std::int64_t>(beam);
 }
 
-/// Echoes in the rows and columns of their scan: rows are channels, the highest elevation first;
-/// columns are the scan's, in the order of firing.
+/// Echoes in rows and columns. Rows are channels, the highest elevation first. Columns are the
+/// columns of the scan, in the order of firing.
 struct OrganisedCells
 {
   std::int64_t width = 0;
   std::int64_t height = 0;
   std::vector<std::int64_t> points; ///< index of the point of a cell (row * width + column), or -1
   std::vector<int> channelOfRow;
-  bool several = false; ///< a beam had more than one echo: the strongest is in its cell
+  bool several = false; ///< whether a beam had more than one echo
 
-  /// Beam of a cell, as the beam source numbers them.
+  /// Returns the beam of a cell, as the beam source numbers beams.
   std::int64_t beamOf(std::int64_t cell) const
   {
     return cell % this->width * this->height + this->channelOfRow[cell / this->width];
   }
 };
 
-/// Sorts echoes into cells. Returns what is in the way, or an empty string: no pattern, too many
-/// cells, a beam outside the pattern, a channel that is not its beam's.
+/// Sorts echoes into cells. A cell holds the echo of its beam with the most energy. Returns an
+/// empty text or a fault: no pattern, too many cells, a beam outside the pattern, or a wrong
+/// channel.
 std::string Organise(vtkPointSet* input, OrganisedCells& cells)
 {
   avianlidar::ScanPattern pattern;
@@ -130,7 +132,7 @@ std::string Organise(vtkPointSet* input, OrganisedCells& cells)
   const vtkIdType size = input->GetNumberOfPoints();
   for (vtkIdType i = 0; i < size; ++i)
   {
-    fields::ValueOf(received, i, 0.0); // finite, whether or not echoes share a cell
+    fields::ValueOf(received, i, 0.0); // throws unless the value is finite
   }
   constexpr std::int64_t mostCells = 100000000;
   const int channels = numberOfChannels(pattern);
@@ -158,7 +160,7 @@ std::string Organise(vtkPointSet* input, OrganisedCells& cells)
     if (id < 0 || id >= cells.width * cells.height || channel != id % channels)
     {
       return "point " + std::to_string(i) + " has the beam_id " + std::to_string(id) +
-        " and the laser_id " + std::to_string(channel) + ", which is no beam of a scan of " +
+        " and the laser_id " + std::to_string(channel) + ", which are not a beam of a scan of " +
         std::to_string(cells.width) + " columns and " + std::to_string(channels) + " channels";
     }
     std::int64_t& at = cells.points[rowOfChannel[id % channels] * cells.width + id / channels];
@@ -171,7 +173,7 @@ std::string Organise(vtkPointSet* input, OrganisedCells& cells)
   return std::string();
 }
 
-/// What stands in a cell without an echo.
+/// Returns the value of a field in a cell without an echo.
 double EmptyValue(const Field& field, const OrganisedCells& cells, std::int64_t cell)
 {
   if (field.name == names::LaserId.name)
@@ -186,7 +188,7 @@ double EmptyValue(const Field& field, const OrganisedCells& cells, std::int64_t 
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  // Identifiers are -1, counts (which carry the unit 1) are 0.
+  // Identifiers are -1. Counts, which have the unit 1, are 0.
   return field.unit.empty() && formats::isSigned(field.type) ? -1.0 : 0.0;
 }
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarPCDWriter
- * @brief Writes echoes as PCD 0.7, the format of the Point Cloud Library, in rows and columns if
- * the beams of the scan form a grid.
+ * @brief Writes echoes as PCD 0.7, the format of the Point Cloud Library (PCL), in rows and columns
+ * if the beams of the scan form a grid.
  *
  * Input port 0 is a vtkPointSet. The file has the fields `x`, `y`, `z` (m), `intensity` (float),
  * every other numeric point array in the type of the array (64-bit integers as doubles, exact up to
  * 2^53), and `rgb` packed as in PCL. An array of several components becomes the fields `name_0`,
  * `name_1`, ... The field data `position` and `orientation` become the VIEWPOINT. Units and field
- * data are one line of JSON in a comment. An array is left out with a warning if another field
+ * data become one line of JSON in a comment. An array is left out with a warning if another field
  * already has its name.
  *
  * An organised file has the columns of the scan, in the order of firing, and a row for each
- * channel, the highest first. Cells without an echo hold NaN, -1 or 0. Such a file needs field data
- * of the beam source that give the grid, and arrays `beam_id` and `laser_id` that agree with the
- * grid. A cell holds one echo: see Organisation.
+ * channel, the highest channel first. Cells without an echo hold NaN, -1 or 0. An organised file
+ * needs field data of the beam source that give the grid, and arrays `beam_id` and `laser_id` that
+ * agree with the grid. A cell holds one echo (see SetOrganisation()).
  *
  * Single precision changes a coordinate by at most 4 micrometres at 100 m and 0.12 mm at 4 km. The
  * writer gives a warning if a coordinate changes by more than 1 mm, and an error for coordinates
@@ -57,7 +57,7 @@ public:
   };
 
   ///@{
-  /** Binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
+  /** Type: binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }
@@ -66,9 +66,9 @@ public:
 
   ///@{
   /**
-   * Whether the file has rows and columns. Automatic: if no beam has several echoes. Organised:
-   * always, with the echo of most `energy_received` in each cell; without a grid this is an error.
-   * List: never. Default ORGANISATION_AUTOMATIC.
+   * Whether the file has rows and columns. Automatic: only if no beam has several echoes.
+   * Organised: always, with the echo of most `energy_received` in each cell, and an error if the
+   * beams do not form a grid. List: never. Default ORGANISATION_AUTOMATIC.
    */
   vtkSetClampMacro(Organisation, int, ORGANISATION_AUTOMATIC, ORGANISATION_LIST);
   vtkGetMacro(Organisation, int);
@@ -78,7 +78,7 @@ public:
   ///@}
 
   ///@{
-  /** Precision of x, y, z; PCL's point types hold only floats. Default PRECISION_SINGLE. */
+  /** Precision of x, y, z. PCL's point types hold only floats. Default PRECISION_SINGLE. */
   vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
   vtkGetMacro(Precision, int);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }

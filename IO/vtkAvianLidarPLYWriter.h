@@ -6,8 +6,8 @@
  * Input port 0 is a vtkPointSet. The element `vertex` has `x`, `y`, `z` (m), `intensity` (float),
  * then every other numeric point array in the type of the array (64-bit integers as doubles, exact
  * up to 2^53). An array of several components becomes `name_0`, `name_1`, ..., and `rgb` becomes
- * `red`, `green`, `blue`. Units and field data are JSON in comments, which
- * vtkAvianLidarPointCloudReader reads back. Polygons become the element `face`.
+ * `red`, `green`, `blue`. Units and field data become JSON in comments, and
+ * vtkAvianLidarPointCloudReader reads these comments. Polygons become the element `face`.
  *
  * An array is left out with a warning if another property already has its name. Triangle strips
  * give an error. Coordinates are rounded as in vtkAvianLidarPCDWriter.
@@ -42,7 +42,7 @@ public:
   };
 
   ///@{
-  /** Binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
+  /** Type: binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
   vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
   vtkGetMacro(FileType, int);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }

@@ -40,7 +40,8 @@ std::vector<Note>::iterator FindOrigin(Cloud& cloud)
     { return note.name == names::GeodeticOrigin.name && note.numbers.size() == 3; });
 }
 
-/// Points on the Earth to metres around the origin that the file says; true if that is done.
+/// Transforms points to metres east, north and up of the file's origin. Returns false if the file
+/// has no origin or another system than UTM and geocentric WGS84.
 bool MoveToOrigin(Cloud& cloud, int zone)
 {
   const auto origin = FindOrigin(cloud);
@@ -73,7 +74,7 @@ bool MoveToOrigin(Cloud& cloud, int zone)
   return true;
 }
 
-/// The frame of the points: either local, with the origin, or of a system on the Earth.
+/// Transforms points to the local frame if wanted, or adds the coordinate system to the field data.
 void Place(Cloud& cloud, bool wantLocal, vtkFieldData* data)
 {
   const int zone = formats::utmZoneOf(cloud.crs);
@@ -100,7 +101,7 @@ struct vtkAvianLidarPointCloudReader::vtkInternals
 {
   formats::PacketIndex Packets;
   std::vector<double> Times; ///< times of the revolutions, s
-  std::string Problem;       ///< why packets cannot be read; empty if they can
+  std::string Problem;       ///< reason why packets cannot be read, or empty
 };
 
 vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
@@ -151,7 +152,7 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
     this->FileName ? formats::formatOf(this->FileName) : nullptr;
   if (format && format->hasTurns)
   {
-    // RequestData says it.
+    // RequestData() reports the error.
     internals.Problem = fields::ErrorIn(this->FileName, NoMemory,
       [&]
       {

@@ -6,21 +6,21 @@
  * The file extension gives the format. Documentation/reference/formats.md lists the formats and the
  * parts of each format that the reader reads, refuses or leaves out with a warning.
  *
- * The reader has no input. Output port 0 is vtkPolyData, a vertex for each point, in double
- * precision. The arrays `intensity` (0 to 255), `laser_id`, `distance_m`, `azimuth`,
+ * The reader does not have an input. Output port 0 is vtkPolyData in double precision, with a
+ * vertex for each point. The arrays `intensity` (0 to 255), `laser_id`, `distance_m`, `azimuth`,
  * `vertical_angle`, `timestamp`, `return_number`, `number_of_returns`, `rgb`, `semantic_label` and
  * `instance_id` are the same for all formats. Other arrays keep the names and types that they have
- * in the file. Arrays of a file from this project's writers also keep their units. A field gets the
- * prefix `file_` if this project gives a unit to its name but the file does not. Active scalars are
- * `energy`, else `intensity`.
+ * in the file. Arrays of a file from this project's writers also keep their units. The prefix
+ * `file_` is added to the name of a field if the name has a unit in this project but not in the
+ * file. The active scalars are `energy` or, without `energy`, `intensity`.
  *
  * KITTI's axes become x right, y forward, z up. If LocalCoordinates is on, the points of a LAS file
  * with a `geodetic_origin` are in metres east, north and up. Otherwise the field data `crs_wkt` and
  * `utm_zone` give the coordinate system. The output has the field data `position`, `revolution`,
  * `number_of_revolutions`, `description` and `comment` if the file has them.
  *
- * Each revolution in a file of packets is a time step, in seconds since the full hour before the
- * first packet. Other files have no time steps. Piece 0 has the whole cloud.
+ * Each revolution in a file of packets is a time step. Times are in seconds since the full hour
+ * before the first packet. Other files do not have time steps. Piece 0 has the whole cloud.
  *
  * Errors name the file and the fault. The output is empty after an error or an abort.
  *
@@ -49,7 +49,9 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Name of the file; call Modified() if the file changes. Default: none, which is an error. */
+  /**
+   * Name of the file. Call Modified() if the file changes. Default: no name, which gives an error.
+   */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
@@ -64,15 +66,15 @@ public:
   ///@{
   /**
    * IPv4 address of the sensor to read if packets come from several sensors, with the port if only
-   * the port differs ("192.168.1.201:2368"). Default: none; packets of several sensors are then an
-   * error.
+   * the port differs ("192.168.1.201:2368"). Without an address, packets of several sensors give an
+   * error. Default: no address.
    */
   vtkSetStringMacro(SensorAddress);
   vtkGetStringMacro(SensorAddress);
   ///@}
 
-  /// Returns 1 if the file extension and the first bytes fit a format of point clouds, else 0. A
-  /// .bin file needs a fitting length instead of first bytes, and a .ply file must have no faces.
+  /// Returns 1 if the file extension and the first bytes fit a format of point clouds, else 0. For
+  /// a .bin file the length must fit instead of the first bytes. A .ply file must not have faces.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -95,8 +95,8 @@ void AddFieldData(const BuiltScene& built, vtkFieldData* fields)
   }
 }
 
-// The triangles of a part are freed as they are taken over: both copies of a large scene need not
-// be held.
+// Adds a block for each part. Frees the triangles of each part after the copy, so that memory does
+// not hold a large scene twice.
 void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
 {
   vtkAbstractArray* materialNames =
@@ -116,7 +116,7 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
       }
       else
       {
-        constexpr double drawn = 2000.0; // m, of what has no bounds
+        constexpr double drawn = 2000.0; // size of the drawing of an unbounded medium, m
         const std::string named = vtkAvianLidarMedia::WithObject(part.medium, part.name, -1);
         block = vtkAvianLidarMedia::Surface(
           vtkAvianLidarMedia::WithCrowns(named, block, part.crowns), block, drawn);

@@ -5,22 +5,22 @@
  * positions and materials.
  *
  * Documentation/reference/scene-files.md describes keys, formats (those of VTK, Assimp and GDAL),
- * placement and limits. The reader has no input.
+ * placement and limits. The reader does not have an input.
  *
  * Output port 0 is vtkMultiBlockDataSet: one block per object in the order of the file, or per
  * feature of footprints with `"features": "separate"`. Each block is vtkPolyData of triangles with
- * double points, m. Cell arrays are those of vtkAvianLidarMaterial: `object_id` is the index of the
- * block, and materials from 4 on are the scene's own. Field data of a block are its `object_names`,
- * `object_classes` and `material_names`. Field data of the output are the names and classes of all
- * blocks, `attribution`, `scene_report`, and `geodetic_origin` and `lidar_position` if the scene
- * has them.
+ * double points, m. The cell arrays are the arrays of vtkAvianLidarMaterial. `object_id` is the
+ * index of the block. Material ids from 4 on are materials of the scene. Field data of a block are
+ * its `object_names`, `object_classes` and `material_names`. Field data of the output are the names
+ * and classes of all blocks, `attribution`, `scene_report`, and `geodetic_origin` and
+ * `lidar_position` if the scene has them.
  *
- * Material names of a mesh are mapped by `material_map`; names without a rule become Wall. One
+ * Material names of a mesh are mapped by `material_map`. Names without a rule become Wall. One
  * warning lists these names, objects farther than 100 km from the origin, and a lidar inside or
  * under objects.
  *
  * A bad key, file or number gives an error that names the scene file and the key. The output is
- * empty after an error or an abort. Only regular files are opened, and nothing is fetched over the
+ * empty after an error or an abort. The reader opens only regular files and does not use the
  * network. Piece 0 is the whole scene. Other pieces have the same blocks without cells, and the
  * same field data except an empty `scene_report`.
  *
@@ -48,7 +48,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Scene file; call Modified() if the file changes. Default: none, which is an error. */
+  /** Scene file. Call Modified() if the file changes. Default: no file, which gives an error. */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
@@ -56,7 +56,7 @@ public:
   ///@{
   /**
    * Scene as JSON text that replaces the contents of FileName, which need not exist. Messages name
-   * FileName, and paths of other files are relative to the folder of FileName. Default: empty.
+   * FileName. Paths of other files are relative to the folder of FileName. Default: an empty text.
    */
   vtkSetMacro(Text, std::string);
   vtkGetMacro(Text, std::string);

@@ -43,10 +43,10 @@ namespace
 constexpr char TimesFile[] = "times.txt";
 constexpr char Label[] = "semantic_label";
 
-/// From the sensor's frame (x forward, y left, z up) to that of the poses: rows of 3 x 4.
+/// Rows of the 3 x 4 matrix from the sensor's frame (x forward, y left, z up) to the poses' frame.
 using Pose = std::array<double, 12>;
 
-/// The words of a line, of which there is one at least.
+/// Words of a line, at least one.
 struct Line
 {
   std::string where;
@@ -132,7 +132,7 @@ Point Carry(const Pose& pose, const Point& p)
   return carried;
 }
 
-/// Back, of a rotation.
+/// Applies the inverse of a pose that is a rotation and a translation.
 Point CarryBack(const Pose& pose, const Point& p)
 {
   const Point d = { p[0] - pose[3], p[1] - pose[7], p[2] - pose[11] };
@@ -141,7 +141,8 @@ Point CarryBack(const Pose& pose, const Point& p)
     pose[2] * d[0] + pose[6] * d[1] + pose[10] * d[2] };
 }
 
-/// Poses of a sequence: without a file nothing moves.
+/// Transformation of a scan by the pose and calibration of the sequence, or, without a file of
+/// poses, only to x right and y forward.
 class Placement
 {
 public:
@@ -168,7 +169,7 @@ public:
     }
   }
 
-  /// A point of KITTI's frame.
+  /// Transforms a point of KITTI's frame.
   Point operator()(const Point& p) const
   {
     if (!this->Of)
@@ -183,7 +184,7 @@ private:
   Pose Calibration{ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
 };
 
-/// The eight corners and six sides of each box.
+/// Adds the eight corners and six sides of each box to `boxes`.
 void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* boxes)
 {
   vtkNew<vtkPoints> points;
@@ -268,7 +269,7 @@ void ReadScan(vtkAlgorithm* self, const fs::path& folder, std::size_t scan, vtkP
   for (std::size_t i = 0; i < cloud.size(); ++i)
   {
     double* at = cloud.points.data() + 3 * i;
-    const Point moved = place({ at[1], -at[0], at[2] }); // as the file has it
+    const Point moved = place({ at[1], -at[0], at[2] }); // KITTI's axes
     std::copy(moved.begin(), moved.end(), at);
   }
   if (cloud.sensor)
@@ -323,7 +324,7 @@ int vtkAvianLidarSequenceReader::RequestInformation(
   }
   catch (const std::exception&)
   {
-    times.clear(); // RequestData finds it again, and says it
+    times.clear(); // RequestData() finds and reports the error
   }
   for (int port = 0; port < 2; ++port)
   {

@@ -8,16 +8,17 @@
  * `labels`, `boxes`, `poses.txt` and `calib.txt` beside it. Each scan is a time step. Any other
  * time gives the last scan before this time, or the first scan if no scan is earlier.
  *
- * - Output port 0, points: vtkPolyData with the arrays of vtkAvianLidarPointCloudReader; active
+ * - Output port 0, points: vtkPolyData with the arrays of vtkAvianLidarPointCloudReader. The active
  *   scalars are `semantic_label` if the scan has labels, else `intensity`.
  * - Output port 1, boxes: vtkPolyData with six quadrilaterals for each box and the cell arrays
- *   `object` (class, text) and `object_id`; empty if the scan has no file of boxes.
+ *   `object` (class, text) and `object_id`. The output is empty if the scan has no file of boxes.
  *
  * The poses and the line `Tr:` of `calib.txt` transform points to the frame of the poses. In this
  * project's sequences this frame is east, north and up of the scene's origin, m. Without
- * `poses.txt` points stay in the sensor's frame, with x right and y forward.
+ * `poses.txt` points are in the sensor's frame, with x right and y forward.
  *
- * Errors name the file and the fault, and leave empty outputs. Piece 0 has the whole output.
+ * Errors name the file and the fault. The outputs are empty after an error. Piece 0 has the whole
+ * output.
  *
  * Example: `reader->SetFileName("sequences/00/times.txt");` Documentation: guide/sequences.md.
  *
@@ -40,7 +41,10 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Path of `times.txt`; call Modified() if a file changes. Default: none, which is an error. */
+  /**
+   * Path of `times.txt`. Call Modified() if a file of the sequence changes. Default: no path, which
+   * gives an error.
+   */
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}

@@ -17,7 +17,7 @@
 
 namespace
 {
-/// The array under its name with the unit; the array itself where there is nothing to add.
+/// Returns a shallow copy whose name has the unit, or the array if the name does not change.
 vtkSmartPointer<vtkAbstractArray> WithUnit(vtkAbstractArray* array)
 {
   auto* numbers = vtkDataArray::SafeDownCast(array);
@@ -37,7 +37,7 @@ vtkSmartPointer<vtkAbstractArray> WithUnit(vtkAbstractArray* array)
   return renamed;
 }
 
-/// The same order of arrays; what was active (scalars, ...) no longer is.
+/// Adds renamed arrays in the same order. The active attributes (scalars, ...) are not kept.
 void Rename(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
 {
   to->Initialize();

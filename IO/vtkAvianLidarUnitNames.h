@@ -27,8 +27,8 @@ public:
   vtkTypeMacro(vtkAvianLidarUnitNames, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Returns the name with the unit, such as `energy [J]`, or only the name if the unit is empty or
-  /// "1".
+  /// Returns the name with the unit, such as `energy [J]`. Returns only the name if the unit is
+  /// empty or "1".
   static std::string NameWithUnit(const std::string& name, const std::string& unit);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -29,13 +29,13 @@
 
 namespace
 {
-constexpr char Widget[] = "avian_lidar_advise"; // as the property's XML names it
+constexpr char Widget[] = "avian_lidar_advise"; // name in the property's XML
 
-// Properties of the echo filter that advice sets, and how the advisor names them.
+// Properties of the echo filter that advice sets. The advisor's names have the prefix Advised.
 constexpr const char* Advised[] = { "BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections",
   "NumberOfConnections" };
 
-// The panel has room for what is advised and for the scene's reasons; all is in the tool tip.
+// Number of lines of the advice that fit into the panel. The tool tip has all lines.
 constexpr int ShownLines = 4;
 
 //------------------------------------------------------------------------------
@@ -58,8 +58,8 @@ private:
 };
 
 //------------------------------------------------------------------------------
-// Registered by itself: with UI_INTERFACES paraview_add_plugin() links ParaView's CMake targets,
-// which ask for the packages of everything that draws.
+// Registered here, not by UI_INTERFACES of paraview_add_plugin(): UI_INTERFACES links ParaView's
+// CMake targets, which need the packages of all rendering libraries.
 class Maker
   : public QObject
   , public pqPropertyWidgetInterface
@@ -75,7 +75,7 @@ public:
                                                       : nullptr;
   }
 
-  // What Qt's moc would write, by which ParaView finds what an object is.
+  // The function that Qt's moc would write. ParaView finds the interface of an object by its name.
   void* qt_metacast(const char* name) override
   {
     return std::strcmp(name, qobject_interface_iid<pqPropertyWidgetInterface*>()) == 0
@@ -118,13 +118,13 @@ QDoubleSpinBox* AdviseWidget::Add(
   box->setSingleStep(value / 2.0);
   box->setSuffix(unit);
   box->setValue(value);
-  box->setToolTip("What the settings that Advise looks for may err by, against a reference");
+  box->setToolTip("Largest error of the advised settings, compared with a reference");
   layout->addRow(text, box);
   return box;
 }
 
 //------------------------------------------------------------------------------
-// With what the panel shows, applied or not.
+// Gives the advisor the values that the panel shows, also values that are not applied.
 void AdviseWidget::Ask(vtkSMSourceProxy* advisor) const
 {
   vtkSmartPointer<vtkSMPropertyIterator> each;
@@ -162,7 +162,7 @@ void AdviseWidget::Advise()
   auto* advisor = vtkSMSourceProxy::SafeDownCast(made);
   if (!advisor)
   {
-    return; // ParaView has said why
+    return; // ParaView has reported the reason
   }
   this->Ask(advisor);
   pqServer* server = pqActiveObjects::instance().activeServer();
@@ -184,7 +184,7 @@ void AdviseWidget::Take(vtkSMSourceProxy* advisor)
   {
     return;
   }
-  vtkSMUncheckedPropertyHelper(this->proxy(), "Preset").Set(0); // else it overrides the others
+  vtkSMUncheckedPropertyHelper(this->proxy(), "Preset").Set(0); // Custom uses the values below
   for (const char* name : Advised)
   {
     const QByteArray of = QByteArray("Advised") + name;

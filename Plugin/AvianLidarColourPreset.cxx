@@ -12,7 +12,7 @@ struct Preset
 };
 
 const Preset Presets[] = {
-#include "AvianLidarPresets.h" // made of Presets/*.json
+#include "AvianLidarPresets.h" // made from Presets/*.json
 };
 }
 

@@ -18,15 +18,15 @@
 
 namespace
 {
-// What the panel shows are unchecked values, which Apply takes over.
+// Sets unchecked values, which the panel shows and Apply uses.
 class vtkSMAvianLidarMaterialDomain : public vtkSMDoubleRangeDomain
 {
 public:
   static vtkSMAvianLidarMaterialDomain* New();
   vtkTypeMacro(vtkSMAvianLidarMaterialDomain, vtkSMDoubleRangeDomain);
 
-  // The superclass would take the required property's value for a new range, and the slider would
-  // go.
+  // Does not call the superclass, which would use the required property's value as a new range and
+  // remove the slider.
   void Update(vtkSMProperty* requesting) override
   {
     vtkSMProperty* material = this->GetRequiredProperty("Material");
@@ -40,7 +40,7 @@ public:
     }
   }
 
-  // A range that depends on nothing leaves the default as it is.
+  // The default does not change, because the range does not depend on data.
   int SetDefaultValues(vtkSMProperty*, bool) override { return 0; }
 
 protected:
@@ -57,8 +57,8 @@ private:
 
 vtkStandardNewMacro(vtkSMAvianLidarMaterialDomain);
 
-// Sets a property when another one, of the same value in another unit, changes: what the panel
-// shows with what it shows, what is applied with what is applied.
+// Sets a property when the property of the same value in another unit changes. A value in the panel
+// changes the value in the panel, and an applied value changes the applied value.
 class vtkSMAvianLidarScaledDomain : public vtkSMDoubleRangeDomain
 {
 public:
@@ -75,7 +75,7 @@ public:
     }
   }
 
-  // A range that depends on nothing leaves the default as it is.
+  // The default does not change, because the range does not depend on data.
   int SetDefaultValues(vtkSMProperty*, bool) override { return 0; }
 
 protected:
@@ -91,7 +91,7 @@ private:
   {
     Helper own(this->GetProperty());
     const double wanted = this->Factor * Helper(other).GetAsDouble();
-    // The two are the same but for rounding: neither changes then, and the last bit is kept.
+    // If the values differ only by rounding, neither value changes, and the last bit is kept.
     if (std::abs(own.GetAsDouble() - wanted) > 1e-12 * std::abs(wanted))
     {
       own.Set(wanted);
@@ -103,8 +103,8 @@ private:
 
 vtkStandardNewMacro(vtkSMAvianLidarScaledDomain);
 
-// Beams of a sensor: of what a scene may hold, only they have this point array and this field. The
-// superclass is for the words that ParaView has where it does not fit.
+// Beams of a sensor: in a scene, only beams have this point array and this field data. With this
+// superclass ParaView has a message for inputs that do not fit.
 class vtkSMAvianLidarBeamsDomain : public vtkSMInputArrayDomain
 {
 public:

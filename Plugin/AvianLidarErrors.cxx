@@ -29,8 +29,8 @@ bool IsOurs(pqPipelineSource* source)
 }
 
 //------------------------------------------------------------------------------
-// True if all ranks' data of an output, or one that it is made from, is an error: filters
-// between may have lost it.
+// True if the data of an output on all ranks, or of an output upstream, are an error. Filters in
+// between may have removed the error from the data.
 bool HasError(pqOutputPort* port, std::set<pqPipelineSource*>& seen)
 {
   pqPipelineSource* source = port ? port->getSource() : nullptr;
@@ -65,7 +65,7 @@ void AvianLidarGuardSaving(QAction* saving)
       saving->setEnabled(false);
     }
   };
-  // What was bad may be good now: ParaView decides anew.
+  // Bad data may be good after an update, so ParaView's own rule comes first.
   const auto lookAgain = [saving, guard]
   {
     for (QObject* reaction : saving->children())

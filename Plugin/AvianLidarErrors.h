@@ -6,7 +6,7 @@ class QAction;
 
 /**
  * Disables the action of File > Save Data for an output that holds an error (property
- * ErrorsAsData), so that a good file stays as it is.
+ * ErrorsAsData), so that an existing file is not overwritten.
  */
 void AvianLidarGuardSaving(QAction* saving);
 

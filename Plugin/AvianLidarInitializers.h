@@ -12,8 +12,8 @@ void AvianLidarAddColourPresets();
 
 /**
  * Registers three domains for the plugin's XML. A client that has not loaded the plugin may make a
- * proxy from a server's XML; this proxy lacks the domains. If the two beamwidths of such a sensor
- * differ, the sensor reports an error.
+ * proxy from a server's XML, without the domains. If the two beamwidths of such a sensor differ,
+ * the sensor reports an error.
  *
  * AvianLidarBeamsDomain accepts the beams of a sensor.
  *
@@ -23,7 +23,7 @@ void AvianLidarAddColourPresets();
  *
  * AvianLidarScaledDomain is a DoubleRangeDomain of a property that has the value of the required
  * property Other in another unit: the value of Other times the attribute factor. A change of one
- * property changes the other.
+ * property changes the other property.
  */
 void AvianLidarAddDomains();
 
@@ -31,11 +31,11 @@ void AvianLidarAddDomains();
  * Adds the toolbar Avian Lidar to ParaView's window, as soon as there is a window. The toolbar has
  * the echo filter and the macros that are installed beside the plugin. The menu Macros and, in
  * ParaView 5.11, the quick launch (Ctrl+Space) have these macros, too. A click on a macro is one
- * step of Edit > Undo. Menus and quick launch show a filter whose XML has the hint AvianLidarMenu
- * by the text of this hint, because ParaView searches only these texts, and the label is the name
- * in Python. The first Apply colours echoes and points with classes, and shows a range image in a
- * view. The function also adds the plugin's help pages, the button Advise and the guard of Save
- * Data. Without a window (pvpython, pvserver) nothing happens.
+ * step of Edit > Undo. If the XML of a filter has the hint AvianLidarMenu, menus and quick launch
+ * show the text of this hint. ParaView searches only the shown texts, and the label is already the
+ * name in Python. The first Apply colours echoes and points with classes, and shows a range image
+ * in a view. The function also adds the plugin's help pages, the button Advise and the guard of
+ * Save Data. Without a window (pvpython, pvserver) the function does nothing.
  */
 void AvianLidarAddToWindow();
 

@@ -65,35 +65,35 @@ struct Macro
   const char* icon;
   const char* text;
   const char* tip;
-  bool hasButton = true; ///< else it is in the menu alone: the toolbar fits beside ParaView's
+  bool hasButton = true; ///< button in the toolbar; otherwise only an entry in the menu
 };
 
 const Macro Macros[] = { { WizardMacro, "wizard", "Avian Lidar: Scan as You Choose...",
-                           "Choose scene, sensor, birds and weather: the pipeline is made of them",
+                           "Make a pipeline from a choice of scene, sensor, birds and weather",
                            false },
   { "avian_lidar_airport_scan", "scan", "Avian Lidar: Scan Surfaces or an Airport",
-    "Scan the selected surfaces with a lidar; with nothing selected, an airport" },
+    "Scan the selected surfaces with a lidar, or an airport if nothing is selected" },
   { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
     "Gulls, crows and starlings over an airport, in ten scans to play" },
   { "avian_lidar_birds_tracked", "tracker", "Avian Lidar: Track Birds over an Airport",
-    "Birds over an airport, clutter found by a filter, and their tracks, in twenty scans to play",
+    "Birds over an airport, their tracks, and clutter found by a filter, in twenty scans to play",
     false },
   { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
-    "Where a lidar at the airport detects a gull, and why not elsewhere" },
+    "Where a lidar at the airport detects or misses a gull, and why" },
   { "avian_lidar_ground_fog", "medium", "Avian Lidar: Scan an Airport in Ground Fog",
-    "An airport in ground fog, drawn translucent, and what a lidar receives of it", false },
+    "An airport in translucent ground fog, and the echoes of a lidar", false },
   { ColourMacro, "colours", "Avian Lidar: Colour by Energy",
-    "Colour the selected echoes or range image by energy, over the range of the receiver" },
+    "Colour the selected echoes or range image by energy, over the dynamic range of the receiver" },
   { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",
-    "Colour the selected beam report, range image or coverage by what became of each beam or "
+    "Colour the selected beam report, range image or coverage by the status of each beam or "
     "place" },
   { "avian_lidar_show_beam", "beam", "Avian Lidar: Show Beam",
-    "The beam of the selected echo, the surfaces that it sees, and the share of each", false },
+    "The beam of the selected echo, the surfaces in the beam, and their shares", false },
   { ClassMacro, "status", "Avian Lidar: Colour by Class",
     "Colour the selected labelled points by class", false } };
 
 //------------------------------------------------------------------------------
-// The full path of a macro: in a folder beside the library that this function is in.
+// Full path of a macro, in a folder beside the plugin's library.
 QString PathOf(const char* macro)
 {
   Dl_info plugin;
@@ -103,8 +103,9 @@ QString PathOf(const char* macro)
 }
 
 //------------------------------------------------------------------------------
-// As executeScriptAndRender() does, whose reading of the file is a step to undo in ParaView 5.13.
-// @param answers a dictionary of Python for the macro, or nothing
+// Runs a macro as executeScriptAndRender() does. In ParaView 5.13 that function would make reading
+// the file a step of Undo.
+// @param answers a dictionary of Python for the macro, or an empty text
 void Run(const QString& path, const QString& answers = QString())
 {
   pqPythonManager* python = pqPVApplicationCore::instance()->pythonManager();
@@ -141,7 +142,7 @@ vtkSMProxy* PrototypeOf(pqProxyGroupMenuManager* manager, QAction* action)
 }
 
 //------------------------------------------------------------------------------
-// ParaView gives an action its proxy's label again and again.
+// Names an action after every change, because ParaView sets the proxy's label again.
 void Name(QAction* action, const QString& text)
 {
   if (action->property("AvianLidar").isNull())
@@ -153,7 +154,7 @@ void Name(QAction* action, const QString& text)
 }
 
 //------------------------------------------------------------------------------
-// Surfaces of one material get the colour of its preview where nothing else colours them.
+// Shows surfaces of one material in its preview colour, unless an array colours the surfaces.
 void ShowMaterial(pqPipelineSource* source)
 {
   vtkSMProxy* proxy = source->getProxy();
@@ -175,7 +176,7 @@ void ShowMaterial(pqPipelineSource* source)
 }
 
 //------------------------------------------------------------------------------
-// A lidar that can be bought is called so in the pipeline, too, with a number if that name is
+// Gives a real lidar the same name in the pipeline as in the menu, with a number if the name is
 // taken.
 void NameSensor(pqPipelineSource* source)
 {
@@ -200,7 +201,7 @@ void AddHelp()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
 #if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
-  // Qt 6 adds no pages otherwise.
+  // Otherwise Qt 6 does not add pages.
   core->helpEngine()->setReadOnly(false);
   core->helpEngine()->setupData();
 #endif
@@ -278,7 +279,7 @@ void Toolbar::AddMacros(QMenu* menu)
   }
 #if !__has_include("pqProxyAction.h")
   // The quick launch of ParaView 5.13 ends the program at an action that makes no proxy.
-  auto* known = new QMenu(this); // of the toolbar itself the quick launch would offer to hide it
+  auto* known = new QMenu(this); // the toolbar itself would add an entry that hides it
   known->addActions(all);
   pqPVApplicationCore::instance()->registerForQuicklaunch(known);
 #endif
@@ -305,14 +306,15 @@ void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
     {
       this->Filters = manager;
       this->Filter = action;
-      this->addAction(action); // after what needs nothing selected
+      this->addAction(action); // after the buttons that need no selection
     }
   }
   this->EnableFilter();
 }
 
 //------------------------------------------------------------------------------
-// ParaView does so for its own toolbars, and for others when a menu opens.
+// Enables the filter if the active output fits. ParaView enables filters of its own toolbars, and
+// filters of other toolbars only when a menu opens.
 void Toolbar::EnableFilter()
 {
   if (!this->Filter)
@@ -320,7 +322,7 @@ void Toolbar::EnableFilter()
     return;
   }
   this->Filter->setEnabled(false);
-  // Without a port there may be no session, of which a prototype is.
+  // Without a port there may be no session. A prototype needs a session.
   pqOutputPort* port = pqActiveObjects::instance().activePort();
   if (!port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
   {
@@ -352,7 +354,7 @@ void Toolbar::Colour(pqProxy* applied)
   {
     return;
   }
-  source->updatePipeline(); // nothing else asks for an image that is not shown
+  source->updatePipeline(); // because ParaView does not update an image that is not shown
   vtkPVDataInformation* data = source->getOutputPort(0)->getDataInformation();
   if (data->GetArrayInformation(ofClasses ? "semantic_label" : "energy", vtkDataObject::POINT) &&
     pqActiveObjects::instance().activeSource() == source)
@@ -373,7 +375,7 @@ void AvianLidarAddToWindow()
   {
     auto* toolbar = new Toolbar(window);
     window->addToolBar(toolbar);
-    toolbar->show(); // also in a window that is there already
+    toolbar->show(); // also in a window that already exists
     AddHelp();
     AvianLidarAddAdvise();
     if (auto* saving = window->findChild<QAction*>("actionFileSaveData"))
@@ -383,9 +385,9 @@ void AvianLidarAddToWindow()
   }
   else if (QCoreApplication* application = QCoreApplication::instance())
   {
-    // A plugin that is loaded at every start (Auto Load) comes before the window, and before
-    // ParaView's application. Not at once: Qt handles events that handlers post before it goes on,
-    // and would never go on.
+    // With Auto Load the plugin is loaded before the window and ParaView's application exist. The
+    // delay is necessary: Qt handles posted events before it continues, and without a delay it
+    // would never continue.
     QTimer::singleShot(50, application, AvianLidarAddToWindow);
   }
 }

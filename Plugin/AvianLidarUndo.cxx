@@ -25,7 +25,7 @@ constexpr const char* CameraProperties[] = { "CameraPosition", "CameraFocalPoint
   "CameraViewAngle", "CameraParallelScale" };
 constexpr char Projection[] = "CameraParallelProjection";
 
-/// Where a view looks from.
+/// Camera of a view.
 struct Camera
 {
   vtkWeakPointer<vtkSMRenderViewProxy> view;
@@ -76,7 +76,7 @@ public:
     return cameras;
   }
 
-  /// Looks again. A view that has come since is taken back as a whole.
+  /// Reads the cameras again. @return true if a camera of an earlier view has moved or is gone
   bool Moved()
   {
     this->After = Cameras::Now();

@@ -24,16 +24,16 @@ namespace
 constexpr char FirstSensor[] = "AvianLidarSearch905";
 constexpr char FirstSpecies[] = "herring gull";
 constexpr int FirstNumber = 12;
-constexpr int MostBirds = 1000; ///< ids of a kind of birds, as the macro has them
+constexpr int MostBirds = 1000; ///< largest number of birds, equal to IDS of the macro
 
-/// The sensors that are sources: their names in menus, and their proxies.
+/// Names in menus, and proxies, of all sensors that are sources.
 QMap<QString, QString> Sensors()
 {
   QMap<QString, QString> found;
   vtkSMSessionProxyManager* manager = pqActiveObjects::instance().proxyManager();
   if (!manager)
   {
-    return found; // not connected
+    return found; // no connection to a server
   }
   auto each = vtkSmartPointer<vtkPVProxyDefinitionIterator>::Take(
     manager->GetProxyDefinitionManager()->NewSingleGroupIterator("sources"));
@@ -54,7 +54,7 @@ QMap<QString, QString> Sensors()
   return found;
 }
 
-/// A string of Python.
+/// Text as a Python literal.
 QString Quoted(QString text)
 {
   return "'" + text.replace('\\', "\\\\").replace('\'', "\\'").replace('\n', "\\n") + "'";
@@ -87,17 +87,17 @@ Wizard::Wizard(QWidget* parent)
   this->setOption(QWizard::NoBackButtonOnStartPage);
 
   QFormLayout* page = this->AddPage("Scene",
-    "What stands there. Without a file, the airport that comes with the plugin; else a scene "
-    "(.lidarscene.json) or surfaces in metres, z up (.obj, .stl, .vtp, ...).");
+    "A scene (.lidarscene.json), or surfaces in metres, z up (.obj, .stl, .vtp, ...). Without a "
+    "file, the scene is the plugin's airport.");
   this->Scene = new pqFileChooserWidget(this);
   this->Scene->setObjectName("Scene");
   this->Scene->setServer(pqActiveObjects::instance().activeServer());
   this->Scene->setForceSingleFile(true);
-  page->addRow("File (none: the airport)", this->Scene);
+  page->addRow("File (empty: the airport)", this->Scene);
 
   page = this->AddPage("Sensor",
-    "The lidar. It stands where the scene says, else beside the surfaces; its values can be "
-    "changed afterwards.");
+    "The lidar stands at the position that the scene gives, or beside the surfaces. The values of "
+    "the lidar can be changed afterwards.");
   this->Sensor = this->AddChoice(page, "Lidar", "Sensor");
   const QMap<QString, QString> sensors = Sensors();
   for (auto sensor = sensors.begin(); sensor != sensors.end(); ++sensor)
@@ -106,7 +106,8 @@ Wizard::Wizard(QWidget* parent)
   }
   this->Sensor->setCurrentIndex(this->Sensor->findData(FirstSensor));
 
-  page = this->AddPage("Birds", "Birds that cross above the lidar, within 250 m of it.");
+  page =
+    this->AddPage("Birds", "Birds that cross within 250 m of the lidar, 4 to 20 m above its foot.");
   this->Species = this->AddChoice(page, "Species", "Species");
   this->Species->addItems(
     { "starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose" });
@@ -119,14 +120,14 @@ Wizard::Wizard(QWidget* parent)
   page->addRow("Number", this->Number);
 
   page = this->AddPage("Weather",
-    "Fog, rain and ground fog send light back: they need a lidar whose receiver has an aperture "
+    "Fog, rain and ground fog send light back, and need a lidar with a receiver aperture "
     "(not Airport 16, Airport 32 or Corridor C16).");
   this->Weather = this->AddChoice(page, "Weather", "Weather");
   this->Weather->addItem("Clear: visibility 23 km", "clear");
   this->Weather->addItem("Haze: visibility 5 km", "haze");
   this->Weather->addItem("Fog: visibility 500 m", "fog");
   this->Weather->addItem("Rain: 10 mm/h", "rain");
-  this->Weather->addItem("Ground fog: 400 m, up to 5 m", "ground fog");
+  this->Weather->addItem("Ground fog: visibility 400 m, height 5 m", "ground fog");
 }
 
 //------------------------------------------------------------------------------
@@ -134,7 +135,7 @@ QFormLayout* Wizard::AddPage(const QString& title, const QString& text)
 {
   auto* page = new QWizardPage(this);
   page->setTitle(title);
-  page->setFinalPage(true); // Finish, whatever the page
+  page->setFinalPage(true); // with the button Finish
   auto* layout = new QFormLayout(page);
   auto* label = new QLabel(text, page);
   label->setWordWrap(true);

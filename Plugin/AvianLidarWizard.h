@@ -7,8 +7,8 @@
 class QWidget;
 
 /**
- * Asks for scene, sensor, birds and weather of a scan, page by page; each page has the button
- * Finish, which takes the other pages as they are (at first an airport, birds and clear air).
+ * Shows a dialog for scene, sensor, birds and weather of a scan, page by page. Each page has the
+ * button Finish, which accepts all pages (the defaults are an airport, birds and clear air).
  * @return the answers as a dictionary of Python, for the macro avian_lidar_wizard; empty if the
  * dialog was cancelled
  */

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the macros share. This module is in the plugin's library: `import avian_lidar_plugin` works wherever the plugin
-is loaded, also in a copy of a macro."""
+"""Common functions of the macros. This module is in the plugin's library: `import avian_lidar_plugin` works wherever the
+plugin is loaded, also in a copy of a macro."""
 
 import importlib.util
 import itertools
@@ -14,21 +14,21 @@ PLUGIN = "AvianLidarPlugin"
 EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
 ENERGY_COLOURS = "avian_lidar_energy_colours"
 POSITION = "lidar_position"
-# What a scan is made of.
-SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes: there are many sources of them
+# Parts of a scan.
+SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes, because many sources have one of these classes
 PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
-# What shows some of a result.
+# Filters that show a part of a result.
 SOME = ("Threshold", "Cut", "Contour")
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
-SENSOR_SIZE = 12  # pixels
-# Diffuse reflectances that are drawn black and white: concrete is then a middle grey, and echoes stand out.
+SENSOR_SIZE = 12  # size of the sensor's point, pixels
+# Diffuse reflectances kd drawn as black and as white. Concrete is then a middle grey, and echoes are easy to see.
 GREY_RANGE = (-0.05, 0.6)
 MARGIN = 1.15
 
 
 def plugin_folder(on_server=False):
-    """The folder of the loaded plugin; where a file is read by a remote server, as that server names it."""
+    """The folder of the loaded plugin. @param on_server the folder on the server, for files that a remote server reads"""
     manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
     remote = on_server and servermanager.ActiveConnection.IsRemote()
     plugins = manager.GetLocalInformation()
@@ -43,7 +43,7 @@ def plugin_folder(on_server=False):
 
 
 def neighbour(name, file=None):
-    """Another macro as a module: beside the file of a macro or, if that is a copy elsewhere, the plugin's."""
+    """Another macro as a module, from the folder of the macro `file`, else from the plugin's folder."""
     folders = [os.path.dirname(os.path.abspath(file))] if file else []
     folders.append(os.path.join(plugin_folder(), "Macros"))
     for folder in folders:
@@ -57,19 +57,19 @@ def neighbour(name, file=None):
 
 
 def say(title, text, failed=True):
-    """A word in Output Messages, which ParaView opens by itself for a failure."""
+    """Shows a message in Output Messages. ParaView opens Output Messages after a failure."""
     window = vtkOutputWindow.GetInstance()
     display = window.DisplayErrorText if failed else window.DisplayWarningText
     display(f"Avian lidar {title}: {text}.\n")
 
 
 def write(title, text):
-    """A word in the terminal, or in the Python shell."""
+    """Prints a message in the terminal, or in the Python shell."""
     print(f"Avian lidar {title}: {text}.")
 
 
 def run(title, macro, *arguments, report=say, render=simple.Render):
-    """What a click on a macro does: its views are drawn, or the problem is reported."""
+    """Runs a macro as a click does: draws the views, or reports the problem."""
     try:
         macro(*arguments)
     except (ValueError, RuntimeError) as problem:
@@ -79,20 +79,20 @@ def run(title, macro, *arguments, report=say, render=simple.Render):
 
 
 def start(view=None):
-    """The view to use, once the plugin is known to be loaded."""
+    """The view to use. Raises an error if the plugin is not loaded."""
     plugin_folder(on_server=True)
-    # As in every script that ParaView writes: the camera stays where it is put.
+    # As in scripts that ParaView writes: the first rendering does not move the camera.
     simple._DisableFirstRenderCameraReset()
     return view or simple.GetActiveViewOrCreate("RenderView")
 
 
 def name_of(source):
-    """Its name in the pipeline."""
+    """The name of a source in the pipeline."""
     return next((key[0] for key, known in simple.GetSources().items() if known == source), "surfaces")
 
 
 def free_name(name, surfaces=None):
-    """The name; if it is taken in the pipeline, with that of the surfaces; if that is taken, with a number."""
+    """A free name in the pipeline: `name`, else `name` with the name of the surfaces, else also with a number."""
     taken = {key[0] for key in simple.GetSources()}
     long = f"{name} of {name_of(surfaces)}" if surfaces else name
     names = itertools.chain([name, long], (f"{long} {i}" for i in itertools.count(2)))
@@ -104,18 +104,18 @@ def of_kind(name):
 
 
 def of_result(source):
-    """Whether it is a result, or some of one: echoes of birds, slices of a coverage."""
+    """Whether a source is a result, or a part of a result, such as echoes of birds or a slice of a coverage."""
     name = source.SMProxy.GetXMLName()
     return name in RESULTS or (name in SOME and source.Input is not None and of_result(source.Input))
 
 
 def is_part(source):
-    """Whether it belongs to a scan."""
+    """Whether a source belongs to a scan."""
     return source.SMProxy.GetXMLName() in PARTS or source.SMProxy.GetVTKClassName() in SENSORS or of_result(source)
 
 
 def hide_scans(view):
-    """Hides what earlier scans show."""
+    """Hides the parts and results of earlier scans."""
     for source in simple.GetSources().values():
         if is_part(source):
             for port in range(source.SMProxy.GetNumberOfOutputPorts()):
@@ -123,9 +123,9 @@ def hide_scans(view):
 
 
 def apply(source):
-    """Applies what has just been opened, before it has consumers: a script cannot press the button. ParaView's window,
-    which keeps a source to itself until it is applied, registers a source that has never been shown anew, as one that a
-    script has made. Without this, Apply would later show the bare surfaces over the scan."""
+    """Applies a source that has just been opened and has no consumers, because a script cannot press the button Apply.
+    If the source was never shown, the function registers the source again, like a source that a script has made.
+    Otherwise, Apply would later show the bare surfaces over the scan."""
     manager = servermanager.ProxyManager()
     name = manager.GetProxyName("sources", source)
     inputs = (display.SMProxy.GetProperty("Input") for display in simple.GetRepresentations().values())
@@ -141,7 +141,7 @@ def open_example():
 
 
 def tree_of(surfaces):
-    """The surfaces, applied, with a collision tree."""
+    """Applies the surfaces, and gives them a collision tree."""
     surfaces.UpdatePipeline()
     if surfaces.SMProxy.GetXMLName() == "AvianLidarCollisionTree":
         apply(surfaces)
@@ -165,7 +165,7 @@ def is_example(source):
 
 
 def airport_and_tree():
-    """The airport and its collision tree, those of the pipeline if they are there."""
+    """The airport and its collision tree, from the pipeline if possible."""
     for tree in of_kind("AvianLidarCollisionTree"):
         if is_example(tree.Input):
             tree.UpdatePipeline()
@@ -175,13 +175,13 @@ def airport_and_tree():
 
 
 def lidar_place(tree):
-    """Where the sensor stands, as the scene says, or None."""
+    """The position of the sensor in the scene, m, or None."""
     position = tree.GetFieldDataInformation().GetArray(POSITION)
     return position and [position.GetRange(i)[0] for i in range(3)]
 
 
 def update_first_step(echoes):
-    """The animation has the steps of the data, and is at the first."""
+    """Gives the animation the time steps of the data, and goes to the first step."""
     animation = simple.GetAnimationScene()
     animation.UpdateAnimationUsingDataTimeSteps()
     animation.GoToFirst()
@@ -189,7 +189,7 @@ def update_first_step(echoes):
 
 
 def show(source, view, colour=None, **properties):
-    """The display of a source with these properties, in one colour if there is one."""
+    """Shows a source with these properties, and in one colour if `colour` is given. @return the display"""
     display = simple.Show(source, view)
     if colour:
         display.ColorArrayName = ["POINTS", ""]
@@ -200,10 +200,10 @@ def show(source, view, colour=None, **properties):
 
 
 def colour_by(display, kind, array, preset, limits):
-    """The table of colours of an array, of a range that stays."""
+    """Colours a display by an array over a fixed range. @return the table of colours"""
     simple.ColorBy(display, (kind, array))
     table = simple.GetColorTransferFunction(array)
-    # First: setting the range would otherwise be undone by the next update.
+    # Before the range is set: otherwise the next update would undo the range.
     table.AutomaticRescaleRangeMode = "Never"
     table.ApplyPreset(preset, True)
     table.RescaleTransferFunction(*limits)
@@ -211,7 +211,7 @@ def colour_by(display, kind, array, preset, limits):
 
 
 def show_grey(tree, view):
-    """The surfaces in shades of grey: the lighter, the more they reflect."""
+    """Shows the surfaces in shades of grey. Lighter surfaces reflect more."""
     display = show(tree, view, Representation="Surface")
     colour_by(display, "CELLS", "kd", "Grayscale", GREY_RANGE)
     display.SetScalarBarVisibility(view, False)
@@ -222,7 +222,7 @@ def show_sensor(beams, view, as_ball=1):
 
 
 def axes_of_camera(azimuth, elevation):
-    """Right, up and towards the eye. The azimuth is in radians, from east to north, the elevation in degrees."""
+    """Unit vectors to the right, up and towards the eye. @param azimuth rad, from east to north @param elevation deg"""
     elevation = math.radians(elevation)
     ahead = [math.cos(azimuth), math.sin(azimuth)]
     right = [ahead[1], -ahead[0], 0]
@@ -232,8 +232,8 @@ def axes_of_camera(azimuth, elevation):
 
 
 def frame(view, azimuth, elevation, *boxes, pixels=None):
-    """Looks at the boxes from above, along the azimuth, in a view of so many pixels (default: as it is); without
-    perspective, whose depth buffer cannot tell an apron from the grass 2 cm below it."""
+    """Points the camera at the boxes from above, along the azimuth. The camera has no perspective: with perspective, the
+    depth buffer mixes an apron and the grass 2 cm below. @param pixels size of the view (default: the present size)"""
     low, high = ([choose(values) for values in zip(*(b[start::2] for b in boxes))]
                  for choose, start in ((min, 0), (max, 1)))
     corners = [corner for box in boxes for corner in itertools.product(box[:2], box[2:4], box[4:])]
@@ -243,7 +243,7 @@ def frame(view, azimuth, elevation, *boxes, pixels=None):
         along = [sum(a * b for a, b in zip(axis, corner)) for corner in corners]
         spans.append((min(along), max(along)))
     middle = [(low + high) / 2 for low, high in spans]
-    # The point of the boxes' midst that the middle of the picture shows.
+    # Moves the centre of the boxes to the point in the middle of the picture.
     centre = [(a + b) / 2 for a, b in zip(low, high)]
     for axis, value in zip((right, up), middle):
         shift = value - sum(a * b for a, b in zip(axis, centre))

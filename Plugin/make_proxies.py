@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the XML that ParaView reads: make_proxies.py proxies... sensors... proxies.xml contents.xml
 
-The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML, but leave out what follows from the rest:
+The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML without the parts that follow from the rest:
 
-- A proxy has the class `vtk` + its name, its name in words as label, and the base AvianLidarAlgorithm. `icon` puts it
-  into the menu Avian Lidar. A file's endings, `extensions`, and `file_description` make a reader.
-- A property has its name in words as label, `Set` + its name as command (`Get` if it is information only), and as many
-  elements as it has defaults.
-- A property stands in the PropertyGroup that shows it.
-- `<Property name="X" of="Y">` is the property X of the proxy Y. Its own attributes and elements replace those of Y.
+- A proxy has the class `vtk` + its name, its name in words as label, and the base AvianLidarAlgorithm. `icon` puts the
+  proxy into the menu Avian Lidar. `extensions` and `file_description` make a reader of files with these extensions.
+- A property has its name in words as label, `Set` + its name as command (`Get` with information_only), and as many
+  elements as defaults.
+- A PropertyGroup contains the properties that it shows.
+- `<Property name="X" of="Y">` is the property X of the proxy Y. Attributes and elements of the tag replace attributes
+  and elements of Y's property.
 - `type` and `composite` of an input make its domains. `entries` of an enumeration count from 0.
-- `visible_if` and `enabled_if`, as in "Kind=0 1" or "Kind!=4", make decorators; "" makes none.
+- `visible_if` and `enabled_if`, as in "Kind=0 1" or "Kind!=4", make decorators. An empty text makes no decorator.
 - A PSWriterProxy has the properties of its core, which ParaView's writer for several ranks contains.
 
 Each sensor file makes one more source: the beam source with the file's values as defaults, in a category of its maker.
-Tables that are not properties come by the sensor's name. contents.xml is the help's table of contents. CMake runs
-this."""
+This source finds its tables, which are not properties, by the sensor's name. contents.xml is the help's table of contents.
+CMake runs this script."""
 
 import copy
 import json
@@ -26,18 +27,18 @@ import xml.etree.ElementTree as ElementTree
 
 CATEGORY = "Avian Lidar"
 BASE = "AvianLidarBeamSource"
-# The help's chapters of what is not listed as a reader, a writer or a filter, and their first pages.
+# Chapters of the help for pages that are not of a reader, a writer or a filter; first pages of all chapters.
 CHAPTERS = {"Beam Source": "Sensors", "Bird Source": "Birds", "Tracks": "Birds", "Medium": "Air",
             "Medium In Surface": "Air"}
 FIRST_PAGES = {"Sensors": f"sources.{BASE}.html", "Birds": "sources.AvianLidarBirdSource.html",
                "Air": "sources.AvianLidarMedium.html", "Filters": "filters.AvianLidarEchoFilter.html",
                "Readers": "Readers.html", "Writers": "Writers.html"}
-# What all writers have beside their own properties. On several ranks the first one gathers the points and writes them.
-# ParaView's writer of series puts a slash before names without a folder; by GivenFileName the core leaves it out.
+# The common part of all writers. With several ranks, the first rank gathers the points and writes them. ParaView's writer
+# of series puts a slash before names without a folder. With GivenFileName the core removes the slash.
 WRITER = """<ServerManagerConfiguration>
 <Proxy name="{name}Core" class="vtk{name}">
   <StringVectorProperty name="GivenFileName" number_of_elements="1" panel_visibility="never">
-    <Documentation>The name of the file as it was given, without the number of a step.</Documentation>
+    <Documentation>Name of the file as given by the user, without the number of a step.</Documentation>
   </StringVectorProperty>
 </Proxy>
 <PSWriterProxy name="{name}" class="vtkParallelSerialWriter" file_name_method="SetMadeFileName" label="{label}"
@@ -47,7 +48,7 @@ WRITER = """<ServerManagerConfiguration>
     <Documentation>Echoes: points in metres.</Documentation>
   </InputProperty>
   <StringVectorProperty name="FileName" number_of_elements="1" panel_visibility="never">
-    <Documentation>The file to write. It is there as a whole or not at all.</Documentation>
+    <Documentation>The file to write. The writer makes the whole file, or no file.</Documentation>
   </StringVectorProperty>
   <SubProxy>
     <Proxy name="Writer" proxygroup="internal_writers" proxyname="{name}Core" />
@@ -69,18 +70,18 @@ def element(parent, tag, **attributes):
 
 
 def child(parent, tag):
-    """The element of that tag, made where it is missing."""
+    """The first child with this tag, which is made if missing."""
     found = parent.find(tag)
     return element(parent, tag) if found is None else found
 
 
 def is_property(one):
-    """Whether it defines a property; a group and a link only name one."""
+    """Whether an element defines a property. A group or a link only names a property."""
     return one.tag.endswith("Property") and (one.tag != "Property" or len(one) > 0 or "of" in one.attrib)
 
 
 def ungroup(proxy):
-    """Properties out of their groups, which then name them."""
+    """Moves properties out of their groups. The groups then name the properties."""
     for group in proxy.findall("PropertyGroup"):
         for i, prop in enumerate(list(group)):
             if is_property(prop):
@@ -91,7 +92,7 @@ def ungroup(proxy):
 
 
 def resolved(prop, proxies):
-    """The property, after that of another proxy where it says so."""
+    """The property; with the attribute `of`, a changed copy of the other proxy's property."""
     if "of" not in prop.attrib:
         return prop
     known = {one.get("name"): one for one in proxies[prop.get("of")] if is_property(one)}
@@ -117,7 +118,7 @@ def complete_input(prop):
 
 
 def complete_values(prop):
-    """A property with values."""
+    """Adds the parts that a property with values leaves out."""
     kind, name = prop.tag.replace("VectorProperty", ""), prop.get("name")
     result = "information_only" in prop.attrib
     if result and not any(one.tag.endswith("Helper") for one in prop):
@@ -143,7 +144,7 @@ def complete_values(prop):
 
 
 def complete(proxy):
-    """All that ParaView needs, of a proxy whose properties are there."""
+    """Adds the parts that a proxy with its properties leaves out."""
     for prop in filter(is_property, proxy):
         prop.attrib.setdefault("label", words(prop.get("name")))
         if prop.tag == "InputProperty":
@@ -171,7 +172,7 @@ def complete_header(proxy):
 
 
 def writer(short):
-    """(core, writer) of a writer's proxy."""
+    """(core, writer) from the short proxy of a writer."""
     name = short.get("name")
     core, proxy = ElementTree.fromstring(WRITER.format(name=name, label=short.get("label", words(name))))
     homes = {"PropertyGroup": proxy.find("SubProxy/ExposedProperties"), "InputArrayDomain": proxy.find("InputProperty")}
@@ -185,7 +186,7 @@ def writer(short):
 
 
 def expanded(files):
-    """The proxies of files as ParaView reads them, in one element."""
+    """The proxies of the files in the form that ParaView reads, in one element."""
     root = ElementTree.Element("ServerManagerConfiguration")
     for file in files:
         read = ElementTree.parse(file).getroot()
@@ -209,7 +210,7 @@ def expanded(files):
 
 
 def overridden(prop, value):
-    """The property with another default."""
+    """A copy of the property with another default."""
     found = copy.deepcopy(prop)
     values = value if isinstance(value, list) else [value]
     text = value if isinstance(value, str) else " ".join(map(repr, values))
@@ -218,18 +219,18 @@ def overridden(prop, value):
 
 
 def sensor_source(sensor, base):
-    """(the lidar with its maker, the source of it) of a sensor file."""
+    """(name of the lidar with its maker, its source) from a sensor file."""
     name, model, maker = sensor["name"], sensor.get("model", words(sensor["name"])), sensor.get("maker")
     full = model if maker in (None, "assumed") else f"{maker} {model}"
-    # Without "_", at which ParaView's help splits names.
+    # Without "_", because ParaView's help splits names there.
     proxy = ElementTree.Element("SourceProxy", {
         "name": "AvianLidar" + name.replace("_", ""), "class": "vtk" + BASE,
         "label": f"{CATEGORY} {name.replace('_', ' ') if maker not in (None, 'assumed') else model}",
         "base_proxygroup": "sources", "base_proxyname": BASE})
     documentation = element(proxy, "Documentation", short_help=f"The sensor {full}.", long_help=sensor["comment"] + ".")
     documentation.text = (
-        f"The beam source with the values of this sensor: {sensor['comment']}. Each number's source is in the sensor file "
-        f"{name}; the field data assumed names what nobody has measured. Values can be changed here as of any beam source.")
+        f"The beam source with the values of this sensor: {sensor['comment']}. The sensor file {name} gives the source of each "
+        f"number. The field data assumed gives the names of values that nobody has measured. All values can be changed here.")
     values = {key.title().replace("_", ""): number["value"] for key, number in sensor["values"].items()}
     if "HalfBeamwidth" in values:
         values["BeamwidthMilliradians"] = round(2000 * values["HalfBeamwidth"], 9)
@@ -240,7 +241,7 @@ def sensor_source(sensor, base):
     category = f"{CATEGORY}: {maker[0].upper() + maker[1:]}" if maker else CATEGORY
     element(hints, "ShowInMenu", category=category, icon=":/AvianLidar/Icons/sensor.svg")
     if full != model:
-        element(hints, "AvianLidarMenu", text=full, pipeline="1")  # what the menu and the pipeline call it
+        element(hints, "AvianLidarMenu", text=full, pipeline="1")  # name in the menu and in the pipeline
     hints.extend(base.find("Hints")[1:])
     return full, proxy
 
@@ -266,7 +267,7 @@ def contents(root, sensors):
 
 
 def write(path, root):
-    """Not anew what is there: all that is built of it would be, too."""
+    """Writes a file that has changed. A new but equal file would make CMake build its dependents again."""
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode") + "\n"
     if not path.exists() or path.read_text(encoding="utf-8") != text:

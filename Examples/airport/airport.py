@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which echoes does an avian lidar get from an airport? Reads a scene, scans it and leaves for each sensor
+"""Which echoes does an avian lidar receive from an airport? Scans a scene and writes for each sensor
 <sensor>.vtp (the echoes), <sensor>.csv (with longitude, latitude, height), <sensor>.las, .pcd and .geojson for other
 programs, three pictures and a table.
 
-    Examples/airport/run.sh                                      builds everything and runs this script
-    Examples/airport/run.sh --paper --out build/airport-paper    by the method of the paper
+    Examples/airport/run.sh                                      builds the project and runs this script
+    Examples/airport/run.sh --paper --out build/airport-paper    uses the method of the paper
     airport.py --preset Airport32 --rays 1000 --seed 7 --out build/scan
     airport.py --scene my.lidarscene.json
 
-PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
+PYTHONPATH must contain the folder of the Python package (`cat build/paraview/python-path`).
 """
 import pathlib
 import sys
@@ -27,15 +27,15 @@ def arguments(argv=None):
     parser = tools.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--scene", type=tools.file, default=SCENE, help="a .lidarscene.json file; default: Shanghai Hongqiao")
     parser.add_argument("--preset", choices=["Airport16", "Airport32", "both"], default="both", help="the sensor")
-    parser.add_argument("--unit", type=tools.above_zero, help="range unit and pulse width, ns; default: the preset's")
+    parser.add_argument("--unit", type=tools.above_zero, help="range unit and pulse width, ns; default: values of the preset")
     tools.add_arguments(parser, "build/airport")
     parser.add_argument("--focus", default="Terminal 1", help="object of the close view, default 'Terminal 1'")
-    parser.add_argument("--all-wall", action="store_true", help="make everything of the paper's wall material")
+    parser.add_argument("--all-wall", action="store_true", help="give all objects the paper's wall material")
     return parser.parse_args(argv)
 
 
 def scan(scene, preset, options, clock):
-    """The scan of one sensor, its echoes with colours and places on the Earth, and its range image."""
+    """The scan of one sensor, its echoes with colours and positions on the Earth, and its range image."""
     sensor = al.Sensor(preset, position=scene.lidar_position or (0, 0, 0))
     if options.unit:
         sensor.set(sampling_interval=1e-9 * options.unit, pulse_width=1e-9 * options.unit)
@@ -50,13 +50,13 @@ def scan(scene, preset, options, clock):
 
 
 def focus(surfaces, echoes, name):
-    """Title and limits of the close view: the object, or else the 500 m with the most echoes."""
+    """Title and limits of the close view: the object `name`, else the square of 500 m with the most echoes."""
     names = tools.strings(surfaces, "object_names")
     if name in names:
         return name, tools.around(vtk_to_numpy(surfaces.GetBlock(names.index(name)).GetPoints().GetData()), 0.06)
     points = echoes.points if echoes.number_of_points else np.array([echoes.fields["position"]])
     squares, count = np.unique(np.floor(points[:, :2] / 500), axis=0, return_counts=True)
-    return "Where most echoes are", tuple((500 * x, 500 * x + 500) for x in squares[count.argmax()])
+    return "Square of 500 m with the most echoes", tuple((500 * x, 500 * x + 500) for x in squares[count.argmax()])
 
 
 def draw(surfaces, result, echoes, preset, options):

@@ -1,14 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The one command for the airport: installs the packages that are missing, builds, scans the airport with both
-# presets and leaves pictures and files in build/airport. Works on a bare Debian 12 or 13 as root.
-# Arguments go to airport.py.
+# Installs missing packages, builds the project, scans the airport with the presets Airport16 and Airport32, and writes
+# pictures and files to build/airport. Works on a bare Debian 12 or 13 as root. Arguments are passed to airport.py.
 set -eu
 
 cd "$(dirname "$0")/../.."
 CMake/install-packages.sh plugin python
 
-# Without the tests, which need more packages: `cmake --preset paraview` turns them on again.
+# Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
 cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
 

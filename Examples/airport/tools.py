@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the examples share: arguments, errors in one line, the table of a scan, and pictures by Matplotlib."""
+"""Common functions of the examples: arguments, errors in one line, the table of a scan, and pictures by Matplotlib."""
 import argparse
 import contextlib
 import csv
@@ -23,14 +23,14 @@ PAVED = {"apron": "0.93", "runway": "0.84"}
 
 
 class Parser(argparse.ArgumentParser):
-    """A bad argument ends with one line and the exit code 2."""
+    """Reports a bad argument in one line, with the exit code 2."""
 
     def error(self, message):
         self.exit(2, f"{self.prog}: {message} (--help says more)\n")
 
 
 def number(kind, low, high=LARGEST):
-    """The type of an argument: an int or a float from low to high."""
+    """The type of an argument that is an int or a float from low to high."""
     def convert(text):
         try:
             value = kind(text)
@@ -46,29 +46,29 @@ above_zero, finite = number(float, sys.float_info.min), number(float, -LARGEST)
 
 
 def file(text):
-    """The type of an argument: a file that can be read."""
+    """The type of an argument that is a readable file."""
     if not os.path.isfile(text) or not os.access(text, os.R_OK):
         raise argparse.ArgumentTypeError(f"there is no file {text} to read")
     return pathlib.Path(text)
 
 
 def add_arguments(parser, out):
-    """The arguments of all scans."""
+    """Adds the arguments of all scans."""
     parser.add_argument("--rays", type=number(int, 1, 1000000), default=100, help="rays per beam, default 100")
-    parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0, help="of the random numbers, default 0")
-    parser.add_argument("--threads", type=number(int, 0, 4096), default=0, help="default 0: as many as there are cores")
+    parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0, help="seed of the random numbers, default 0")
+    parser.add_argument("--threads", type=number(int, 0, 4096), default=0, help="number of threads, default 0: one for each core")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out), help=f"folder for results, default {out}")
-    parser.add_argument("--paper", action="store_true", help="the method and the tree of the paper: the presets named Paper, whose 100 rays replace --rays")
-    parser.add_argument("--no-pictures", action="store_true", help="leave files and tables alone")
+    parser.add_argument("--paper", action="store_true", help="use the method and the tree of the paper (presets Paper) with 100 rays instead of --rays")
+    parser.add_argument("--no-pictures", action="store_true", help="write only files and tables")
 
 
 def preset(options):
-    """Of the scan, as the arguments say."""
+    """The name of the scan's preset."""
     return "Paper" if options.paper else "Custom"
 
 
 def run(work):
-    """Return what the work gives; an error ends the script in one line with the exit code 1."""
+    """Returns the result of the work. An error ends the script with one line and the exit code 1."""
     try:
         return work()
     except (al.Error, OSError, ValueError) as error:
@@ -76,7 +76,7 @@ def run(work):
 
 
 class Clock:
-    """with clock("read"): ...   keeps the wall time of each stage."""
+    """Measures the wall time of each stage, s: with clock("read"): ..."""
 
     def __init__(self, before=()):
         self.seconds = dict(before)
@@ -97,7 +97,7 @@ def strings(data, name):
 
 
 def counts(tree, echoes, lidar):
-    """The rows of a scan's table that are not times."""
+    """The rows of a scan's table with counts and shares."""
     status = vtk_to_numpy(lidar.GetOutput(1).GetPointData().GetArray("status"))
     energy, secondary = (vtk_to_numpy(echoes.GetPointData().GetArray(name)) for name in ("return_energy", "secondary_share"))
     return [("triangles", tree.GetOutput().GetNumberOfPolys()), ("beams", len(status)),
@@ -109,7 +109,7 @@ def counts(tree, echoes, lidar):
 
 
 def hue_of(name, echoes):
-    """The row with the median hue of an object's echoes; no row if the scene has no such object."""
+    """The row with the median hue of an object's echoes. Without the object in the scene there is no row."""
     known = strings(echoes, "object_names")
     if name not in known:
         return []
@@ -119,18 +119,18 @@ def hue_of(name, echoes):
 
 
 def columns(of):
-    """Head and rows of a table from {column: [(label, value)]}; all columns have the same labels."""
+    """Head and rows of a table from {column: [(label, value)]}. All columns have the same labels."""
     return ("", *of), [(rows[0][0], *(row[1] for row in rows)) for rows in zip(*of.values())]
 
 
 def markdown(head, rows, left=1):
-    """A table in Markdown; columns behind the first `left` are flush right."""
+    """A table in Markdown. The first `left` columns are flush left, and the next columns are flush right."""
     rule = ["---" if i < left else "---:" for i in range(len(head))]
     return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in (head, rule, *rows)) + "\n"
 
 
 def leave(folder, name, head, rows, left=1):
-    """Write a table as <name>.md and <name>.csv, and print it."""
+    """Writes a table as <name>.md and <name>.csv, and prints the table."""
     folder.mkdir(parents=True, exist_ok=True)
     text = markdown(head, rows, left)
     (folder / f"{name}.md").write_text(text, encoding="utf-8")
@@ -141,7 +141,7 @@ def leave(folder, name, head, rows, left=1):
 
 @contextlib.contextmanager
 def figure(name, *shape, figsize, dpi=100, **options):
-    """with figure("map.png", 1, 2, figsize=(9, 4)) as axes: ...   writes a picture of axes as `subplots` makes them."""
+    """Writes a picture with axes from `subplots`: with figure("map.png", 1, 2, figsize=(9, 4)) as axes: ..."""
     from matplotlib.figure import Figure
     pathlib.Path(name).parent.mkdir(parents=True, exist_ok=True)
     page = Figure(figsize, layout="constrained")
@@ -150,7 +150,7 @@ def figure(name, *shape, figsize, dpi=100, **options):
 
 
 def edges(surfaces, angle=20):
-    """The lines where faces end or meet at more than this angle (degrees)."""
+    """The lines where faces end, or where faces meet at more than this angle (deg)."""
     triangles, clean, found = vtkTriangleFilter(), vtkCleanPolyData(), vtkFeatureEdges()
     triangles.SetInputData(surfaces)
     clean.SetInputConnection(triangles.GetOutputPort())
@@ -162,7 +162,7 @@ def edges(surfaces, angle=20):
 
 
 def plan(axes, scene, colour="black"):
-    """Draw blocks from above: pavement as areas, what stands on the ground as its edges, the ground not at all."""
+    """Draws blocks from above: pavement as areas, other objects as their edges. The ground is not drawn."""
     from matplotlib.collections import LineCollection, PolyCollection
     kinds = strings(scene, "object_classes") or [""] * scene.GetNumberOfBlocks()
     for number, kind in enumerate(kinds):
@@ -178,14 +178,14 @@ def plan(axes, scene, colour="black"):
 
 
 def around(points, margin):
-    """x and y limits about points, with a margin that is this share of their extent."""
+    """Limits of x and y around points, with a margin that is the share `margin` of their extent."""
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     grow = margin * (high - low).max() or 100.0
     return tuple(np.column_stack([low - grow, high + grow]))
 
 
 def extent(scene, echoes, margin=0.03):
-    """Limits about lidar, echoes, and all but the ground within the range gate."""
+    """Limits around the lidar, the echoes, and all objects except the ground within the range gate."""
     lidar, gate = np.array(echoes.fields["position"]), echoes.fields["range_gate"]
     kinds = strings(scene, "object_classes") or [""] * scene.GetNumberOfBlocks()
     blocks = [scene.GetBlock(i) for i, kind in enumerate(kinds) if kind != "ground"]
@@ -195,7 +195,7 @@ def extent(scene, echoes, margin=0.03):
 
 
 def from_above(axes, scene, echoes, limits, title, size=6):
-    """Draw echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus."""
+    """Draws echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus."""
     plan(axes, scene)
     order = np.argsort(echoes["energy"])
     low, high = (1e6 * echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
@@ -210,7 +210,7 @@ def from_above(axes, scene, echoes, limits, title, size=6):
 
 
 def range_images(name, scan, title):
-    """Range and energy of a scan over azimuth and elevation."""
+    """Draws range and energy of a scan over azimuth and elevation."""
     with figure(name, 2, 1, figsize=(13, 5)) as axes:
         scan.plot_range_image("distance_m", axes[0], cmap="gray")
         scan.plot_range_image("energy", axes[1])

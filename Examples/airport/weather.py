@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One airport in clear air, in fog and in rain, as Search905 receives it: echoes of surfaces, points of drops, and how far a gull is seen.
+"""Weather over one airport, as received by Search905: echoes of surfaces, points of drops, and the range at which a gull is seen.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/airport/weather.py --out build/weather
 """
@@ -28,7 +28,7 @@ WEATHER = (
     ("rain, 50 mm/h", {"visibility": 5e3, "air_backscatter": True, "rain_rate": 50}),
 )
 SHOWN = ("clear, 23 km", "ground fog, 400 m below 5 m", "fog, 1 km", "rain, 10 mm/h")
-WIDE = 900.0  # m, that the picture shows to each side
+WIDE = 900.0  # m, half the width of the picture
 
 
 def fog(properties):
@@ -67,9 +67,9 @@ def draw(axes, name, scene, echoes):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/weather"), help="folder, default build/weather")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/weather"), help="folder of the results, default build/weather")
     options = parser.parse_args(arguments)
-    warnings.simplefilter("ignore", RuntimeWarning)  # weather without an echo is expected
+    warnings.simplefilter("ignore", RuntimeWarning)  # some weather gives no echoes, with a warning
     clear, foggy = al.load_scene(SCENE), al.load_scene(SCENE)
     rows = []
     with tools.figure(options.out / "weather.png", 1, len(SHOWN), figsize=(14.0, 4.2), dpi=90) as panels:

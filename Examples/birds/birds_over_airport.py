@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which birds does a search lidar see over an airport? Scans a scenario of birds amid clutter and leaves three pictures,
-from-above.png (some successive scans), range-image.png (one scan) and points.png (points of a bird against its range),
-and a table of what became of the birds, birds-over-airport.md.
+"""Which birds does a search lidar see over an airport? Scans a scenario of birds and clutter, and writes three pictures and
+a table. The pictures are from-above.png (successive scans), range-image.png (one scan) and points.png (points of a bird
+against its range). The table birds-over-airport.md counts the birds by status.
 
     birds_over_airport.py --out build/birds-over-airport
     birds_over_airport.py --scans 20 --no-pictures
 
-PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
+PYTHONPATH must contain the folder of the Python package (`cat build/paraview/python-path`).
 """
 import pathlib
 import sys
@@ -24,32 +24,32 @@ import tools  # noqa: E402
 
 COLORS = {"herring gull": (204, 0, 102), "crow": (0, 0, 0), "kestrel": (230, 97, 0), "Canada goose": (0, 125, 80),
           "starling": (120, 60, 200), "pigeon": (0, 110, 190)}
-OTHER = (110, 70, 30)  # another species
-PALE = 0.55  # of the clutter's colours, the rest is white
+OTHER = (110, 70, 30)  # colour of other species
+PALE = 0.55  # share of the clutter's colours in a mixture with white
 STATUSES = ("seen", "missed", "too weak", "hidden", "outside")
-HALF = 550.0  # m, half the width of the view from above
-BIN = 50.0  # m
-FAR = 1200.0  # m, the end of the grey scale
-FEWEST = 20  # birds in a bin of the curves
+HALF = 550.0  # half of the width of the view from above, m
+BIN = 50.0  # width of a range bin of the curves, m
+FAR = 1200.0  # end of the grey scale, m
+FEWEST = 20  # least number of birds in a bin of the curves
 
 
 def arguments(argv=None):
     parser = tools.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--scenario", type=tools.file, default=HERE.parent / "sequence" / "hongqiao.scenario.json",
-                        help="default: birds over Shanghai Hongqiao")
-    parser.add_argument("--scans", type=tools.number(int, 1, 100000), default=200, help="in all, default 200")
+                        help="scenario file, default: birds over Shanghai Hongqiao")
+    parser.add_argument("--scans", type=tools.number(int, 1, 100000), default=200, help="number of all scans, default 200")
     parser.add_argument("--shown", type=tools.number(int, 1, 1000), default=20,
-                        help="successive scans from above, default 20; after as many there are other birds")
-    parser.add_argument("--seed", type=tools.number(int, -2**31, 2**31 - 1), help="default: that of the scenario")
-    parser.add_argument("--threads", type=tools.number(int, 0, 4096), default=0, help="default 0: as many as there are cores")
+                        help="number of successive scans in from-above.png, default 20; later scans have other birds")
+    parser.add_argument("--seed", type=tools.number(int, -2**31, 2**31 - 1), help="seed, default: the seed of the scenario")
+    parser.add_argument("--threads", type=tools.number(int, 0, 4096), default=0, help="number of threads, default 0: one for each core")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/birds-over-airport"),
                         help="folder for results")
-    parser.add_argument("--no-pictures", action="store_true", help="leave the table alone")
+    parser.add_argument("--no-pictures", action="store_true", help="write only the table")
     return parser.parse_args(argv)
 
 
 def run(options):
-    """The scenario, scanned: a dictionary of what the table and the pictures need."""
+    """Scans the scenario. @return a dictionary of the data of the table and the pictures"""
     changes = {} if options.seed is None else {"seed": options.seed}
     sequence = al.Sequence(options.scenario, threads=options.threads, number_of_scans=options.scans,
                            scans_per_sequence=options.shown, **changes)
@@ -74,7 +74,7 @@ def run(options):
 
 
 def trails(movers, species, end):
-    """{species: [way of a bird from the begin of the scans to their end, rows of x and y]}."""
+    """Paths of birds from the start to the end of the scans: {species: [rows of x and y, m]}."""
     found = {}
     for k in range(movers.GetNumberOfBlocks()):
         block = movers.GetBlock(k)
@@ -89,7 +89,7 @@ def trails(movers, species, end):
 
 
 def table_of(truth):
-    """Head and rows: how often each species was what."""
+    """Head and rows of the table: number of scanned birds by species and status."""
     found = [(name, truth["species"] == name) for name in sorted(set(truth["species"]))] + [("all", True)]
     return ("a bird in a scan", *STATUSES), [(name, *(int((of & (truth["status"] == s)).sum()) for s in STATUSES)) for name, of in found]
 
@@ -99,7 +99,7 @@ def colour_of(name):
 
 
 def draw_from_above(made, file):
-    """Birds' echoes of the shown scans, their ways, and the clutter of the first scan."""
+    """Draws echoes and paths of the birds in the shown scans, and the clutter of the first scan."""
     from matplotlib.colors import ListedColormap, LogNorm
     sequence, species, first = made["sequence"], made["species"], made["echoes"][0]
     pale = ListedColormap(1 - PALE * (1 - al.hue_colors()(np.linspace(0, 1, 256))))
@@ -119,14 +119,14 @@ def draw_from_above(made, file):
         axes.plot(x, y, "r+", markersize=12, markeredgewidth=2.5, zorder=4)
         scans = len(made["echoes"])
         axes.set(xlim=(x - HALF, x + HALF), ylim=(y - HALF, y + HALF), aspect="equal", xlabel="east (m)", ylabel="north (m)")
-        axes.set_title(f"{scans} scans in {scans / sequence.sensor.rotation_rate:g} s: points of birds, where they flew, "
+        axes.set_title(f"{scans} scans in {scans / sequence.sensor.rotation_rate:g} s: points and paths of birds, "
                        "and clutter of the first scan", loc="left")
         axes.legend(loc="upper left", title="points of birds")
         axes.figure.colorbar(dots, ax=axes, label="energy of clutter (µJ)", shrink=0.6)
 
 
 def draw_range_image(made, file):
-    """Range of every beam of the first scan, and the birds."""
+    """Draws the range of every beam of the first scan, and the birds."""
     from matplotlib.colors import ListedColormap
     image, truth = made["image"], made["truth"]
     azimuths, elevations = image["column_azimuths"], image["row_elevations"]
@@ -155,7 +155,7 @@ def draw_range_image(made, file):
 
 
 def draw_points(made, file):
-    """Of birds that nothing hides, by range: points, and the share seen against the expected one."""
+    """Draws points, share seen and expected share by range, for birds that are not hidden."""
     truth = made["truth"]
     free = np.isin(truth["status"], ("seen", "missed", "too weak"))
     with tools.figure(file, 1, 2, figsize=(12, 4.4)) as (left, right):

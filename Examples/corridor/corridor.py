@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What does a 16-channel lidar get back from a corridor (paper, Sec. 5.2)? Reads the scene, scans it and leaves
+"""Which echoes does a 16-channel lidar receive from a corridor (paper, Sec. 5.2)? Scans the scene and writes
 echoes.vtp, echoes.csv, pictures and a table.
 
-    Examples/corridor/run.sh --paper                             builds everything and runs this script
+    Examples/corridor/run.sh --paper                             builds the project and runs this script
     xvfb-run -a /usr/bin/python3 Examples/corridor/corridor.py --rays 1000
     xvfb-run -a /usr/bin/python3 Examples/corridor/corridor.py --scene office.lidarscene.json
 
-PYTHONPATH has to name the Python package (`cat build/paraview/python-path`), pictures need a display (`xvfb-run -a`).
+PYTHONPATH must contain the folder of the Python package (`cat build/paraview/python-path`). Pictures need a display
+(`xvfb-run -a`).
 """
 import os
 import pathlib
@@ -22,7 +23,7 @@ import tools  # noqa: E402
 def arguments(argv=None):
     parser = tools.Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--scene", type=tools.file, default=corridor_scene.SCENE, help="a .lidarscene.json file instead of the corridor")
-    parser.add_argument("--position", type=float, nargs=3, metavar=("X", "Y", "Z"), help="where the lidar stands, m")
+    parser.add_argument("--position", type=float, nargs=3, metavar=("X", "Y", "Z"), help="position of the lidar, m")
     tools.add_arguments(parser, "build/corridor")
     options = parser.parse_args(argv)
     if not options.no_pictures and not os.environ.get("DISPLAY"):
@@ -31,7 +32,7 @@ def arguments(argv=None):
 
 
 def scan(scene, position, options, clock):
-    """The scan, and its coloured echoes."""
+    """The scan and its coloured echoes."""
     with clock("build the tree"):
         tools.run(lambda: tools.update(scene.tree))
     result = al.Scan(scene, al.Sensor("CorridorC16", position=position), rays_per_beam=options.rays, seed=options.seed,
@@ -55,7 +56,7 @@ def main(argv=None):
         for kind in ("vtp", "csv"):
             tools.run(lambda: echoes.save(options.out / f"echoes.{kind}"))  # noqa: B023
     if not options.no_pictures:
-        import corridor_pictures  # only here: numbers need no display
+        import corridor_pictures  # not at the top, because numbers do not need a display
         with clock("pictures"):
             corridor_pictures.draw(surfaces, result, echoes, options.scene == corridor_scene.SCENE, options)
     rows = tools.counts(result.scene.tree, echoes.data, result.algorithm) + clock.rows()

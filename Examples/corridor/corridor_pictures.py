@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of the corridor: what the lidar sees of the door, the stairwell and the corridor, as in paper, Fig. 13-15.
-Colour is energy; the larger a dot, the nearer."""
+"""Pictures of the echoes of the door, the stairwell and the corridor, seen from the lidar, as in the paper, Fig. 13-15.
+The colour of a dot is its energy. Nearer dots are larger."""
 import numpy as np
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (VTK's factories)
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (registers VTK's factories)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkGlyph3DMapper, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
@@ -15,14 +15,14 @@ from avianlidar._cloud import vertices
 # Pale colours of the materials of Table 1.
 FACES = {0: (0.95, 0.95, 0.94), 1: (0.78, 0.87, 0.93), 2: (0.72, 0.72, 0.75), 3: (0.90, 0.82, 0.70)}
 
-# Name, title, looking at (from the lidar), height of the view in degrees.
+# Name, title, point in the middle of the view (m), height of the view (deg). The lidar is the eye.
 AREAS = (("door", "The door, its window and the hydrant cabinet", (-3.5, 0, 1.3), 42),
          ("stairwell", "The stairwell with its handrail", (0.75, -4.2, 1.35), 50),
          ("corridor", "The corridor and its bulletin board", (24, 0.6, 1.3), 66))
 
 
 class View:
-    """Surfaces, lines and dots in perspective, as an image for Matplotlib."""
+    """A view of surfaces, lines and dots in perspective, as an image for Matplotlib."""
 
     def __init__(self, width=1150, height=800):
         self.renderer, self.window = vtkRenderer(), vtkRenderWindow()
@@ -33,7 +33,7 @@ class View:
         self.window.AddRenderer(self.renderer)
 
     def show(self, data, colour=(0, 0, 0), width=1.2, mapper=None):
-        """Draw data in one colour or, by another mapper, in those of its scalars."""
+        """Draws data in one colour or, with a mapper, in the colours of the mapper's scalars."""
         if mapper is None:
             mapper = vtkPolyDataMapper()
             mapper.ScalarVisibilityOff()
@@ -48,7 +48,7 @@ class View:
         return actor
 
     def dots(self, points, colours, diameters):
-        """Balls at points (m). @param colours rows of 3 bytes @param diameters one or as many as there are points, m"""
+        """Draws balls at points (m). @param colours rows of 3 bytes @param diameters one diameter, or one for each point, m"""
         data, ball, mapper = vertices(points), vtkSphereSource(), vtkGlyph3DMapper()
         for name, values in (("rgb", np.ascontiguousarray(colours, np.uint8)), ("size", np.broadcast_to(diameters, len(points)).astype(float))):
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
@@ -65,7 +65,7 @@ class View:
         self.show(data, mapper=mapper)
 
     def image(self, eye, target, angle):
-        """Rows of pixels, seen from a place. @param angle height of the view, deg"""
+        """The view from the point `eye` as rows of pixels. @param angle height of the view, deg"""
         camera, grab = self.renderer.GetActiveCamera(), vtkWindowToImageFilter()
         camera.SetPosition(*eye)
         camera.SetFocalPoint(*target)
@@ -89,7 +89,7 @@ def area_view(file, scene, echoes, title, target, angle):
         view.show(block, FACES.get(int(block.GetCellData().GetArray("material_id").GetTuple1(0)), FACES[0]))
         view.show(tools.edges(block, 40), (0.3, 0.3, 0.3))
     if echoes.number_of_points:
-        # Dots are pulled a little towards the eye, so that surfaces do not cut them.
+        # Dots are shifted a little towards the eye, so that surfaces do not cut the dots.
         view.dots(eye + 0.9 * (echoes.points - eye), echoes["rgb"], 0.025 * np.sqrt(echoes["distance_m"]))
     with tools.figure(file, figsize=(13, 8.5)) as axes:
         axes.imshow(view.image(eye, target, angle))
@@ -101,7 +101,7 @@ def area_view(file, scene, echoes, title, target, angle):
 
 
 def draw(scene, scan, echoes, built, options):
-    """Write door.png, stairwell.png, corridor.png (of the built scene), top.png and range.png."""
+    """Writes door.png, stairwell.png, corridor.png (only for the built scene), top.png and range.png."""
     words = f"C16, {options.rays} rays per beam"
     for name, title, target, angle in AREAS if built else ():
         area_view(options.out / f"{name}.png", scene, echoes, f"{title}, seen from the lidar; {words}", target, angle)

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The corridor of the paper, Sec. 5.2: its scene file, and its surfaces without the air."""
+"""The corridor of the paper, Sec. 5.2: the scene file, and the surfaces without the object that represents the air."""
 import pathlib
 
 from avianlidar import Scene
 
 SCENE = pathlib.Path(__file__).resolve().parent / "scene" / "corridor.lidarscene.json"
-LIDAR = (0.0, 0.0, 1.3)  # m, as in the file; 1.2 m from both walls
-WEST = -3.5              # m, the near end
-HAZE = 8.8e-5            # 1/m: paper, Table 2: 0.088, without unit, read as per kilometre
+LIDAR = (0.0, 0.0, 1.3)  # position of the lidar, m, as in the file; 1.2 m from each wall
+WEST = -3.5              # x of the near end, m
+HAZE = 8.8e-5            # attenuation, 1/m; Table 2 of the paper has 0.088 without unit, read as 1/km
 
 
 def build():
-    """The surfaces as one named block per object. The air, the last object of the file, is left out."""
+    """The surfaces as one named block per object, without the air, which is the last object of the file."""
     scene = Scene(SCENE).surfaces.GetBlock(0)
     scene.RemoveBlock(scene.GetNumberOfBlocks() - 1)
     return scene

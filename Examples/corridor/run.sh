@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The one command for the corridor, as Examples/airport/run.sh: installs, builds, scans and leaves pictures and files in
-# build/corridor. Arguments go to corridor.py.
+# Installs missing packages, builds the project, scans the corridor, and writes pictures and files to build/corridor.
+# Arguments are passed to corridor.py.
 set -eu
 
 cd "$(dirname "$0")/../.."

@@ -1,14 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs the packages that are missing, builds, and leaves a report (HTML), maps (GeoTIFF, GeoJSON), a section, clutter and
-# shares of Hongqiao for a gull, with Search905 and with the paper's receiver, in build/coverage. Options go to both commands,
-# for example --coverage-set species=crow.
+# Installs missing packages, builds the project, and writes the coverage of Hongqiao for a gull to build/coverage, with
+# Search905 and with the paper's receiver: a report (HTML), maps (GeoTIFF, GeoJSON), a section, clutter and shares. Options
+# are passed to the commands coverage and report, for example --coverage-set species=crow.
 set -eu
 
 cd "$(dirname "$0")/../.."
 CMake/install-packages.sh plugin python
 
-# Without the tests, which need more packages: `cmake --preset paraview` turns them on again.
+# Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
 cmake --build --preset paraview --target vtkAvianLidarPython
 

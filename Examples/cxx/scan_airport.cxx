@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One scan of a scene file: what the lidar receives, as VTK data.
+// Scans a scene file once, and writes the received echoes as VTK data.
 //
 //     scan_airport <scene.lidarscene.json> <echoes.vtp> [<visibility in m>]
 #include "vtkAvianLidarBeamSource.h"
@@ -34,7 +34,7 @@ int main(int argc, char* argv[])
   vtkDataArray* place = scene->GetOutputDataObject(0)->GetFieldData()->GetArray("lidar_position");
   if (!place)
   {
-    std::cerr << argv[1] << ": cannot be read, or says no place for the lidar\n";
+    std::cerr << argv[1] << ": cannot be read, or has no position of the lidar\n";
     return EXIT_FAILURE;
   }
 
@@ -48,7 +48,7 @@ int main(int argc, char* argv[])
   vtkNew<vtkAvianLidarEchoFilter> lidar;
   lidar->SetInputConnection(0, sensor->GetOutputPort());
   lidar->SetInputConnection(1, tree->GetOutputPort());
-  lidar->SetVisibility(argc > 3 ? std::atof(argv[3]) : 23000.0); // metres
+  lidar->SetVisibility(argc > 3 ? std::atof(argv[3]) : 23000.0); // visibility, m
 
   vtkNew<vtkAvianLidarHSBColorMap> colours;
   colours->SetInputConnection(lidar->GetOutputPort());
@@ -56,15 +56,15 @@ int main(int argc, char* argv[])
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputConnection(colours->GetOutputPort());
   writer->SetFileName(argv[2]);
-  // The default, Appended, is not read back by VTK with today's libexpat.
+  // VTK with today's libexpat cannot read files with the default data mode, Appended.
   writer->SetDataModeToBinary();
-  if (!writer->Write()) // updates all of the above
+  if (!writer->Write()) // updates the whole pipeline
   {
     return EXIT_FAILURE;
   }
 
   vtkPolyData* echoes = vtkPolyData::SafeDownCast(colours->GetOutputDataObject(0));
-  vtkDataArray* energy = echoes->GetPointData()->GetArray("energy"); // joules
+  vtkDataArray* energy = echoes->GetPointData()->GetArray("energy"); // energies, J
   double total = 0.0;
   for (vtkIdType i = 0; i < echoes->GetNumberOfPoints(); ++i)
   {

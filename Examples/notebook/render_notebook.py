@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the notebook airport.ipynb and leaves it with its results as airport.html, and each picture as <cell>.png.
+"""Runs the notebook airport.ipynb, and writes the notebook with results as airport.html and each picture as <cell>.png.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/notebook/render_notebook.py --out build/notebook
 
-Needs python3-nbconvert and python3-ipykernel; no display and no network.
+The script needs python3-nbconvert and python3-ipykernel. A display or a network is not necessary.
 """
 import argparse
 import base64
@@ -24,12 +24,12 @@ def execute(file):
     """The notebook with its results, run by this Python in the notebook's folder."""
     notebook = nbformat.read(file, as_version=4)
     nbformat.validate(notebook)
-    # Without folders to look in, the kernel is this Python's own.
+    # Without kernel folders, the kernel is the kernel of this Python.
     kernel = AsyncKernelManager(kernel_name="python3", kernel_spec_manager=KernelSpecManager(kernel_dirs=[]))
     client = NotebookClient(notebook, km=kernel, timeout=300, resources={"metadata": {"path": str(HERE)}})
-    client.owns_km = True  # and ends the kernel
+    client.owns_km = True  # so that the client ends the kernel
     os.environ.update(MPLBACKEND="module://matplotlib_inline.backend_inline",
-                      PYDEVD_DISABLE_FILE_VALIDATION="1")  # else the kernel's debugger talks
+                      PYDEVD_DISABLE_FILE_VALIDATION="1")  # without this variable the kernel's debugger prints warnings
     client.execute()
     return notebook
 
@@ -46,7 +46,7 @@ def main(argv=None):
                         help="folder of the results, default build/notebook")
     out = parser.parse_args(argv).out
     notebook = execute(HERE / "airport.ipynb")
-    exporter = HTMLExporter(mathjax_url="", require_js_url="", jquery_url="")  # nothing from the network
+    exporter = HTMLExporter(mathjax_url="", require_js_url="", jquery_url="")  # empty addresses, so that the page does not need a network
     page, _ = exporter.from_notebook_node(notebook, resources={"metadata": {"name": "airport"}})
     out.mkdir(parents=True, exist_ok=True)
     (out / "airport.html").write_text(page, encoding="utf-8")

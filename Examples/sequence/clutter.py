@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The clutter filter scored on labelled sequences: what can be told apart without learning from labels.
+"""Scores of the clutter filter on labelled sequences: separation of birds and clutter without learning from labels.
 
     clutter.py build/sequences
 
-A point is called moving where the filter says that it is no clutter. Prints a Markdown table: for each subset and what the
-filter knows, points, intersection over union (IoU), precision and recall of birds and of all that moves. Points of other
-moving things are left out of the score of birds. The filter knows
+A point counts as moving if the filter does not call the point clutter. The script prints a Markdown table. For each subset
+and each set of learned scans, the table has the number of points, intersection over union (IoU), precision and recall, for
+birds and for all moving objects. The score of birds leaves out points of other moving objects. The sets of learned scans are
 
-* the scans before: all sequences are one stream, as of one lidar that goes on;
-* the same, of which the first sequence is not scored;
-* the scans before in the same sequence: it begins anew with each one;
-* all scans of the sequence, also later ones: they are learned first, each weighs the same, and the table decides alone.
+* the scans before: all sequences are one stream of one lidar;
+* the same without a score of the first sequence;
+* the scans before in the same sequence: the filter begins anew with each sequence;
+* all scans of the sequence: the filter first learns all scans with equal weight, and then only the table decides.
 
---set Window=100 changes a property of the filter. --speed measures instead how long it takes on random scans of 10,000 and 100,000 points,
-on walls that stay within their cells and on points that jitter by 1 m (standard deviation).
+--set Window=100 changes a property of the filter. --speed measures the processor time on random scans of 10,000 and 100,000
+points instead. The points have a jitter of 0.02 m, so that points of walls keep their cells, or of 1 m (standard deviation).
 """
 import argparse
 import itertools
@@ -30,12 +30,12 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from avianlidar.vtkAvianLidar import vtkAvianLidarClutterFilter, vtkAvianLidarPointCloudReader
 
 SUBSETS = ("sky", "near clutter", "through edges")
-BIRD, OTHERS = 99, (252, 258, 259)  # class of birds; cars, trucks, aircraft and other vehicles under way
-LONGEST = 100000  # scans, of a window in which all weigh about the same
+BIRD, OTHERS = 99, (252, 258, 259)  # classes of birds; of moving cars, trucks, aircraft and other vehicles
+LONGEST = 100000  # length of a window with about equal weights of all scans, in scans
 
 
 class Stream:
-    """The clutter filter on one file after the other: without times, each is a scan more."""
+    """The clutter filter on successive files. Files without times count as successive scans."""
 
     def __init__(self, settings, **others):
         self.reader, self.filter = vtkAvianLidarPointCloudReader(), vtkAvianLidarClutterFilter()
@@ -46,7 +46,7 @@ class Stream:
             getattr(self.filter, "Set" + name)(type(getattr(self.filter, "Get" + name)())(value))
 
     def moving(self, file):
-        """Whether each point of a file is no clutter."""
+        """For each point of a file, whether the point is not clutter."""
         self.reader.SetFileName(str(file))
         self.filter.Update()
         return vtk_to_numpy(self.filter.GetOutputDataObject(0).GetPointData().GetArray("is_clutter")) == 0
@@ -58,7 +58,7 @@ class Stream:
 
 
 def counts(file, called):
-    """Of each subset: true positives, false positives and false negatives of birds, then of all that moves."""
+    """True positives, false positives and false negatives of each subset, for birds and for all moving objects."""
     sequence = file.parents[1]
     labels = np.fromfile(sequence / "labels" / f"{file.stem}.label", "<u4") & 0xffff
     subsets = np.fromfile(sequence / "subsets" / f"{file.stem}.subset", np.uint8)
@@ -74,7 +74,7 @@ def counts(file, called):
 
 
 def measure(sequences, settings):
-    """What the filter knows, the counts of the subsets, and the number of scans that are scored."""
+    """Yields each set of learned scans, and the counts of the subsets for each scored scan."""
     stream = Stream(settings)
     by_sequence = [[counts(file, stream.moving(file)) for file in files] for files in sequences]
     yield "the scans before", by_sequence
@@ -107,7 +107,7 @@ def scores(numbers):
 
 
 def table(folder, settings):
-    """The scores of a set of sequences as Markdown."""
+    """The scores of a set of sequences as a Markdown table."""
     names = sorted(path for path in (folder / "sequences").iterdir() if not path.name.startswith("."))
     sequences = [sorted((name / "velodyne").glob("*.bin")) for name in names]
     lines = ["| known | subset | points of birds | IoU | precision | recall | points of all that moves | IoU | precision | recall "
@@ -122,7 +122,7 @@ def table(folder, settings):
 
 
 def speed():
-    """Time of the processor for a scan, ms, after 300 scans: random walls seen by 960 columns and 80 channels."""
+    """Yields a table of processor time per scan, ms, after 300 scans of random walls with 960 columns and 80 channels."""
     random = np.random.default_rng(1)
     yield "| points | jitter, m | cells kept | ms a scan |\n|---:|---:|---:|---:|"
     for points, jitter in itertools.product((10000, 100000), (0.02, 1.0)):
@@ -144,7 +144,7 @@ def speed():
 
 def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("folder", type=pathlib.Path, nargs="?", help="what `avianlidar sequence` has written")
+    parser.add_argument("folder", type=pathlib.Path, nargs="?", help="folder that `avianlidar sequence` has written")
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="properties of the clutter filter, as in C++")
     parser.add_argument("--speed", action="store_true", help="measure time instead")
     options = parser.parse_args(argv)

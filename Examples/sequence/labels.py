@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A labelled sequence as a picture: all its points from above, in the colour of their class.
+"""Picture of a labelled sequence: all points from above, in the colour of their class.
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/sequence/labels.py --out build/labels
 
-makes 20 scans of the scenario, draws them as labels.png, and prints how many points each class has.
+The script makes 20 scans of the scenario, draws the points as labels.png, and prints the number of points of each class.
 """
 import argparse
 import pathlib
@@ -16,14 +16,14 @@ from matplotlib.figure import Figure
 from avianlidar._command import main as avianlidar
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Classes of SemanticKITTI that are drawn: name, colour, size of a point.
+# Drawn classes of SemanticKITTI: name, colour, size of a point.
 CLASSES = {50: ("buildings", "#8a8a8a", 2), 52: ("other structures", "#b9a27c", 2), 80: ("masts", "black", 4),
            252: ("cars", "#1f77b4", 6), 258: ("trucks", "#17becf", 6), 259: ("aircraft and other vehicles", "#2ca02c", 6),
            99: ("birds", "#d6006c", 6)}
 
 
 def points(folder):
-    """x east, y north (m) of the sensor and class of each point of all scans: (n, 2) and (n,)."""
+    """Positions east and north of the sensor, m, (n, 2), and classes, (n,), of all points of all scans."""
     places, labels = [], []
     for file in sorted(folder.glob("sequences/*/velodyne/*.bin")):
         x, y, _, _ = np.fromfile(file, "<f4").reshape(-1, 4).T
@@ -33,10 +33,10 @@ def points(folder):
 
 
 def main(arguments=None):
-    """Make the sequence and the picture. @return the number of points by class"""
+    """Makes the sequence and the picture. @return the number of points by class"""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scans", type=int, default=20, help="default 20")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder")
+    parser.add_argument("--scans", type=int, default=20, help="number of scans, default 20")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of the results")
     options = parser.parse_args(arguments)
     folder = options.out / "sequences"
     if avianlidar(["sequence", str(HERE / "hongqiao.scenario.json"), "-o", str(folder), "--scans", str(options.scans)]):

@@ -5,13 +5,14 @@
     mpiexec -n 8 pvbatch --sym Examples/sequence/sweep.py --preset Airport16 Airport32 --seed 0 1 2 --position 0 0 3
     sweep.py --attenuation 3.5e-5 8.8e-5 --position 0 0 3 --position 200 0 3 --out build/sweep
 
-Each rank takes whole scans (without pvbatch there is one rank), so ranks share nothing and wait for nobody. Each scan
-leaves <name>.vtp and <name>.json, which says what made it: every parameter, version, checksums. A file has its name only
-when it is whole, the .json only when its .vtp has: killed at any moment and started again with the same arguments, the
-sweep goes on where it was. A second sweep in the folder meanwhile is an error. At the end manifest.json lists all scans that were asked for. A scan that fails leaves no
-file: the others are made, then the sweep ends with the exit code 1 and without a manifest.
+Each rank makes whole scans (without pvbatch there is one rank), so ranks do not wait for each other. Each scan writes
+<name>.vtp and <name>.json. The .json file has every parameter, the version and checksums. A file appears only when it is
+whole, and the .json file only after its .vtp file. A sweep that was stopped therefore continues if it is started again with
+the same arguments. A second sweep in the same folder at the same time is an error. At the end manifest.json lists all
+scans. A scan that fails does not write a file: the sweep makes the other scans, and ends with the exit code 1 and without
+a manifest.
 
-PYTHONPATH has to name the Python package (`cat build/paraview/python-path`).
+PYTHONPATH must contain the folder of the Python package (`cat build/paraview/python-path`).
 """
 import hashlib
 import itertools
@@ -41,14 +42,14 @@ def arguments(argv=None):
     parser.add_argument("--preset", nargs="+", choices=["Airport16", "Airport32", "CorridorC16"],
                         default=["Airport16"], help="sensors")
     parser.add_argument("--position", nargs=3, type=tools.finite, action="append", metavar=("X", "Y", "Z"),
-                        help="of the sensor, m; may be given many times; default: 0 0 3")
-    parser.add_argument("--seed", nargs="+", type=tools.number(int, -2**31, 2**31 - 1), default=[0], help="default 0")
+                        help="position of the sensor, m; may be given many times; default: 0 0 3")
+    parser.add_argument("--seed", nargs="+", type=tools.number(int, -2**31, 2**31 - 1), default=[0], help="seeds, default 0")
     parser.add_argument("--attenuation", nargs="+", type=tools.above_zero, default=[3.5e-5], metavar="A",
                         help="attenuation coefficients, 1/m; default 3.5e-5")
     parser.add_argument("--rays", type=tools.number(int, 1, 1000000), default=100, help="rays per beam, default 100")
     parser.add_argument("--threads", type=tools.number(int, 0, 4096), default=1,
-                        help="of each rank, default 1: start as many ranks as there are cores")
-    parser.add_argument("--verify", action="store_true", help="compare checksums of what is there already, not only sizes")
+                        help="threads of each rank, default 1: start one rank for each core")
+    parser.add_argument("--verify", action="store_true", help="compare checksums of existing files, not only sizes")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/sweep"), help="folder for results")
     options = parser.parse_args(argv)
     options.position = options.position or [[0.0, 0.0, 3.0]]
@@ -56,12 +57,12 @@ def arguments(argv=None):
 
 
 def values_of(fields):
-    """Field data of one value each: all properties of sensor and filter, as they were used."""
+    """Field data with one value each: the properties of sensor and filter."""
     return {name: value[0] if isinstance(value, list) else value for name, value in fields.items() if np.size(value) == 1}
 
 
 def plan(options, scene_digest):
-    """All scans as {name: parameters}; those that differ in the air alone stand together."""
+    """All scans as {name: parameters}. Scans that differ only in the air are neighbours."""
     scans = {}
     for preset, position, seed, attenuation in itertools.product(
             options.preset, options.position, options.seed, options.attenuation):
@@ -75,7 +76,7 @@ def plan(options, scene_digest):
 
 
 def is_done(folder, name, verify):
-    """True if the files of a scan are there and are those that its .json speaks of."""
+    """True if the files of a scan exist, and the .vtp file is as described in the .json file."""
     try:
         entry = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
         echoes = folder / f"{name}.vtp"
@@ -86,7 +87,7 @@ def is_done(folder, name, verify):
 
 
 def save(folder, name, parameters, echoes):
-    """The echoes, then what says that they are there."""
+    """Writes the echoes, then the .json file."""
     writer = vtkXMLPolyDataWriter()
     writer.SetInputData(echoes.data)
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
@@ -101,7 +102,7 @@ def save(folder, name, parameters, echoes):
 
 
 def shares(scans, todo, ranks):
-    """Groups of scans that each rank has to do: those that differ in the air alone go to one, which traces once and lights often."""
+    """The groups of scans of each rank. Scans that differ only in the air form a group, which is traced only once."""
     groups = {}
     for name in todo:
         groups.setdefault((scans[name]["preset"], tuple(scans[name]["position"]), scans[name]["seed"]), []).append(name)
@@ -114,12 +115,12 @@ def sweep(options, ranks):
 
 
 def make(options, ranks):
-    """What is missing of the sweep."""
+    """Makes the missing scans."""
     scene = tools.run(lambda: al.Scene(options.scene))
     tools.run(lambda: tools.update(scene.tree))
     scans = plan(options, digest_of(scene.tree.GetOutput()))
     todo = [name for name in scans if not is_done(options.out, name, options.verify)]
-    ranks.wait()  # all have looked before anybody adds a file
+    ranks.wait()  # before a rank adds a file, all ranks have made the list
     if ranks.rank == 0:
         print(f"{len(scans)} scans, {len(scans) - len(todo)} of them done already, {ranks.size} ranks", flush=True)
     for (preset, position, seed), names in shares(scans, todo, ranks.size)[ranks.rank]:
@@ -138,12 +139,12 @@ def make(options, ranks):
 
 
 def finish(options, ranks, scans):
-    """The manifest, or which scans are missing."""
+    """Writes the manifest, or prints the names of the missing scans."""
     missing = [name for name in scans if not is_done(options.out, name, verify=False)]
     if ranks.rank == 0 and missing:
         print(f"{len(missing)} of {len(scans)} scans failed, there is no manifest: {', '.join(missing)}",
               file=sys.stderr, flush=True)
-    ranks.wait()  # the first rank has said it before any ends the job
+    ranks.wait()  # the first rank has printed before a rank ends the job
     if missing:
         sys.exit(1)
     if ranks.rank == 0:
@@ -158,7 +159,7 @@ def main(argv=None):
     except BaseException as error:
         if ranks.size == 1 or (isinstance(error, SystemExit) and not error.code):
             raise
-        # The others must not wait for this rank: end the job. What is done is kept.
+        # End the job, because other ranks must not wait for this rank. Finished files are kept.
         if not isinstance(error, SystemExit):
             traceback.print_exc()
         elif isinstance(error.code, str):

@@ -74,8 +74,8 @@ bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3&
   }
   // Tangent plane of the cone on the side of the centre: normal . p <= 0 for every p in the cone,
   // for any unit vector `radial` across the axis. If the centre lies on the axis, the difference
-  // below is round-off alone and may point along the axis, so a second step makes it perpendicular.
-  // A centre inside the cone needs no plane.
+  // below is round-off alone and may point along the axis. A second step therefore makes the
+  // difference perpendicular to the axis. A centre inside the cone needs no plane.
   Vec3 radial = center - z * axis;
   radial -= glm::dot(radial, axis) * axis;
   const double distance = std::sqrt(glm::dot(radial, radial));

@@ -47,7 +47,7 @@ OBB fitAlong(const TriangleList& triangles, OBB box)
   box.half = Vec3(0.0);
   forCorners(triangles,
     [&](const Vec3& p) { box.half = glm::max(box.half, glm::abs(box.along(p - box.center))); });
-  // Rounding leaves the axes not quite orthonormal, and other code may multiply in another order.
+  // Rounding leaves the axes not quite orthonormal. Other code may also multiply in another order.
   box.half += Vec3(8.0 * Ulp * (box.half.x + box.half.y + box.half.z));
   return box;
 }
@@ -89,8 +89,8 @@ BoundingSphere boundingSphere(const TriangleList& triangles)
   {
     return best;
   }
-  // The centre moves from the middle of the box towards the farthest point in ever shorter steps;
-  // the best centre is kept.
+  // The centre moves from the middle of the box towards the farthest point in ever shorter steps.
+  // The best centre is kept.
   best.radius = std::numeric_limits<double>::infinity();
   Vec3 center = middleOf(triangles);
   constexpr int Steps = 12;

@@ -24,7 +24,7 @@ struct Held
   std::vector<char> bytes;
 };
 
-// The whole file in memory: a compressed one cannot be sought in, and Assimp seeks.
+// Whole file in memory, because Assimp seeks and a compressed file does not allow seeking.
 class MemoryStream
   : private Held
   , public Assimp::MemoryIOStream
@@ -42,8 +42,8 @@ public:
   }
 };
 
-/// The bytes of a file, unpacked if they are packed by gzip. Returns why there are none, or
-/// nothing.
+/// Reads the bytes of a file, and unpacks the bytes if gzip packed them. Returns the reason if the
+/// file cannot be read, else an empty text.
 std::string ReadAll(const std::string& file, std::vector<char>& bytes)
 {
   gzFile handle = gzopen(file.c_str(), "rb");
@@ -62,7 +62,7 @@ std::string ReadAll(const std::string& file, std::vector<char>& bytes)
   } while (got > 0);
   int error = Z_OK;
   const std::string reason = gzerror(handle, &error);
-  // A damaged archive may end like a whole one.
+  // Only gzclose() finds some damaged archives.
   const int closed = gzclose(handle);
   return error == Z_OK && closed == Z_OK ? ""
     : !reason.empty()                    ? reason
@@ -89,7 +89,7 @@ char AssimpFiles::getOsSeparator() const
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
 {
-  // A pipe would wait for ever, a device never end.
+  // Reading a pipe may never begin, and reading a device may never end.
   if (!this->Exists(file) || std::strchr(mode, 'r') == nullptr)
   {
     return nullptr;
@@ -104,7 +104,7 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode)
   }
   if (isMesh && EndingOf(file) == ".obj")
   {
-    const char mark[] = { '\xEF', '\xBB', '\xBF' }; // of UTF-8, a part of the first word for Assimp
+    const char mark[] = { '\xEF', '\xBB', '\xBF' }; // byte-order mark of UTF-8
     if (bytes.size() > sizeof mark && std::equal(std::begin(mark), std::end(mark), bytes.begin()))
     {
       bytes.erase(bytes.begin(), bytes.begin() + sizeof mark);

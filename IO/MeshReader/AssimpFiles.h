@@ -16,8 +16,8 @@
 namespace avianlidar::scene
 {
 /**
- * File system of Assimp that changes only the mesh: its name has no ".gz", because Assimp finds the
- * format by the file extension, and its bytes are unpacked while they are read.
+ * File system of Assimp that changes only the mesh. The mesh has a name without ".gz", because
+ * Assimp finds the format by the file extension. The bytes of the mesh are unpacked during reading.
  */
 class AssimpFiles : public Assimp::IOSystem
 {
@@ -27,7 +27,7 @@ public:
   /// Returns the name under which Assimp opens the mesh.
   const std::string& GetMeshName() const { return this->MeshName; }
 
-  /// Returns why the last file could not be opened, as ": <reason>"; empty if no reason is known.
+  /// Returns ": <reason>" if the last file could not be opened, or an empty text without a reason.
   const std::string& GetReason() const { return this->Reason; }
 
   /// Returns the vector to be added to the vertices, in the unit of the file (MoveObjToOrigin()).

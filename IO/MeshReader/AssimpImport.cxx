@@ -27,8 +27,8 @@ namespace avianlidar::scene
 {
 namespace
 {
-// A 4 x 4 matrix of a scene graph's node, rows one after the other; Assimp's own products are in
-// single precision.
+// 4 x 4 matrix of a node of the scene graph, rows one after the other. Assimp multiplies matrices
+// in single precision.
 using Transform = std::array<double, 16>;
 
 Transform operator*(const Transform& a, const aiMatrix4x4& m)
@@ -91,7 +91,7 @@ void AddNode(const aiScene& scene, const aiNode& node, const Transform& parent, 
   }
 }
 
-// Assimp's triangulation does not check the indices of a polygon's corners.
+// Checks the indices of the corners of faces, which Assimp's triangulation does not check.
 void CheckFaces(const aiScene& scene)
 {
   for (unsigned int i = 0; i < scene.mNumMeshes; ++i)
@@ -113,14 +113,15 @@ void CheckFaces(const aiScene& scene)
     }
     if ((mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON) != 0 && !hasPolygon)
     {
-      // Assimp takes a face without vertices for a polygon, and crashes unless there is another
-      // one.
+      // Assimp takes a face without vertices for a polygon, and crashes unless the mesh has another
+      // polygon.
       throw Error("is broken: a face has no vertex");
     }
   }
 }
 
-/// Returns the text of the mesh, or nothing if it cannot be opened: Assimp reports that.
+/// Returns the text of the mesh, or an empty text if the mesh cannot be opened. Assimp then reports
+/// the error.
 std::string TextOf(AssimpFiles& files)
 {
   const std::unique_ptr<Assimp::IOStream> stream(files.Open(files.GetMeshName().c_str(), "rb"));
@@ -132,7 +133,7 @@ std::string TextOf(AssimpFiles& files)
   return text;
 }
 
-/// Returns a part of an archive, or nothing if the part is missing.
+/// Returns a part of an archive, or an empty text if the part is missing.
 /// @param name without a slash in front
 std::string PartOf(unzFile archive, const std::string& name)
 {
@@ -153,8 +154,8 @@ std::string PartOf(unzFile archive, const std::string& name)
   return text;
 }
 
-/// Returns the model that the relationships of a 3MF file name, or nothing if the file cannot be
-/// opened: Assimp reports that.
+/// Returns the model that the relationships of a 3MF file name, or an empty text if the file cannot
+/// be opened. Assimp then reports the error.
 std::string ModelOf(const std::string& file)
 {
   const std::unique_ptr<void, int (*)(unzFile)> archive(unzOpen64(file.c_str()), unzClose);
@@ -169,9 +170,9 @@ std::string ModelOf(const std::string& file)
     std::regex_search(relationships, named, target) ? named[1].str() : "3D/3dmodel.model");
 }
 
-/// Refuses files that Assimp reads wrong, and adds what the file says to the mesh. Returns the
-/// length of the file's unit, m.
-/// @param elements becomes what ReadIfc() says
+/// Refuses files that Assimp reads wrong. Adds the file's warnings and its up axis to the mesh.
+/// Returns the length of the file's unit, m.
+/// @param elements becomes the numbers of elements that ReadIfc() gives
 double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::size_t>& elements)
 {
   const std::string& name = files.GetMeshName();
@@ -213,7 +214,7 @@ double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::si
   return 1.0;
 }
 
-/// Whether a node or one below it has triangles.
+/// Returns whether a node or a node below it has triangles.
 bool HasMesh(const aiNode& node)
 {
   return node.mNumMeshes > 0 ||
@@ -221,8 +222,8 @@ bool HasMesh(const aiNode& node)
       [](const aiNode* child) { return HasMesh(*child); });
 }
 
-/// Takes what has become a node with triangles from the elements of an IFC file. Assimp begins a
-/// node's name with the element's type.
+/// Subtracts the nodes with triangles from the numbers of elements of an IFC file. Assimp begins
+/// the name of a node with the type of the element.
 void TakeFound(const aiNode& node, std::map<std::string, std::size_t>& elements)
 {
   std::string type(node.mName.C_Str());
@@ -237,7 +238,7 @@ void TakeFound(const aiNode& node, std::map<std::string, std::size_t>& elements)
     [&elements](const aiNode* child) { TakeFound(*child, elements); });
 }
 
-/// Keeps what Assimp logs about geometry that it leaves out.
+/// Keeps Assimp's log messages about geometry that Assimp leaves out.
 class LossLog : public Assimp::LogStream
 {
 public:
@@ -250,7 +251,7 @@ public:
       "material|texture|shad(?:er|ing)|\\buv|normal|tangent|bone|skin|"
       "anim|camera|light|colou?r|comment|ambient|diffuse|image|Ignored file",
       std::regex::icase);
-    // "Warn,  T0: text\n"
+    // The line has the form "Warn,  T0: text\n".
     std::string text(line);
     text.erase(0, text.find(": ") + 2);
     text.erase(std::min(text.find_last_not_of(" .\r\n") + 1, text.size()));
@@ -265,7 +266,7 @@ public:
     }
   }
 
-  /// Returns one sentence about all of it, or nothing.
+  /// Returns one sentence about all messages, or an empty text without a message.
   std::string Sentence() const
   {
     std::string sentence;
@@ -285,8 +286,8 @@ private:
   std::size_t Count = 0;
 };
 
-/// The axis of an FBX file's coordinates that `name` ("Coord", "Up" or "Front") points along, or 3
-/// if it says none, and the sign.
+/// Returns the axis of an FBX file's coordinates along which `name` ("Coord", "Up" or "Front")
+/// points, or 3 if the file does not give the axis, and the sign.
 std::pair<int, int> FbxAxis(const aiMetadata& data, const std::string& name)
 {
   int axis = 3;
@@ -296,9 +297,9 @@ std::pair<int, int> FbxAxis(const aiMetadata& data, const std::string& name)
   return { axis < 0 ? 3 : std::min(axis, 3), sign < 0 ? -1 : 1 };
 }
 
-/// Turns what Assimp made of an FBX file to x right, y up and z towards the viewer, or with z up to
-/// y away from the viewer. Assimp 5.4 does so in the transformation of the root, always to y up,
-/// Assimp 5.2 does not. Returns the axis that points up then, 'y' or 'z'.
+/// Turns Assimp's scene of an FBX file to x right, y up and z towards the viewer, or, if z is up,
+/// to y away from the viewer. Assimp 5.4 turns the scene to y up in the transformation of the root.
+/// Assimp 5.2 does not turn the scene. Returns the axis that points up afterwards, 'y' or 'z'.
 char TurnFbx(const aiScene& scene)
 {
   constexpr int yAxis = 1, zAxis = 2;
@@ -329,7 +330,7 @@ char TurnFbx(const aiScene& scene)
   return zUp ? 'z' : 'y';
 }
 
-/// The length of an FBX file's unit, m.
+/// Returns the length of an FBX file's unit, m.
 double FbxUnit(const aiScene& scene)
 {
   constexpr double centimetre = 0.01;
@@ -344,12 +345,12 @@ double FbxUnit(const aiScene& scene)
 
 Mesh ReadAssimpMesh(const std::string& file)
 {
-  // Assimp's logger owns it.
+  // Assimp's logger owns the object.
   auto* losses = new LossLog;
   Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
   Assimp::DefaultLogger::get()->attachStream(losses, Assimp::Logger::Warn | Assimp::Logger::Err);
-  // The importer owns the files. It is never deleted: some files crash Assimp 5.2 in its
-  // destructor, after they have been read.
+  // The importer owns the files. The importer is never deleted, because some files crash Assimp 5.2
+  // in the destructor, after reading.
   Assimp::Importer& importer = *new Assimp::Importer;
   auto* files = new AssimpFiles(file);
   importer.SetIOHandler(files);
@@ -364,9 +365,9 @@ Mesh ReadAssimpMesh(const std::string& file)
   }
   if (!scene || !scene->mRootNode)
   {
-    // Assimp knows a compressed mesh by another name.
+    // Assimp's messages name a compressed mesh without ".gz".
     std::string reason = importer.GetErrorString();
-    // Assimp says the second where memory runs out again while it reports the first.
+    // Assimp gives "Unknown exception" if memory also runs out during the report of bad_alloc.
     if (reason == std::bad_alloc().what() || reason == "Unknown exception")
     {
       throw std::bad_alloc();

@@ -25,7 +25,8 @@ bool StartsWith(std::string_view text, std::string_view start)
   return text.substr(0, start.size()) == start;
 }
 
-/// The JSON of a glTF file. In binary files it follows a header of 12 bytes, its length and mark.
+/// Returns the JSON of a glTF file. In binary files the JSON follows a header of 12 bytes, the
+/// length of the JSON and a mark.
 std::string_view JsonOf(const std::string& text)
 {
   constexpr std::size_t header = 12, chunk = 8;
@@ -38,7 +39,7 @@ std::string_view JsonOf(const std::string& text)
   return std::string_view(text).substr(header + chunk, length);
 }
 
-/// The value of a key or an index, or null.
+/// Returns the value of a key or an index, or null.
 const Json& ValueIn(const Json& holder, const Json& key)
 {
   static const Json none;
@@ -60,8 +61,8 @@ const Json& ListIn(const Json& object, const char* key)
   return list.is_array() ? list : none;
 }
 
-/// Positions are numbers of single precision (specification, section 3.7.2.1); Assimp reads others
-/// as if they were.
+/// Throws Error unless positions are numbers of single precision (specification, section 3.7.2.1).
+/// Assimp reads all positions as single precision.
 void CheckPositions(const Json& document, const Json& primitive)
 {
   constexpr int single = 5126;
@@ -74,7 +75,7 @@ void CheckPositions(const Json& document, const Json& primitive)
   }
 }
 
-/// Whether the geometry of a file that requires the extension is read right.
+/// Returns whether the geometry of a file that requires the extension is read right.
 bool IsKnown(const std::string& extension)
 {
   static const char* const starts[] = { "KHR_draco_mesh_compression", "KHR_materials_",
@@ -84,14 +85,14 @@ bool IsKnown(const std::string& extension)
     [&](const char* start) { return StartsWith(extension, start); });
 }
 
-/// Whether a file that only uses the extension is read wrong.
+/// Returns whether a file that uses but does not require the extension is read wrong.
 bool ChangesGeometry(const std::string& extension)
 {
   return extension == "EXT_mesh_gpu_instancing" || extension == "KHR_mesh_quantization" ||
     extension == "CESIUM_RTC";
 }
 
-/// A STEP file in capital letters, without comments and without what stands in strings.
+/// Returns a STEP file in capital letters, without comments and without the contents of strings.
 std::string WithoutComments(const std::string& file)
 {
   std::string text;
@@ -116,15 +117,15 @@ std::string WithoutComments(const std::string& file)
   return text;
 }
 
-/// A statement of a STEP file, "#12=IFCSIUNIT(...)".
+/// Statement of a STEP file, such as "#12=IFCSIUNIT(...)".
 struct Entity
 {
   std::string_view id;
   std::string_view type;
-  std::string_view arguments; ///< with the closing bracket
+  std::string_view arguments; ///< arguments with the closing bracket
 };
 
-/// The statements of a file without comments, in order.
+/// Returns the statements of a file without comments, in order.
 std::vector<Entity> EntitiesOf(std::string_view text)
 {
   static const std::regex start("\\s*(#[0-9]+)\\s*=\\s*([A-Z0-9_]+)\\s*\\(");
@@ -144,7 +145,7 @@ std::vector<Entity> EntitiesOf(std::string_view text)
   return entities;
 }
 
-/// The first entity with an id; an empty entity if no entity has the id.
+/// Returns the first entity with an id, or an empty entity if no entity has the id.
 Entity EntityOf(const std::vector<Entity>& entities, const std::string& id)
 {
   const auto found = std::find_if(
@@ -152,7 +153,7 @@ Entity EntityOf(const std::vector<Entity>& entities, const std::string& id)
   return found == entities.end() ? Entity() : *found;
 }
 
-/// The ids, "#12", that a definition names.
+/// Returns the ids, such as "#12", that a definition names.
 std::vector<std::string> IdsIn(std::string_view definition)
 {
   static const std::regex id("#[0-9]+");
@@ -164,7 +165,7 @@ std::vector<std::string> IdsIn(std::string_view definition)
   return ids;
 }
 
-/// The factor of an IFCSIUNIT of length, m; 0 if it is not one.
+/// Returns the factor of an IFCSIUNIT of length, m, or 0 for any other entity.
 double SiLength(const Entity& unit)
 {
   if (unit.type != "IFCSIUNIT" || unit.arguments.find(".METRE.") == std::string_view::npos)
@@ -189,7 +190,7 @@ double SiLength(const Entity& unit)
   return 1.0;
 }
 
-/// The length of the unit of a file, m; 1 if it does not say one.
+/// Returns the length of the unit of a file, m, or 1 if the file does not give a unit.
 double IfcUnit(const std::vector<Entity>& entities)
 {
   const auto project = std::find_if(entities.begin(), entities.end(),
@@ -230,7 +231,7 @@ double IfcUnit(const std::vector<Entity>& entities)
   return 1.0;
 }
 
-/// The value of an attribute in an XML tag, or nothing.
+/// Returns the value of an attribute in an XML tag, or no value if the attribute is missing.
 std::optional<std::string_view> ValueOf(std::string_view tag, std::string_view name)
 {
   const char* const blanks = " \t\r\n";
@@ -249,7 +250,7 @@ std::optional<std::string_view> ValueOf(std::string_view tag, std::string_view n
   return {};
 }
 
-/// Calls use(name without a prefix, attributes) for each XML tag, comments aside, as long as it
+/// Calls use(name without a prefix, attributes) for each XML tag outside comments, as long as use()
 /// returns true.
 template <class Use>
 void ForEachTag(std::string_view text, const Use& use)
@@ -272,7 +273,7 @@ void ForEachTag(std::string_view text, const Use& use)
   }
 }
 
-/// Refuses 3MF files that require other extensions than that of materials.
+/// Refuses 3MF files that require an extension other than the materials extension.
 void CheckPrintExtensions(std::string_view attributes)
 {
   std::istringstream prefixes{ std::string(
@@ -296,7 +297,7 @@ void SkipBlanks(const char*& at, const char* end)
   }
 }
 
-/// Whether a line of an OBJ file is a vertex, "v x y z"; `at` is behind the "v" then.
+/// Returns whether a line of an OBJ file is a vertex, "v x y z". Moves `at` behind the "v" if so.
 bool IsVertex(const char*& at, const char* end)
 {
   SkipBlanks(at, end);
@@ -314,7 +315,8 @@ bool ReadNumber(const char*& at, const char* end, double& number)
   return error == std::errc() && std::isfinite(number);
 }
 
-/// The coordinates behind a "v"; false where they cannot be read, or a weight divides them.
+/// Reads the coordinates behind a "v". Returns false if a coordinate cannot be read, or if a weight
+/// divides the coordinates.
 bool ReadVertex(const char*& at, const char* end, Vec3& vertex)
 {
   for (double& coordinate : vertex)
@@ -328,11 +330,11 @@ bool ReadVertex(const char*& at, const char* end, Vec3& vertex)
   double weight = 1.0;
   const bool hasMore = ReadNumber(more, end, weight);
   SkipBlanks(more, end);
-  return !hasMore || weight == 1.0 ||
-    more < end; // of more than four numbers the others are colours
+  // More than four numbers are coordinates and colours, without a weight.
+  return !hasMore || weight == 1.0 || more < end;
 }
 
-/// Calls use(begin, end) for each line without its end.
+/// Calls use(begin, end) for each line, without the end of the line.
 template <class Use>
 void ForEachLine(const std::vector<char>& bytes, const Use& use)
 {
@@ -353,10 +355,10 @@ void ForEachLine(const std::vector<char>& bytes, const Use& use)
 std::vector<std::string> CheckGltf(const std::string& text)
 {
   std::string json(JsonOf(text));
-  // Names in other encodings, which Assimp takes; none is looked at here.
+  // Bytes of other encodings, which Assimp accepts in names. The names are not needed here.
   std::replace_if(
     json.begin(), json.end(), [](char byte) { return (byte & 0x80) != 0; }, '?');
-  json.erase(0, std::min(json.find('{'), json.size())); // a mark of the byte order
+  json.erase(0, std::min(json.find('{'), json.size())); // byte-order mark
   const Json document = Json::parse(json, nullptr, /*allow_exceptions=*/false);
   for (const char* list : { "extensionsRequired", "extensionsUsed" })
   {
@@ -415,7 +417,7 @@ double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elem
     "IFCGRID", "IFCVIRTUALELEMENT", "IFCSHAPEASPECT", "IFCPORT", "IFCDISTRIBUTIONPORT" };
   for (const auto& [id, type, arguments] : entities)
   {
-    // Of the ids that a product names the shape is one of the last.
+    // The shape is one of the last ids that a product names.
     if (StartsWith(type, "IFC") && StartsWith(arguments, "''") && empty.count(type) == 0)
     {
       const std::vector<std::string> ids = IdsIn(arguments);
@@ -471,7 +473,7 @@ void CheckPly(const std::string& text)
 {
   if (text.empty())
   {
-    return; // Assimp reports that the file cannot be opened
+    return; // Assimp reports an error later
   }
   const char* const end = "end_header";
   for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + 1))
@@ -523,7 +525,7 @@ std::vector<std::string> Check3mf(const std::string& text)
   }
   return painted == 0 ? std::vector<std::string>()
                       : std::vector<std::string>{ "materials of " + std::to_string(painted) +
-                          " triangles are left out: they have that of their object" };
+                          " triangles are left out: the material of the object is taken" };
 }
 
 double PrintUnit(const std::string& text)
@@ -587,7 +589,7 @@ void CheckAmf(const std::string& text)
 
 Vec3 MoveObjToOrigin(std::vector<char>& bytes)
 {
-  constexpr double farAway = 8192.0; // single precision keeps 0.001 there
+  constexpr double farAway = 8192.0; // limit of the rounding below 0.001
   Vec3 offset{};
   double farthest = 0.0;
   bool isFirst = true, canMove = true;

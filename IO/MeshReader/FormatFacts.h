@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FormatFacts.h
- * @brief Reads facts of mesh files without which the geometry would be wrong, and which Assimp 5.2
- * ignores.
+ * @brief Reads facts that Assimp 5.2 ignores in mesh files and without which the geometry would be
+ * wrong.
  */
 #ifndef AvianLidarFormatFacts_h
 #define AvianLidarFormatFacts_h
@@ -15,20 +15,20 @@
 namespace avianlidar::scene
 {
 /**
- * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support. These
- * are required extensions (specification, section 3.12), except Draco and those of materials,
- * textures, lights and metadata; and instances, quantization and the centre of a tile, even if the
- * file does not require them. Also refuses positions that are not of single precision.
+ * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support. Refused
+ * are files that require an extension (specification, section 3.12) other than Draco or extensions
+ * of materials, textures, lights and metadata. Refused are also files that use instances,
+ * quantization or the centre of a tile, and positions that are not of single precision.
  * @param text contents of the file, JSON or binary. Throws Error, which names the fault.
  * @return warnings of skins and of weights of morph targets, which are left out
  */
 std::vector<std::string> CheckGltf(const std::string& text);
 
 /**
- * Returns the unit of length of an IFC file, m, if it is a conversion-based unit such as the foot,
- * else 1. Assimp supports only the metre and its prefixes.
+ * Returns the unit of length of an IFC file, m, for a conversion-based unit such as the foot, else
+ * 1. Assimp supports only the metre and its prefixes.
  * @param text contents of the file. Throws Error if the unit cannot be read.
- * @param elements gets the number of elements with a shape for each type, such as "IFCWALL". Types
+ * @param elements becomes the number of elements with a shape, by type, such as "IFCWALL". Types
  * that are not solid, such as spaces, openings and annotations, are left out.
  */
 double ReadIfc(const std::string& text, std::map<std::string, std::size_t>& elements);
@@ -36,7 +36,8 @@ double ReadIfc(const std::string& text, std::map<std::string, std::size_t>& elem
 /// Returns the unit of length of an X3D file (version 3.3 and later), m. @param text XML
 double X3dUnit(const std::string& text);
 
-/// Returns the unit of length of an OpenGEX file, m. @param upAxis becomes 'y' or 'z' if given
+/// Returns the unit of length of an OpenGEX file, m.
+/// @param upAxis becomes 'y' or 'z' if the file gives the axis that points up
 double OpenGexUnit(const std::string& text, char& upAxis);
 
 /// Refuses PLY files with triangle strips, which Assimp reads wrong, and files whose header has no
@@ -52,7 +53,7 @@ std::vector<std::string> Check3mf(const std::string& text);
  * Returns the unit of length that the root element of a 3MF or AMF file names, m. Without a name
  * the unit is the millimetre, as the specifications of 3MF and AMF say.
  * @param text XML. Throws Error if the unit is unknown, or if a 3MF file requires an extension
- * other than that of materials.
+ * other than the materials extension.
  */
 double PrintUnit(const std::string& text);
 
@@ -62,7 +63,7 @@ void CheckAmf(const std::string& text);
 
 /**
  * Moves the vertices of an OBJ file near the origin, because Assimp reads single precision. Files
- * with coordinates below 8192, which single precision rounds by less than 0.001, stay as they are.
+ * with coordinates below 8192, which single precision rounds by less than 0.001, are not changed.
  * @return vector to be added to the vertices that Assimp reads, in the unit of the file
  */
 Vec3 MoveObjToOrigin(std::vector<char>& bytes);

@@ -21,10 +21,10 @@ Mesh ReadVtkMesh(const std::string& file);
 /**
  * Checks that the cells and the faces of polyhedra name only existing points, that each cell has
  * the number of points of its type, and that each grid has the number of points of its dimensions.
- * Refuses cells of variable order (Lagrange, Bezier, parametric). The time is linear in the points
- * of all cells.
+ * Refuses cells of variable order (Lagrange, Bezier, parametric). The time is linear in the number
+ * of points of all cells.
  *
- * Throws Error with the fault.
+ * Throws Error, which names the fault.
  */
 void CheckCells(vtkDataSet* data);
 /// Returns the distance between a number in single precision and the next greater one.

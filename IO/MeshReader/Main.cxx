@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Main.cxx
- * @brief mesh-reader FILE BYTES: reads one mesh file and writes it to standard output as
- * MeshStream.h says, within so many bytes of data (0: no limit).
+ * @brief The program `mesh-reader FILE BYTES` reads one mesh file and writes the mesh to standard
+ * output (MeshStream.h). BYTES is the limit of memory for data, bytes; 0 means no limit.
  *
- * The libraries that read meshes crash on some files, and never end on others. This is a program of
- * its own so that they take nothing with them.
+ * The libraries that read meshes crash on some files, and never end on other files. In a separate
+ * program they cannot crash or stop the process that reads the scene.
  */
 #include "Imports.h"
 #include "MeshFormats.h"
@@ -35,7 +35,7 @@ struct PointHash
     for (double value : p)
     {
       std::uint64_t bits;
-      // -0 and 0 are the same coordinate.
+      // The sum makes -0 and 0 the same coordinate.
       value += 0.0;
       std::memcpy(&bits, &value, sizeof bits);
       hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
@@ -45,7 +45,7 @@ struct PointHash
   }
 };
 
-/// Makes points with identical coordinates one; triangles keep their number and order.
+/// Merges points with identical coordinates. Triangles keep their number and order.
 void MergePoints(Mesh& mesh)
 {
   std::unordered_map<Vec3, std::int64_t, PointHash> index;
@@ -86,7 +86,7 @@ Mesh ReadMesh(const std::string& file)
   return mesh;
 }
 
-/// Writes to a descriptor.
+/// Returns a function that writes to a descriptor.
 WriteBytes WriterTo(int output)
 {
   return [output](const void* bytes, std::size_t size)
@@ -97,7 +97,7 @@ WriteBytes WriterTo(int output)
         write(output, static_cast<const char*>(bytes) + written, size - written);
       if (count <= 0)
       {
-        _exit(1); // nobody reads
+        _exit(1); // the reader of the pipe has ended
       }
       written += static_cast<std::size_t>(count);
     }
@@ -116,7 +116,7 @@ void Limit(rlim_t data)
     setrlimit(RLIMIT_DATA, &most);
   }
 #else
-  (void)data; // the sanitizer's own tables count as data
+  (void)data; // unused, because the sanitizer's own tables count as data
 #endif
 }
 }
@@ -131,7 +131,7 @@ int main(int argc, char* argv[])
     return 2;
   }
   Limit(std::strtoull(argv[2], nullptr, 10));
-  // What libraries print must not come between.
+  // Text that libraries print must not mix with the mesh.
   const WriteBytes write = WriterTo(dup(STDOUT_FILENO));
   dup2(STDERR_FILENO, STDOUT_FILENO);
   const std::string file = argv[1];

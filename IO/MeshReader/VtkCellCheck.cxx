@@ -36,7 +36,7 @@ void CheckPoints(vtkCellArray* cells, vtkIdType points)
   }
 }
 
-// Of types whose cells may have any number of points from here on; 0: the type has a fixed number.
+// Returns the least number of points of a type with a variable number, or 0 for any other type.
 vtkIdType LeastPoints(int type)
 {
   switch (type)
@@ -58,7 +58,7 @@ vtkIdType LeastPoints(int type)
   }
 }
 
-// @param of keeps a cell of each type
+// @param of cells of each type, kept between calls
 void CheckSize(int type, vtkIdType size, vtkGenericCell* of)
 {
   constexpr int lastOfFixedOrder = VTK_POLYHEDRON;
@@ -81,7 +81,7 @@ void CheckSize(int type, vtkIdType size, vtkGenericCell* of)
   }
 }
 
-// The faces of a polyhedron stand apart from its points.
+// Throws Error unless a polyhedron has a face.
 void CheckNumberOfFaces(vtkIdType faces)
 {
   if (faces < 1)
@@ -103,7 +103,7 @@ void CheckSizeOfFace(vtkIdType points)
 }
 
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 20230807)
-// Cells of their own, which polyhedra name.
+// Checks the faces of polyhedra, which are cells of a separate array.
 void CheckFaces(vtkUnstructuredGrid* grid)
 {
   vtkCellArray* faces = grid->GetPolyhedronFaces();
@@ -134,7 +134,7 @@ void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
 #else
 void CheckFaces(vtkUnstructuredGrid*) {}
 
-// One row of numbers: how many faces a polyhedron has, and for each its points.
+// Checks the faces of a polyhedron, given as the number of faces and the points of each face.
 void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
 {
   vtkIdTypeArray* faces = grid->GetFaces();
@@ -176,7 +176,7 @@ void CheckGrid(vtkUnstructuredGrid* grid)
   }
 }
 
-// Neither VTK's readers nor its surface filter look whether the file has as many points as it says.
+// Checks the number of points of an axis, which VTK's readers and surface filter do not check.
 void CheckPointsOfAxis(vtkDataArray* coordinates, int expected)
 {
   const vtkIdType found = coordinates ? coordinates->GetNumberOfTuples() : 0;
@@ -199,7 +199,7 @@ void CheckStructured(vtkStructuredGrid* grid)
 {
   int dimensions[3];
   grid->GetDimensions(dimensions);
-  double expected = 1.0; // three ints may go beyond 64 bits
+  double expected = 1.0; // a product of three ints may exceed 64 bits
   for (const int dimension : dimensions)
   {
     expected *= std::max(dimension, 0);

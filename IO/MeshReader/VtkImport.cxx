@@ -33,7 +33,7 @@ namespace avianlidar::scene
 {
 namespace
 {
-// What VTK says, without the file, line, class and address in front, and without what follows.
+// Returns the first line of a message of VTK, without file, line, class and address in front.
 std::string FirstLine(const std::string& message)
 {
   const std::size_t head = message.find("): ");
@@ -42,7 +42,7 @@ std::string FirstLine(const std::string& message)
   return message.substr(begin, end - begin);
 }
 
-// VTK's readers report to observers, or else to the screen.
+// Keeps the messages of a reader of VTK, which would otherwise appear on the screen.
 class QuietVtk
 {
 public:
@@ -68,8 +68,8 @@ private:
   std::string Text;
 };
 
-// A VTK array that cannot be allocated reports an error, and then the process ends as Debian builds
-// VTK: the report throws std::bad_alloc instead.
+// Throws std::bad_alloc if VTK reports that an array cannot be allocated. Debian's VTK would end
+// the process after the report.
 class ThrowingWindow : public vtkOutputWindow
 {
 public:
@@ -85,7 +85,7 @@ public:
     this->Superclass::DisplayErrorText(text);
   }
 
-  // The legacy reader only warns of missing values, and leaves their memory uninitialised.
+  // The legacy reader only warns of missing values and does not initialise their memory.
   void DisplayGenericWarningText(const char* text) override
   {
     if (std::strstr(text, "Error reading"))
@@ -97,7 +97,7 @@ public:
 
   vtkTypeMacro(ThrowingWindow, vtkOutputWindow);
 
-  std::string First; // error
+  std::string First; // text of the first error
 };
 vtkStandardNewMacro(ThrowingWindow);
 
@@ -118,7 +118,7 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file)
   return data;
 }
 
-// The files that a composite is made of: VTK would open whatever they are.
+// Throws Error unless the files that a composite names are regular. VTK would open any file.
 void RequireRegularParts(vtkXMLDataElement* element, const std::string& folder)
 {
   if (const char* name = element->GetAttribute("file"))
@@ -128,7 +128,7 @@ void RequireRegularParts(vtkXMLDataElement* element, const std::string& folder)
     if (!irregular.empty() || !vtksys::SystemTools::FileExists(part))
     {
       throw Error(
-        "names the file " + part + ": " + (irregular.empty() ? "there is none" : irregular));
+        "names the file " + part + ": " + (irregular.empty() ? "no such file" : irregular));
     }
     if (!IsVtkFile(part) || EndingOf(part) == ".vtk" || EndingOf(part).find(".vtm") == 0)
     {
@@ -150,7 +150,7 @@ void RequireRegularParts(const std::string& file)
   }
 }
 
-// The names of the materials where the file has them, as the surfaces of this module do.
+// Adds material ids and names if the file has the arrays of this project's surfaces.
 void AddMaterials(vtkPolyData* surface, Mesh& mesh)
 {
   vtkDataArray* ids = surface->GetCellData()->GetArray(vtkAvianLidarArrays::MaterialId.name);

@@ -24,7 +24,7 @@ public:
   /// source.
   virtual void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) = 0;
 
-  /// True if `count` bytes from `offset` on lie inside the source; the check cannot overflow.
+  /// Returns whether `count` bytes from `offset` on lie inside the source, without overflow.
   bool holds(std::uint64_t offset, std::uint64_t count) const
   {
     return offset <= this->size() && count <= this->size() - offset;
@@ -32,7 +32,7 @@ public:
 
   std::vector<unsigned char> bytes(std::uint64_t offset, std::uint64_t count);
 
-  /// Returns bytes that stay valid until the next call. Large pieces are read at once.
+  /// Returns bytes that are valid until the next call. Reads pieces of 1 MiB or more.
   const unsigned char* at(std::uint64_t offset, std::uint64_t count);
 
 private:

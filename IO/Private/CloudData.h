@@ -31,8 +31,8 @@ public:
 /// Number of points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;
 
-/// Reports the progress at point `done` of `all`, between `from` and `to`. Throws WorkStopped if
-/// KeepGoing returns false.
+/// Reports the progress at point `done` of `all`, as a share between `from` and `to`. Throws
+/// WorkStopped if KeepGoing returns false.
 inline void goOn(
   const KeepGoing& keepGoing, std::int64_t done, std::int64_t all, double from, double to)
 {
@@ -57,7 +57,7 @@ inline std::size_t sizeOf(const Values& values)
 struct Column
 {
   std::string name;
-  std::string unit; ///< unit of the values; empty: not known, or none
+  std::string unit; ///< unit of the values; empty without a known unit
   int components = 1;
   Values values;
 };
@@ -77,25 +77,26 @@ struct Cloud
   std::vector<double> points; ///< x, y, z of each point, m
   std::vector<Column> columns;
   std::vector<Note> notes;
-  /// Position of the sensor, m, in the frame of the points; none if the format does not give it.
+  /// Position of the sensor, m, in the frame of the points. No value if the format lacks it.
   std::optional<std::array<double, 3>> sensor;
-  std::string crs;                   ///< coordinate reference system, WKT; empty: not known
+  std::string crs;                   ///< coordinate reference system, WKT; empty if unknown
   std::vector<std::string> warnings; ///< sentences on parts left out and on assumptions
 
   std::size_t size() const { return this->points.size() / 3; }
 };
 
-/// Throws MemoryError unless a cloud fits into memory. `length`: bytes of a point in the file.
+/// Throws MemoryError unless a cloud of `points` points, each of `length` bytes in the file, fits
+/// into memory.
 inline void requireMemoryFor(std::uint64_t points, std::uint64_t length)
 {
-  // Bytes of a point: coordinates, vertex, range and angles, in Cloud and in VTK's arrays, and the
-  // fields of the file, unpacked, in Cloud and in VTK's arrays.
+  // Bytes of a point in Cloud and in VTK's arrays: 100 for coordinates, vertex, range and angles,
+  // and 3 * length for the unpacked fields of the file.
   const double bytes = 100.0 + 3.0 * static_cast<double>(length);
   const auto count = static_cast<double>(points);
   requireMemory(count, "points", count * bytes);
 }
 
-/// One array of a cloud to be written: one value for each point. Integers are exact up to 2^53.
+/// Array of a cloud to be written, with one value for each point. Integers are exact up to 2^53.
 struct Field
 {
   std::string name;

@@ -31,7 +31,7 @@ std::string textOf(const json& holder, const char* key)
   return found != holder.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// A note of numbers or of texts; others are passed over.
+/// Adds a note of numbers or of texts. Ignores entries of other types.
 void addNote(const std::string& name, const json& entry, CloudNotes& notes)
 {
   const auto value = entry.is_object() ? entry.find("value") : entry.end();

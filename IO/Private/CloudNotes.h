@@ -20,11 +20,11 @@ struct CloudNotes
 };
 
 /// Returns one line of ASCII. If the line has more than `longest` characters, the notes with the
-/// longest texts are left out, and their names are added to `left`.
+/// longest texts are left out. The names of these notes are added to `left`.
 std::string toText(const CloudNotes& notes, std::size_t longest, std::vector<std::string>& left);
 
 /// Returns the text with replacements for invalid UTF-8 and for control characters other than line
-/// feeds. Files may contain any bytes, but names and field data must be valid.
+/// feeds. Files may contain any bytes, but names and field data must be valid UTF-8.
 std::string cleaned(const std::string& text);
 
 /// Reads the notes in a text. Returns false if the text has no notes.

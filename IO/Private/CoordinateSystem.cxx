@@ -22,7 +22,7 @@ std::string wktOf(int code, bool ellipsoidalHeights)
 {
   OGRSpatialReference system;
   char* text = nullptr;
-  // Without the option WKT 1 has no words for a height above the ellipsoid.
+  // Without the second option GDAL cannot write heights above the ellipsoid as WKT 1.
   const char* const options[] = { "FORMAT=WKT1_GDAL",
     "ALLOW_ELLIPSOIDAL_HEIGHT_AS_VERTICAL_CRS=YES", nullptr };
   const bool done = system.importFromEPSG(code) == OGRERR_NONE &&
@@ -40,10 +40,10 @@ std::string wktOf(int code, bool ellipsoidalHeights)
 
 using Bytes = std::vector<unsigned char>;
 
-/// A TIFF of one pixel with these keys and their parameters.
+/// Returns a TIFF of one pixel with the GeoTIFF keys and their parameters.
 Bytes imageWith(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
 {
-  constexpr std::size_t dataAt = 160; // behind 12 tags
+  constexpr std::size_t dataAt = 160; // offset of the data, after 12 tags, bytes
   Bytes tags, data;
   std::uint16_t count = 0;
   const auto append = [](Bytes& to, auto value)
@@ -60,14 +60,14 @@ Bytes imageWith(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
     append(tags, static_cast<std::uint32_t>(value));
     ++count;
   };
-  // Width, height, bits, no compression, black is 0; one strip of one row with one byte.
+  // Tags of a pixel: width, height, bits, no compression, black is 0, and one strip of one byte.
   constexpr std::pair<int, unsigned> pixel[] = { { 256, 1 }, { 257, 1 }, { 258, 8 }, { 259, 1 },
     { 262, 1 }, { 273, 0 }, { 277, 1 }, { 278, 1 }, { 279, 1 } };
   for (const auto& [tag, value] : pixel)
   {
     addTag(static_cast<std::uint16_t>(tag), 4, 1, value);
   }
-  // Values of a type of TIFF, cut to whole ones.
+  // Adds a tag with all whole values of a type of TIFF.
   const auto add = [&](std::uint16_t tag, std::uint16_t type, std::size_t size, const Bytes& values)
   {
     const std::size_t whole = values.size() / size;
@@ -78,7 +78,7 @@ Bytes imageWith(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
       data.resize((data.size() + 7) / 8 * 8);
     }
   };
-  constexpr std::uint16_t shorts = 3, reals = 12, ascii = 2; // types of TIFF
+  constexpr std::uint16_t shorts = 3, reals = 12, ascii = 2; // codes of types of TIFF
   add(34735, shorts, 2, keys);
   add(34736, reals, 8, doubles);
   add(34737, ascii, 1, texts);

@@ -11,23 +11,23 @@
 
 namespace avianlidar::formats
 {
-/// Returns UTM on WGS84 with heights above the ellipsoid: EPSG 326zz or 327zz and the ellipsoid as
-/// vertical system. The zone is 1 to 60 in the north, and -1 to -60 in the south.
+/// Returns UTM on WGS84 with heights above the ellipsoid: EPSG 326zz or 327zz (zz is the zone) and
+/// the ellipsoid as vertical system. The zone is 1 to 60 in the north, and -1 to -60 in the south.
 std::string utmWkt(int zone);
 
 /// Returns geocentric WGS84, EPSG:4978.
 std::string geocentricWkt();
 
 /// Returns the system that keys of GeoTIFF (tags 34735, 34736 and 34737) describe, as WKT 1 or, if
-/// WKT 1 cannot express the system, WKT 2. Empty if GDAL finds no such system.
+/// WKT 1 cannot express the system, WKT 2. Returns an empty text if GDAL does not find the system.
 std::string wktOfGeoKeys(const std::vector<unsigned char>& keys,
   const std::vector<unsigned char>& doubles, const std::vector<unsigned char>& texts);
 
-/// Returns the unit of the coordinates if it is not the metre: "degree", "US survey foot"; or
-/// "metre and foot" if plan and heights have different units. Empty: metres, or not known.
+/// Returns the unit of the coordinates, such as "degree" or "US survey foot", or "metre and foot"
+/// if plan and heights have different units. Returns an empty text for metres or an unknown unit.
 std::string foreignUnitOf(const std::string& wkt);
 
-/// Returns the zone of a WKT of UTM on WGS84, negative in the south; 0 for any other text.
+/// Returns the zone of a WKT of UTM on WGS84, negative in the south, or 0 for any other text.
 int utmZoneOf(const std::string& wkt);
 }
 

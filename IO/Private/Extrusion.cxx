@@ -25,7 +25,7 @@ Index AddPoint(Mesh& mesh, const Vec3& p)
   return static_cast<Index>(mesh.points.size()) - 1;
 }
 
-// The vertices of a sheet, raised; the index of the first.
+// Adds the vertices of a sheet, raised by `height`, m. Returns the index of the first vertex.
 Index AddRaised(const Sheet& sheet, double height, Mesh& mesh)
 {
   const auto first = static_cast<Index>(mesh.points.size());
@@ -36,15 +36,15 @@ Index AddRaised(const Sheet& sheet, double height, Mesh& mesh)
   return first;
 }
 
-// Corners of a facade seen from outside: bottom left, bottom right, top left, top right.
+// Corners of a facade, seen from outside.
 struct Facade
 {
   Index bottomLeft, bottomRight, topLeft, topRight;
 };
 
-// Triangles between a long edge and a row of vertices opposite, each joined to the nearer end.
-// `turn`: the row lies below the edge (seen with the row's first vertex on the left), so that the
-// sense is the other.
+// Adds triangles between a long edge and a row of opposite vertices. Each vertex of the row is
+// joined to the nearer end of the edge. With `turn` the row lies below the edge, seen with the
+// first vertex of the row on the left, and the sense of the triangles is reversed.
 void AddBand(
   Index left, Index right, const std::vector<Index>& row, bool turn, int material, Mesh& mesh)
 {
@@ -59,7 +59,7 @@ void AddBand(
        : AddTriangle(mesh, left, right, row[middle], material);
 }
 
-// Throws where a wrong coordinate, or a bay of nothing, would make as many strips as memory holds.
+// Returns the number of bays of a facade. Throws Error if the number is above 100,000.
 int BaysOf(double length, double bay)
 {
   constexpr int most = 100000;
@@ -84,8 +84,8 @@ void AddGlazedFacade(const Facade& f, int wall, const Glazing& glazing, Mesh& me
   const int bays = BaysOf(length, glazing.bay);
   const double low = p[2] + margin * (top[2] - p[2]);
   const double high = top[2] - margin * (top[2] - p[2]);
-  // Both sides of every strip. The facade's own four edges get no vertices: they stay whole for the
-  // neighbours.
+  // Vertices on both sides of each strip of glass. The four edges of the facade are not divided,
+  // because neighbours share whole edges.
   std::vector<Index> lower, upper;
   for (int bay = 0; bay < bays; ++bay)
   {
@@ -127,7 +127,7 @@ void AddFacade(const Facade& f, const ExtrusionMaterials& materials, Mesh& mesh)
 
 Sheet Join(const std::vector<TerrainPiece>& pieces)
 {
-  constexpr double same = 1e-4; // m
+  constexpr double same = 1e-4; // distance of vertices that are merged, m
   Sheet sheet;
   std::map<std::array<std::int64_t, 2>, Index> known;
   std::set<std::array<Index, 2>> edges;
@@ -158,7 +158,7 @@ Sheet Join(const std::vector<TerrainPiece>& pieces)
   }
   for (const auto& [left, right] : edges)
   {
-    if (edges.count({ right, left }) == 0) // of one triangle
+    if (edges.count({ right, left }) == 0) // edge of only one triangle
     {
       sheet.outline.push_back({ left, right });
     }

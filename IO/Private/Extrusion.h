@@ -20,19 +20,19 @@ struct ExtrusionMaterials
   std::optional<Glazing> glazing;
 };
 
-/// Returns the sheet of the pieces of a terrain. Pieces with a common edge share the vertices of
-/// this edge.
+/// Joins pieces of a terrain to one sheet. Pieces with a common edge share the vertices of this
+/// edge.
 Sheet Join(const std::vector<TerrainPiece>& pieces);
 
 /**
- * Adds a solid from `base` to `base + height`, m, above a sheet: roof, facades, and a floor of the
- * roof's material, because beams do not reach the floor. The normals point outwards. The solid is
- * closed: every edge belongs to two triangles.
+ * Adds a solid from `base` to `base + height`, m, above a sheet, with roof, facades and floor. The
+ * floor has the roof's material, because beams do not reach the floor. The normals point outwards.
+ * The solid is closed: every edge belongs to two triangles.
  *
  * A glazed facade of length L has n = max(1, round(L / bay)) bays of equal width. Each bay has one
  * centred strip of glass that covers `share` of its area. Plinth and cornice, each min(2 %, (1 -
  * share) / 4) of the height, have the facade's material, so that the facade meets roof and ground
- * in whole edges. With share 1 the facade is all glass; with share 0 it has no glass.
+ * in whole edges. With share 1 the facade is all glass. With share 0 the facade has no glass.
  */
 void AddSolid(
   const Sheet& sheet, double base, double height, const ExtrusionMaterials& materials, Mesh& mesh);

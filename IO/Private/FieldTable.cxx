@@ -11,8 +11,8 @@ namespace avianlidar::formats
 {
 namespace
 {
-/// A word of ASCII data as bytes of the type. Integers of 64 bits do not go by way of double: times
-/// in nanoseconds have more digits.
+/// Converts a word of ASCII data to bytes of the type. 64-bit integers are not converted by way of
+/// double, because times in nanoseconds have more digits than a double.
 void wordToBytes(const std::string& word, Scalar type, unsigned char* bytes)
 {
   const char* end = word.data() + word.size();
@@ -37,7 +37,7 @@ void wordToBytes(const std::string& word, Scalar type, unsigned char* bytes)
   }
 }
 
-/// The shortest digits that give the same value of the type back.
+/// Appends the fewest digits from which the same value of the type can be read.
 void appendValue(std::string& text, Scalar type, double value)
 {
   if (std::isnan(value) && isFloat(type))
@@ -72,7 +72,7 @@ void FieldTable::checkLength(ByteSource& source, bool ascii) const
   std::uint64_t least = this->length();
   if (ascii)
   {
-    // Every value has a digit and something behind it, but the last.
+    // Every value has a digit and a separator, and only the last separator may be missing.
     room += 1;
     least = 0;
     for (const TableField& field : this->fields)

@@ -33,8 +33,8 @@ struct FieldTable
   /// Returns the size of a point in binary rows, bytes.
   std::uint64_t length() const;
 
-  /// Throws FormatError unless the file is long enough for the points; called before any
-  /// allocation.
+  /// Throws FormatError unless the file is long enough for the points. Must be called before memory
+  /// for the points is allocated.
   void checkLength(ByteSource& source, bool ascii) const;
 };
 
@@ -43,8 +43,8 @@ struct FieldTable
 using TableTargets = std::vector<std::function<void(std::uint64_t index, const unsigned char*)>>;
 
 /// Makes the points and columns of a cloud, and the functions that store x, y and z in the points
-/// and all other fields in columns. The field "_" is padding. Throws FormatError without x, y and
-/// z.
+/// and all other fields in columns. The field "_" is padding. Throws FormatError if x, y or z is
+/// missing.
 TableTargets targetsOf(const FieldTable& table, Cloud& to);
 
 /// Reads the rows. Throws FormatError if rows are missing, or if a row is too short or too long or
@@ -63,11 +63,11 @@ struct TableOutput
 {
   /// Fields of a row, first x, y, z.
   std::vector<Field> fields;
-  /// Index of the point in each row, or -1 in a row without a point; empty: row i is point i.
+  /// Index of the point in each row, or -1 in a row without a point. Empty if row i is point i.
   std::vector<std::int64_t> cells;
   /// Function that gives the value of a field in a cell without a point.
   std::function<double(std::size_t field, std::int64_t cell)> empty;
-  std::string comment; ///< text of one line
+  std::string comment; ///< comment of one line
   bool ascii = false;
 };
 

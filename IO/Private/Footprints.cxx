@@ -46,15 +46,15 @@ struct Counts
   int beyond = 0;
 };
 
-// An area in plan; what follows a terrain has no level roof.
+// Area in plan. With `follows` the area follows the terrain and does not have a level roof.
 struct Region
 {
   Polygon polygon;
   bool follows = false;
 };
 
-// A value of GDAL's OSM driver for tags without a column of their own:
-// "key"=>"value","key"=>"value".
+// Finds a value in the list "key"=>"value","key"=>"value" that GDAL's OSM driver gives for tags
+// without a column.
 bool FindOtherTag(const std::string& tags, const std::string& key, std::string& value)
 {
   const std::string start = "\"" + key + "\"=>\"";
@@ -85,7 +85,8 @@ bool FindAttribute(const OGRFeature& feature, const std::string& name, std::stri
     FindOtherTag(feature.GetFieldAsString(other), name, value);
 }
 
-// "12", "12.5", "12 m"; feet, floors and the like are not guessed. `unit`: of a bare number, m.
+// Reads lengths such as "12", "12.5" and "12 m". Texts with other units, such as feet or floors,
+// give no value. `unit` is the unit of a number without a unit, m.
 std::optional<double> FindLength(
   const OGRFeature& feature, const std::string& name, double unit = 1)
 {
@@ -162,7 +163,7 @@ bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filte
   return true;
 }
 
-// Formats of files; others of GDAL's go on to other files or to servers, as their text says.
+// Drivers of GDAL that are allowed. Other drivers open further files or servers that a file names.
 const char* const Drivers[] = { "GeoJSON", "GeoJSONSeq", "TopoJSON", "ESRIJSON", "ESRI Shapefile",
   "GPKG", "FlatGeobuf", "OSM", "GML", "KML", "LIBKML", "GPX", "CSV", "DXF", "MapInfo File",
   nullptr };
@@ -177,7 +178,7 @@ void RequireRegularNeighbour(const std::filesystem::path& neighbour)
   }
 }
 
-// GDAL opens what belongs to a file by its name, as .dbf and .prj to .shp.
+// Checks files of the same name, such as .dbf and .prj for .shp, because GDAL opens them too.
 void RequireRegularNeighbours(const std::filesystem::path& file)
 {
   namespace fs = std::filesystem;
@@ -190,7 +191,7 @@ void RequireRegularNeighbours(const std::filesystem::path& file)
       RequireRegularNeighbour(entry->path());
     }
   }
-  if (problem) // a folder may be searched by name, and not listed
+  if (problem) // a folder that cannot be listed may be searched by name
   {
     for (const char* ending : { ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".csvt", ".gfs",
            ".xsd", ".mid", ".dat", ".map", ".id", ".ind" })
@@ -200,7 +201,7 @@ void RequireRegularNeighbours(const std::filesystem::path& file)
   }
 }
 
-// Whether a file begins as CityJSON does, which no driver reads.
+// Returns whether a file begins as CityJSON does. The allowed drivers do not read CityJSON.
 bool IsCityJson(const std::string& file)
 {
   std::string start(4096, '\0');
@@ -237,7 +238,8 @@ OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
   return *data.GetLayer(0);
 }
 
-// The unit of heights without one, m. The Digital Obstacle File of the FAA is in feet.
+// Returns the unit of heights whose unit is not given, m. The FAA's Digital Obstacle File is in
+// feet.
 double HeightUnit(OGRLayer& layer, const std::string& attribute)
 {
   const OGRFeatureDefn& columns = *layer.GetLayerDefn();
@@ -274,7 +276,7 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
     feature.height = FindLength(*source, options.heightAttribute, unit);
     feature.minHeight = FindLength(*source, options.minHeightAttribute);
     feature.width = FindLength(*source, options.widthAttribute);
-    // Arcs become chords.
+    // Arcs are replaced by chords.
     const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
     CollectGeometry(straight ? *straight : *geometry, feature, counts);
     features.push_back(std::move(feature));
@@ -296,7 +298,7 @@ void ToLocal(Ring& ring, const GeoreferencedPoints& frame, double height)
   }
 }
 
-// The place of the plan only; GDAL's heights of two-dimensional data are none.
+// Transforms plans to local metres. Heights from GDAL are ignored.
 void ToLocal(
   std::vector<Feature>& features, const OGRLayer& layer, const Object& object, const Scene& scene)
 {
@@ -359,7 +361,7 @@ double GetHeight(const Feature& feature, const Object& object, std::size_t numbe
   return *options.height;
 }
 
-// The height of the underside; 0 where it is not below the height.
+// Returns the height of the underside, m, or 0 if the underside is not below the height.
 double GetMinHeight(const Feature& feature, double height, Counts& counts)
 {
   const double under = feature.minHeight.value_or(0);
@@ -367,7 +369,7 @@ double GetMinHeight(const Feature& feature, double height, Counts& counts)
   return under < height ? under : 0;
 }
 
-// Where a width is given, points are square columns.
+// Returns a square of the width about a point.
 Polygon SquareAround(const Vec2& p, double width)
 {
   const double half = width / 2;
@@ -408,8 +410,8 @@ std::vector<Region> GetRegions(
   return regions;
 }
 
-// Of crowns, points along a line, a width apart and half of one from its ends. Throws where a wrong
-// coordinate, or a width of nothing, would make as many as memory holds.
+// Adds points of crowns along a line, one width apart and half a width from the ends of the line.
+// Throws Error if a wrong coordinate or width gives too many points.
 void AddAlong(const Ring& line, double width, Ring& points)
 {
   constexpr int most = 100000;
@@ -434,7 +436,7 @@ void AddAlong(const Ring& line, double width, Ring& points)
   }
 }
 
-// The crowns of trees and rows of trees: ellipsoids between base and height.
+// Adds the crowns of trees and rows of trees, as ellipsoids between base and height.
 void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
   const Terrain* terrain, Counts& counts, Part& crowns)
 {
@@ -464,8 +466,8 @@ void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
   }
 }
 
-// Adds an area or a solid, unless it lies beyond the terrain. A solid with a level roof stands on
-// the lowest point below it.
+// Adds an area or a solid, unless the region lies beyond the terrain. A solid with a level roof
+// stands on the lowest point of the terrain below the solid.
 void AddRegion(const Region& region, const Terrain* terrain, const FootprintOptions& options,
   double base, double height, const ExtrusionMaterials& materials, Counts& counts, Mesh& mesh)
 {
@@ -556,7 +558,7 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing)
 {
   const QuietGdal quiet;
-  // OSM of editors has negative ids, in any order.
+  // OSM files from editors have negative ids, in any order.
   const CPLConfigOptionSetter indexing("OSM_USE_CUSTOM_INDEXING", "NO", false);
   GDALAllRegister();
   RequireRegularNeighbours(object.file);

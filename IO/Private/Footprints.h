@@ -15,18 +15,17 @@
 namespace avianlidar::scene
 {
 /**
- * Reads the features of a `footprints` object and raises each feature to a part, or all features to
+ * Reads the features of a `footprints` object. Raises each feature to a part, or all features to
  * one part, in metres east, north and up of the origin. Positions in plan are exact on the
- * ellipsoid. Heights count from the tangent plane of the origin, so that level ground stays level
- * (at 3 km the tangent plane lies 0.7 m above the ellipsoid). Triangles have material ids of the
- * scene.
+ * ellipsoid. Heights count from the tangent plane of the origin, so that level ground is level (at
+ * 3 km the tangent plane lies 0.7 m above the ellipsoid). Triangles have material ids of the scene.
  *
  * On a terrain, a solid stands on the lowest point of the terrain below the solid. Flat areas,
  * lines and media follow the terrain. Areas beyond the terrain are left out.
  *
  * Sentences on repaired or skipped features and on assumed heights are added to `notes`. Throws
- * Error if the file cannot be read, no feature is left, or a feature has no height; and WorkStopped
- * if keepGoing returns false.
+ * Error if the file cannot be read, no feature is left, or a feature does not have a height. Throws
+ * WorkStopped if keepGoing returns false.
  */
 std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const Terrain* terrain,
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing);

@@ -13,11 +13,11 @@ namespace
 {
 constexpr std::uint64_t PointSize = 16;
 constexpr std::uint64_t LabelSize = 4;
-constexpr std::uint64_t LongPointSize = 20; // of other data sets
+constexpr std::uint64_t LongPointSize = 20; // size of a point in other data sets, bytes
 constexpr const char* LongPoints = "five float32 a point, as nuScenes has them: this is not a scan "
                                    "of KITTI, whose points have four";
 
-/// Whether the bytes may be points of five numbers, the last one a ring or a label.
+/// Returns whether the bytes may be points of five numbers, the last number a ring or a label.
 bool mayHaveFive(ByteSource& points)
 {
   bool may = points.size() % LongPointSize == 0;
@@ -28,11 +28,11 @@ bool mayHaveFive(ByteSource& points)
   return may;
 }
 
-/// FormatError if the numbers change less from one point to the next where points have another
-/// number of them than four: in a scan neighbours are near each other.
+/// Throws FormatError if another size of a point than four numbers gives smaller steps from point
+/// to point. Neighbouring points of a scan are near each other.
 void checkStride(ByteSource& points)
 {
-  constexpr std::uint64_t most = 1 << 14; // numbers that are looked at
+  constexpr std::uint64_t most = 1 << 14; // greatest number of numbers that are compared
   const std::uint64_t count = std::min<std::uint64_t>(points.size() / sizeof(float), most);
   constexpr std::uint64_t least = 200;
   if (count < least)
@@ -64,8 +64,8 @@ void checkStride(ByteSource& points)
   }
 }
 
-/// FormatError unless the fourth numbers of all points may be reflectances (0 to 1) or intensities
-/// (0 to 255): in files of other layouts coordinates are among them.
+/// Throws FormatError unless the fourth numbers of all points may be reflectances (0 to 1) or
+/// intensities (0 to 255). In files of other layouts, coordinates are among these numbers.
 void checkReflectance(double least, double greatest, ByteSource& points)
 {
   const bool fits = least >= 0.0 && greatest <= KittiGreatestIntensity;

@@ -23,10 +23,10 @@ namespace avianlidar::formats
 constexpr double KittiGreatestIntensity = 255.0; ///< intensity of the reflectance 1
 
 /// Reads a cloud, with the columns `semantic_label` and `instance_id` if `labels` is not null. If a
-/// reflectance is above 1, all are taken as intensities of 0 to 255, with a warning. Points that
-/// are not finite are left out, with a warning. Throws FormatError if the file does not have a
-/// whole number of points, has another layout (such as five numbers per point in nuScenes), or if
-/// points and labels differ in number.
+/// reflectance is above 1, all reflectances are taken as intensities of 0 to 255, with a warning.
+/// Points that are not finite are left out, with a warning. Throws FormatError if the file does not
+/// have a whole number of points, has another layout (such as five numbers per point in nuScenes),
+/// or if points and labels differ in number.
 Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing);
 }
 

@@ -6,7 +6,7 @@
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
  * (2019). The code writes version 1.4, point data record format 6, or 7 with colours. It reads
  * versions 1.0 to 1.4, formats 0 to 10, with extra bytes, and leaves out waveforms (formats 4, 5, 9
- * and 10). LAZ files have compressed point records and no waveforms, see LazFormat.h.
+ * and 10). LAZ files have compressed point records and no waveforms (LazFormat.h).
  *
  * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
  * finest scale of 10^-6, 10^-5, ... m that the extent of the cloud allows. The error is at most
@@ -29,13 +29,13 @@ constexpr std::size_t LasVlrHeaderSize = 54;
 constexpr std::size_t LasExtraBytesSize = 192;
 constexpr std::size_t LasLongestVlr = 65535;
 constexpr int LasMostReturns = 15;
-constexpr double LasGreatestCoordinate = 1e15; // m, about a tenth of a light year
-constexpr double LasScanAngleStep = 0.006;     // deg
-constexpr double LasIntensityStep = 1.0 / 257; // so that the intensity 255 is 65535
-constexpr std::size_t LasLongestName = 31;     // bytes
+constexpr double LasGreatestCoordinate = 1e15; // greatest coordinate, m (a tenth of a light year)
+constexpr double LasScanAngleStep = 0.006;     // unit of a stored scan angle, deg
+constexpr double LasIntensityStep = 1.0 / 257; // unit of a stored intensity: 65535 is intensity 255
+constexpr std::size_t LasLongestName = 31;     // greatest length of a name, bytes
 constexpr std::size_t LasMostExtraFields = LasLongestVlr / LasExtraBytesSize;
 
-// Arrays of fields of LAS that files of other sensors fill in and scans of this project do not.
+// Names of arrays for fields of LAS that only files of other sensors fill in.
 constexpr const char* LasClassification = "classification";
 constexpr const char* LasFlags = "classification_flags";
 constexpr const char* LasUserData = "user_data";
@@ -49,9 +49,9 @@ struct LasLayout
   bool extended = false;  ///< true for the formats 6 to 10
   std::size_t core = 0;   ///< length of the fields of the format, bytes
   std::size_t length = 0; ///< length of a record, bytes
-  int time = -1;          ///< offset of the time in a record, bytes; -1: none
-  int rgb = -1;           ///< offset of the colours, bytes; -1: none
-  int nir = -1;           ///< offset of the near infrared, bytes; -1: none
+  int time = -1;          ///< offset of the time in a record, bytes; -1 without time
+  int rgb = -1;           ///< offset of the colours, bytes; -1 without colours
+  int nir = -1;           ///< offset of the near infrared, bytes; -1 without this field
   bool waveforms = false; ///< whether the core ends with a waveform packet
 };
 
@@ -64,7 +64,7 @@ struct LasAxis
   double scale = 1e-6; ///< step between two integers, m or deg
   double offset = 0.0;
   double low = 0.0;  ///< lowest coordinate of the points as decoded, m or deg
-  double high = 0.0; ///< highest coordinate, m or deg
+  double high = 0.0; ///< highest coordinate of the points as decoded, m or deg
 
   std::int32_t encode(double coordinate) const;
   double decode(std::int32_t integer) const { return integer * this->scale + this->offset; }
@@ -123,12 +123,12 @@ struct LasOutput
   std::function<Point(std::int64_t)> position;
   /// Values of the fields of the core, in the units of the arrays; timestamps in s.
   std::array<std::function<double(std::int64_t)>, LasCoreSize> core;
-  std::function<double(std::int64_t, int)> colour; ///< red, green, blue, 0 to 255; empty: none
+  std::function<double(std::int64_t, int)> colour; ///< red, green, blue, 0 to 255, or empty
   bool compressed = false;                         ///< whether the file is LAZ
   bool simulated = false;                          ///< whether the points come from a simulation
   int sourceId = 0;                                ///< source id of the file
   std::string software;
-  std::string crs;         ///< coordinate reference system, WKT; empty: none
+  std::string crs;         ///< coordinate reference system, WKT; empty if unknown
   std::string description; ///< text of the text area, at most LasLongestVlr bytes
   std::vector<Field> extra;
 };

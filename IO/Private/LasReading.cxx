@@ -15,9 +15,9 @@ using Bytes = std::vector<unsigned char>;
 constexpr std::size_t ShortestHeader = 227;
 constexpr std::size_t EvlrHeaderSize = 60;
 constexpr std::uint64_t LongestText = 1 << 24;
-constexpr int WktFlag = 16; // of the global encoding
+constexpr int WktFlag = 16; // bit of the global encoding
 
-/// An array in the extra bytes.
+/// Array in the extra bytes.
 struct ExtraField
 {
   std::string name;
@@ -33,7 +33,7 @@ struct ExtraField
 struct Header
 {
   int minor = 0;
-  bool hasWkt = false; ///< it says so
+  bool hasWkt = false; ///< whether the header says that the system is WKT
   std::size_t size = 0;
   std::uint64_t points = 0;
   std::uint64_t data = 0;
@@ -43,7 +43,7 @@ struct Header
   std::array<LasAxis, 3> axes;
   LasLayout layout;
   bool compressed = false;
-  std::uint64_t room = 0; ///< bytes behind the begin of the points, unless compressed
+  std::uint64_t room = 0; ///< space for uncompressed points in the file, bytes
 };
 
 std::string textOf(const unsigned char* bytes, std::size_t length)
@@ -92,7 +92,7 @@ Header readHeader(ByteSource& source)
   {
     header.evlrsAt = load<std::uint64_t>(h.data() + 235);
     header.evlrs = load<std::uint32_t>(h.data() + 243);
-    // Some writers fill in the number of older versions alone.
+    // Some writers fill in only the number of points of older versions.
     const auto points = load<std::uint64_t>(h.data() + 247);
     header.points = points > 0 ? points : header.points;
   }
@@ -126,7 +126,7 @@ std::string unitOf(const std::string& description)
     : std::string();
 }
 
-/// Arrays of several components: "direction [0]", "direction [1]", ... become "direction".
+/// Joins components: the fields "direction [0]", "direction [1]", ... become "direction".
 void joinComponents(std::vector<ExtraField>& fields)
 {
   std::vector<ExtraField> joined;
@@ -149,7 +149,7 @@ void joinComponents(std::vector<ExtraField>& fields)
   fields = std::move(joined);
 }
 
-/// The arrays that a record of extra bytes describes; what it does not say (type 0) is passed over.
+/// Reads the arrays that a record of extra bytes describes. Ignores undescribed bytes (type 0).
 void readExtraFields(const Bytes& content, const LasLayout& layout, std::vector<ExtraField>& fields)
 {
   constexpr Scalar types[] = { Scalar::UInt8, Scalar::Int8, Scalar::UInt16, Scalar::Int16,
@@ -190,7 +190,7 @@ void readExtraFields(const Bytes& content, const LasLayout& layout, std::vector<
   joinComponents(fields);
 }
 
-/// What the variable-length records say of the points.
+/// Contents of the variable-length records.
 struct Records
 {
   std::vector<ExtraField> fields;
@@ -223,7 +223,7 @@ void takeRecord(const std::string& user, int record, const Bytes& content, const
   }
 }
 
-/// Variable-length records, and the extended ones of 1.4 behind the points.
+/// Reads the variable-length records, and the extended records after the points of version 1.4.
 Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
 {
   Records records;
@@ -240,7 +240,7 @@ Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
     {
       throw FormatError("an extended variable-length record is longer than the file");
     }
-    // Waveforms, say, are long and none of ours.
+    // Long records, such as waveforms, are not needed.
     takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
       source.bytes(at + size, length <= LongestText ? length : 0), header.layout, cloud, records);
     at += size + length;
@@ -248,8 +248,8 @@ Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
   return records;
 }
 
-/// The system of the points: a text, or keys of GeoTIFF, which count where both are there and the
-/// header does not say that the text does.
+/// Finds the system of the points, from WKT or GeoTIFF keys. If a file has WKT and keys, the header
+/// says whether the WKT is valid.
 void findSystem(const Header& header, const Records& records, Cloud& cloud)
 {
   if (!records.keys.empty() && (cloud.crs.empty() || !header.hasWkt))
@@ -258,18 +258,18 @@ void findSystem(const Header& header, const Records& records, Cloud& cloud)
     cloud.crs = wkt.empty() ? cloud.crs : wkt;
     if (cloud.crs.empty())
     {
-      cloud.warnings.emplace_back("its GeoTIFF keys name no coordinate system that GDAL knows");
+      cloud.warnings.emplace_back("GDAL cannot read the coordinate system of its GeoTIFF keys");
     }
   }
   const std::string unit = foreignUnitOf(cloud.crs);
   if (!unit.empty())
   {
     cloud.warnings.push_back(
-      "its coordinates are not in metres but in " + unit + ", and stay as they are");
+      "its coordinates are not in metres but in " + unit + ", and are not converted");
   }
 }
 
-/// The columns of a cloud, all zeros, and how a record fills them.
+/// Columns of a cloud, at first all zeros, and the functions that fill the columns from a record.
 class Columns
 {
 public:
@@ -335,8 +335,8 @@ public:
     }
   }
 
-  /// Colours of 16 bits become 8. The specification wants 8-bit colours as c * 256; some writers
-  /// leave them as they are, so no channel of the file is above 255.
+  /// Converts colours of 16 bits to 8 bits. The specification stores 8-bit colours as c * 256. Some
+  /// writers store c instead, and then no channel of the file is above 255.
   void finish()
   {
     if (!this->Rgb)
@@ -354,7 +354,7 @@ public:
   }
 
 private:
-  /// @param value of a record and a component
+  /// @param value function that gives the value of a record and a component
   template <class F>
   void add(const std::string& name, const std::string& unit, F value, int components = 1)
   {
@@ -401,14 +401,14 @@ private:
 
   Cloud& To;
   std::size_t Size;
-  std::optional<std::size_t> Rgb; ///< column
+  std::optional<std::size_t> Rgb; ///< index of the column of colours
   std::vector<std::function<void(std::size_t, const unsigned char*)>> Fill;
 };
 }
 
 LasLayout layoutOf(int format, std::size_t length)
 {
-  // Bytes of the core, and where time, colours and near infrared are.
+  // Size of the core, and offsets of time, colours and near infrared, bytes.
   struct Place
   {
     std::size_t core;

@@ -23,7 +23,7 @@ void put(Bytes& bytes, std::size_t at, T value)
   store(value, bytes.data() + at);
 }
 
-/// As much of a text in UTF-8 as so many bytes hold: whole characters.
+/// Returns the whole characters of a text in UTF-8 that `length` bytes can hold.
 std::string cutText(const std::string& text, std::size_t length)
 {
   const auto continues = [&](std::size_t i)
@@ -35,7 +35,7 @@ std::string cutText(const std::string& text, std::size_t length)
   return text.substr(0, length);
 }
 
-/// The text from there on, cut to the length, the rest zeros.
+/// Writes a text from the byte `at` on, cut to `length` bytes. The bytes must be zeros before.
 void putText(Bytes& bytes, std::size_t at, std::size_t length, const std::string& text)
 {
   const std::string whole = cutText(text, length);
@@ -47,7 +47,7 @@ void append(Bytes& to, const Bytes& more)
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// A variable-length record: its header and what it holds.
+/// Returns a variable-length record, with header and contents.
 Bytes makeVlr(int record, const char* user, const char* description, const Bytes& content)
 {
   if (content.size() > LasLongestVlr)
@@ -63,7 +63,7 @@ Bytes makeVlr(int record, const char* user, const char* description, const Bytes
   return vlr;
 }
 
-/// Type codes of extra bytes, in the order of Scalar.
+/// Returns the code of a type in the record of extra bytes.
 int typeCode(Scalar type)
 {
   constexpr int codes[] = { 2, 1, 4, 3, 6, 5, 8, 7, 9, 10 };
@@ -172,7 +172,7 @@ Bytes makeHeader(
   return header;
 }
 
-/// What the arrays of a scan are, in a few words.
+/// Returns a description of an array of this project in a few words.
 const char* wordsFor(const std::string& name)
 {
   for (const vtkAvianLidarArrays::Name& known : vtkAvianLidarArrays::CloudArrays)
@@ -217,7 +217,7 @@ LasAxis chooseAxis(double low, double high)
   LasAxis axis;
   axis.offset = std::nearbyint(0.5 * (low + high));
   const double reach = std::max(high - axis.offset, axis.offset - low);
-  // Scales are 1 / 10^k as long as they can: the double nearest to 1e-5, say, as readers expect it.
+  // Scales below 1 are computed as 1 / 10^k, which gives the double nearest to 1e-5, for example.
   for (int k = 6; reach > axis.scale * (GreatestInteger - 1.0); --k)
   {
     axis.scale = k > 0 ? 1.0 / std::pow(10.0, k - 1) : axis.scale * 10.0;
@@ -269,7 +269,7 @@ void writeLas(
   };
   if (!output.crs.empty())
   {
-    // The text ends with a zero.
+    // The WKT ends with a zero byte.
     add(2112, "LASF_Projection", "OGC coordinate system WKT",
       Bytes(output.crs.c_str(), output.crs.c_str() + output.crs.size() + 1));
   }

@@ -23,10 +23,10 @@ namespace
 {
 using Bytes = std::vector<unsigned char>;
 
-constexpr std::size_t HeaderSize = 227; // of LAS 1.2
-constexpr std::size_t ItemsAt = 34;     // in the record of the compression
+constexpr std::size_t HeaderSize = 227; // size of the header of LAS 1.2, bytes
+constexpr std::size_t ItemsAt = 34;     // offset of the items in the compression's record, bytes
 constexpr std::size_t ItemSize = 6;
-constexpr std::size_t CoreLayers = 9; // of formats 6 and above
+constexpr std::size_t CoreLayers = 9; // number of layers of the core in formats 6 and above
 constexpr std::uint64_t BytesPerRead = 1 << 16;
 constexpr std::uint32_t AnySize = 0xFFFFFFFF;
 
@@ -43,7 +43,7 @@ void require(bool sound)
   }
 }
 
-/// LASzip's reader or writer.
+/// Reader or writer of LASzip.
 class Laszip
 {
 public:
@@ -56,7 +56,7 @@ public:
   }
   ~Laszip()
   {
-    // What is not open says so, and no more.
+    // Closing a reader or writer that is not open has no effect.
     laszip_close_reader(this->Handle);
     laszip_close_writer(this->Handle);
     laszip_destroy(this->Handle);
@@ -93,7 +93,7 @@ private:
   laszip_POINTER Handle = nullptr;
 };
 
-/// A header of the same length as the file's that has what LASzip needs, and nothing else.
+/// Returns a header as long as the file's header, with only the entries that LASzip needs.
 Bytes headerFor(const LazPoints& points)
 {
   Bytes header(points.begin);
@@ -115,7 +115,7 @@ Bytes headerFor(const LazPoints& points)
   return header;
 }
 
-/// The file as LASzip reads it: that header, and what follows the file's own.
+/// File as LASzip reads it: the header of headerFor(), and the bytes after the file's own header.
 class Input : public std::streambuf
 {
 public:
@@ -128,7 +128,7 @@ public:
     this->show();
   }
 
-  /// Reads on there, and up to the limit.
+  /// Continues reading at the offset `at`, up to the offset `limit`.
   void enter(std::uint64_t at, std::uint64_t limit)
   {
     this->setg(nullptr, nullptr, nullptr);
@@ -180,11 +180,12 @@ private:
 
   ByteSource& Source;
   Bytes Block;
-  std::uint64_t End; ///< of the block, in the file
+  std::uint64_t End; ///< offset of the end of the block in the file, bytes
   std::uint64_t Limit;
 };
 
-/// The record of the compression is LASzip's own for such points; versions may differ.
+/// Throws FormatError unless the record of the compression is equal to the record that LASzip
+/// writes for such points. Versions may differ.
 void checkRecord(const LazPoints& points)
 {
   const Bytes own = lazRecordOf(points.layout);
@@ -193,7 +194,7 @@ void checkRecord(const LazPoints& points)
   const auto word = [](const Bytes& bytes, std::size_t at)
   { return load<std::uint16_t>(bytes.data() + at); };
   const auto same = [&](std::size_t at) { return word(record, at) == word(own, at); };
-  // Old formats were compressed without chunks first.
+  // Early files of the old formats do not have chunks.
   require(same(0) || (!points.layout.extended && word(record, 0) == 1));
   require(same(2) && same(ItemsAt - 2));
   for (std::size_t at = ItemsAt; at < own.size(); at += ItemSize)
@@ -203,11 +204,11 @@ void checkRecord(const LazPoints& points)
   }
 }
 
-/// A run of points that are compressed on their own.
+/// Points that are compressed together.
 struct Chunk
 {
   std::uint64_t points = 0;
-  std::uint64_t end = 0; ///< in the file, at most
+  std::uint64_t end = 0; ///< greatest offset of the end in the file, bytes
 };
 
 class Chunks
@@ -222,14 +223,14 @@ public:
   {
     if (load<std::uint16_t>(points.record.data()) == 1)
     {
-      this->Size = 0; // one
+      this->Size = 0; // one chunk
       return;
     }
     this->Begin += 8;
     this->End = this->number<std::uint64_t>(points.begin);
     if (this->End == ~std::uint64_t{ 0 })
     {
-      // Written to a pipe, the place of the table is at the end.
+      // The offset of the table stands at the end if the file was written to a pipe.
       require(source.size() >= 8);
       this->End = this->number<std::uint64_t>(source.size() - 8);
     }
@@ -242,8 +243,8 @@ public:
     {
       if (!points.layout.extended)
       {
-        throw FormatError("its compressed points are in chunks of several sizes, which is read of "
-                          "the point data record formats 6 to 8 only");
+        throw FormatError("its compressed points are in chunks of several sizes, which are read "
+                          "only in the point data record formats 6 to 8");
       }
       this->Size = AnySize;
     }
@@ -254,15 +255,15 @@ public:
   }
 
   std::uint64_t begin() const { return this->Begin; }
-  /// Where the last chunk must end; not known where there is but one.
+  /// Returns whether the last chunk may end at an offset. The end of a single chunk is not known.
   bool endsAt(std::uint64_t at) const { return this->Size == 0 || at == this->End; }
 
-  /// The chunk that begins there, with so many points left.
+  /// Returns the chunk that begins at the offset `begin`, if `left` points are left.
   Chunk at(std::uint64_t begin, std::uint64_t left)
   {
     const LasLayout& layout = this->Points.layout;
     Chunk chunk{ this->Size == 0 ? left : std::min<std::uint64_t>(left, this->Size), this->End };
-    std::uint64_t at = begin + layout.length; // behind its first point
+    std::uint64_t at = begin + layout.length; // offset after the first point
     if (!layout.extended)
     {
       this->checkDecoder(at);
@@ -295,16 +296,17 @@ private:
     return load<T>(this->Source.bytes(at, sizeof(T)).data());
   }
 
-  /// No encoder begins so, and the decoder would look beyond its tables.
+  /// Throws FormatError if a decoder would begin with 0xFFFFFFFF. Encoders do not write this value,
+  /// and decoders would read beyond their tables.
   void checkDecoder(std::uint64_t at) { require(this->number<std::uint32_t>(at) != 0xFFFFFFFF); }
 
   ByteSource& Source;
   const LazPoints& Points;
-  std::uint32_t Size; ///< points of a chunk; 0: all in one
+  std::uint32_t Size; ///< number of points of a chunk, or 0 for a single chunk
   std::uint64_t Begin, End;
 };
 
-/// The record of a point. laszip_point begins as the old formats do.
+/// Writes the record of a point. A laszip_point begins as a record of the old formats.
 void pack(const laszip_point& point, const LasLayout& layout, unsigned char* to)
 {
   std::memcpy(to, &point, 20);
@@ -312,7 +314,7 @@ void pack(const laszip_point& point, const LasLayout& layout, unsigned char* to)
   {
     to[14] = static_cast<unsigned char>(
       point.extended_return_number | point.extended_number_of_returns << 4);
-    to[15] = point.extended_classification_flags; // without channel and direction, read by nobody
+    to[15] = point.extended_classification_flags; // channel and direction are not needed
     to[16] = point.extended_classification;
     to[17] = point.user_data;
     store(point.extended_scan_angle, to + 18);
@@ -330,14 +332,14 @@ void pack(const laszip_point& point, const LasLayout& layout, unsigned char* to)
   std::copy_n(point.extra_bytes, layout.length - layout.core, to + layout.core);
 }
 
-/// The same the other way round, of formats 6 and 7.
+/// Reads the record of a point of formats 6 and 7 into a laszip_point.
 void unpack(const unsigned char* from, const LasLayout& layout, laszip_point& point)
 {
   std::memcpy(&point, from, 14);
   point.extended_return_number = from[14] & 15;
   point.extended_number_of_returns = from[14] >> 4;
   point.extended_classification_flags = from[15] & 15;
-  // LASzip wants the flags of the old formats to be the same.
+  // LASzip requires that the flags of the old formats agree.
   point.synthetic_flag = from[15] & 1;
   point.keypoint_flag = (from[15] >> 1) & 1;
   point.withheld_flag = (from[15] >> 2) & 1;
@@ -353,7 +355,7 @@ void unpack(const unsigned char* from, const LasLayout& layout, laszip_point& po
   std::copy_n(from + layout.core, layout.length - layout.core, point.extra_bytes);
 }
 
-/// The file as LASzip writes it. It looks at no failure: the first one is kept for check().
+/// File as LASzip writes it. LASzip ignores failures, so the first failure is kept for check().
 class Output : public std::streambuf
 {
 public:
@@ -386,7 +388,7 @@ protected:
     return traits_type::not_eof(c);
   }
 
-  /// Asked only where it is.
+  /// Returns the current offset. LASzip calls this function only to find the offset.
   pos_type seekoff(off_type, std::ios_base::seekdir, std::ios_base::openmode) override
   {
     return static_cast<off_type>(this->At);
@@ -430,7 +432,7 @@ void checkLaz(ByteSource& source, const LazPoints& points)
     require(points.begin >= HeaderSize + LasVlrHeaderSize + points.record.size() &&
       points.begin <= source.size());
     Chunks(source, points);
-    // headerFor(), and LASzip's own.
+    // Two headers: the result of headerFor(), and LASzip's copy.
     requireMemory(static_cast<double>(points.begin), "bytes before the points", 2.0 * points.begin);
   }
 }
@@ -445,7 +447,7 @@ void forEachLazRecord(ByteSource& source, const LazPoints& points,
   Chunks chunks(source, points);
   Input input(source, points);
   std::istream stream(&input);
-  stream.exceptions(std::ios_base::badbit); // LASzip catches them
+  stream.exceptions(std::ios_base::badbit); // LASzip catches the exceptions
   Laszip laszip;
   laszip_BOOL compressed = 0;
   laszip.check(laszip_open_reader_stream(laszip, stream, &compressed));

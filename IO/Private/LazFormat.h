@@ -8,9 +8,10 @@
  * functions throw FormatError.
  *
  * Sources: laszip_api.h and the chunks and chunk tables in files of LASzip 3. The code reads chunks
- * of one size and, for formats 6 to 8, of several sizes (COPC). LASzip trusts sizes in a file, so
- * these are first compared with the length of the file: in the record of the compression, the table
- * of chunks, the layers of each chunk and the first bytes of each decoder.
+ * of one size and, for formats 6 to 8, of several sizes (COPC). LASzip does not check the sizes in
+ * a file. The code therefore first compares the sizes with the length of the file, in the record of
+ * the compression, the table of chunks, the layers of each chunk and the first bytes of each
+ * decoder.
  */
 #ifndef AvianLidarLazFormat_h
 #define AvianLidarLazFormat_h
@@ -34,8 +35,8 @@ struct LazPoints
   std::vector<unsigned char> record; ///< variable-length record of the compression
 };
 
-/// Throws FormatError if the points are damaged or cut short, as far as this can be found before
-/// memory is allocated for the points, or if the build has no LASzip.
+/// Throws FormatError if the build has no LASzip, or if the points are damaged or cut short. Finds
+/// only damage that shows before memory is allocated for the points.
 void checkLaz(ByteSource& source, const LazPoints& points);
 
 /// Calls take(i, bytes) for each record of points that passed checkLaz(). Throws FormatError if a
@@ -46,8 +47,8 @@ void forEachLazRecord(ByteSource& source, const LazPoints& points,
 /// Returns the contents of the variable-length record for points that are written, formats 6 and 7.
 std::vector<unsigned char> lazRecordOf(const LasLayout& layout);
 
-/// Writes `count` records, which make(i, bytes) fills, from the offset `begin` on, the end of the
-/// file so far.
+/// Writes `count` records from the offset `begin` on, which must be the end of the file so far. The
+/// function make(i, bytes) fills record i.
 void writeLazRecords(OutputFile& file, std::uint64_t begin, const LasLayout& layout,
   std::int64_t count, const std::function<void(std::int64_t, unsigned char*)>& make);
 }

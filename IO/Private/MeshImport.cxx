@@ -41,7 +41,8 @@ std::string Program()
     "/avianlidar/mesh-reader";
 }
 
-/// The number that a variable of the environment gives.
+/// Returns the number that an environment variable gives, or `otherwise` if the variable is not
+/// set.
 double Limit(const char* variable, double otherwise)
 {
   const char* text = std::getenv(variable);
@@ -59,17 +60,17 @@ double Limit(const char* variable, double otherwise)
   return number;
 }
 
-/// Bytes as the program's argument: 0 for no limit.
+/// Returns the limit of memory as the program's argument, bytes, or 0 for no limit.
 std::string MostData()
 {
-  constexpr double share = 0.9; // the rest is for this process
+  constexpr double share = 0.9; // share of the program, leaving memory for this process
   constexpr double gigabyte = 1e9;
   const double bytes =
     Limit("AVIANLIDAR_MESH_GIGABYTES", share * availableMemory() / gigabyte) * gigabyte;
   return std::to_string(bytes < 1e18 ? static_cast<std::uint64_t>(bytes) : 0);
 }
 
-/// Starts a program whose output goes to the descriptor. Returns 0, or the number of the error.
+/// Starts a program whose output is written to the descriptor. Returns 0, or the error number.
 int Start(const std::vector<std::string>& words, int output, pid_t& pid)
 {
   std::vector<char*> arguments;
@@ -98,12 +99,12 @@ int Start(const std::vector<std::string>& words, int output, pid_t& pid)
   return error;
 }
 
-/// The program that reads a mesh.
+/// Process of the program that reads a mesh.
 class MeshReaderProcess
 {
 public:
-  /// Starts the program on a file. Throws Error if it cannot be started or if a limit is not a
-  /// number above 0. @param keepGoing called about ten times a second while Read() waits
+  /// Starts the program on a file. Throws Error if the program cannot be started or if a limit is
+  /// not a number above 0. @param keepGoing called about ten times a second while Read() waits
   MeshReaderProcess(const std::string& file, const std::function<bool()>& keepGoing)
     : Library(IsVtkFile(file) ? "VTK" : "Assimp")
     , KeepGoing(keepGoing)
@@ -144,8 +145,8 @@ public:
   MeshReaderProcess(const MeshReaderProcess&) = delete;
   MeshReaderProcess& operator=(const MeshReaderProcess&) = delete;
 
-  /// Reads the next bytes that the program sends. Throws Error if it ends before that or if its
-  /// time is over, and WorkStopped if keepGoing returns false.
+  /// Reads the next bytes that the program sends. Throws Error if the program ends early or exceeds
+  /// its time. Throws WorkStopped if keepGoing returns false.
   void Read(void* bytes, std::size_t size)
   {
     for (std::size_t got = 0; got < size;)
@@ -164,10 +165,10 @@ public:
   }
 
 private:
-  /// Waits until there are bytes to read or the pipe is closed.
+  /// Waits until bytes can be read or the pipe is closed.
   void Wait()
   {
-    constexpr int pause = 100; // ms
+    constexpr int pause = 100; // time between calls of KeepGoing, ms
     pollfd wanted{ this->Pipe, POLLIN, 0 };
     while (poll(&wanted, 1, pause) <= 0)
     {
@@ -194,12 +195,12 @@ private:
       ended = waitpid(this->Pid, &status, 0);
     } while (ended < 0 && errno == EINTR);
     this->Pid = -1;
-    // The status is not known if this process ignores SIGCHLD.
+    // The program's status is unknown if this process ignores SIGCHLD.
     if (ended <= 0 || !WIFSIGNALED(status))
     {
-      return "its program ended without a word";
+      return "the program that reads meshes ended early";
     }
-    // The reader has the limits of this process; libraries crash where memory ends, too.
+    // The program has the limits of this process, and libraries may crash if memory runs out.
     rlimit addresses{};
     const bool isLimited =
       getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY;
@@ -215,9 +216,9 @@ private:
   int Pipe = -1;
 };
 
-// The axis that points up after Assimp's reading: it turns Collada, 3DS, IFC and DXF to y, and the
-// specifications of glTF, AC3D, FBX and X3D say y. The others say nothing: z, as everywhere in
-// surveying.
+// Returns the axis that points up after reading. Assimp turns Collada, 3DS, IFC and DXF to y. The
+// specifications of glTF, AC3D, FBX and X3D require y. Other formats do not give the axis, and z is
+// taken, as is usual in surveying.
 char UpAxis(const std::string& file)
 {
   const std::string ending = EndingOf(UncompressedName(file));

@@ -13,11 +13,11 @@
 namespace avianlidar::scene
 {
 /**
- * Reads a mesh: VTK's formats (MeshFormats.h) with VTK, all others with Assimp. Files that Assimp
- * reads may be compressed, with the extension ".gz". Polygons are triangulated, transformations of
- * a scene graph are applied in double precision, and vertices with identical coordinates are merged
- * over all parts of the file. The material of a triangle is an index in materialNames. Colours are
- * not read.
+ * Reads a mesh: VTK's formats (MeshFormats.h) with VTK, all other formats with Assimp. Files that
+ * Assimp reads may be compressed, with the extension ".gz". Polygons are triangulated.
+ * Transformations of a scene graph are applied in double precision. Vertices with identical
+ * coordinates are merged over all parts of the file. The material of a triangle is an index in
+ * materialNames. Colours are not read.
  *
  * VTK and Assimp run in a separate program, `avianlidar/mesh-reader` beside the library that
  * contains this code. A file on which the program crashes, never ends or takes all memory therefore
@@ -28,11 +28,11 @@ namespace avianlidar::scene
  * |---------------------------|---------------------|---------------------------------|
  * | AVIANLIDAR_MESH_SECONDS   | most time, s        | 3600                            |
  * | AVIANLIDAR_MESH_GIGABYTES | most memory, GB     | nine tenths of available memory |
- * | AVIANLIDAR_MESH_READER    | path of the program | the one beside the library      |
+ * | AVIANLIDAR_MESH_READER    | path of the program | program beside the library      |
  *
  * Throws Error if the file cannot be read, contains no triangle, or has a coordinate that is not
- * finite; std::bad_alloc if the memory does not suffice; and WorkStopped if keepGoing returns
- * false. The function keepGoing is called about ten times a second.
+ * finite. Throws std::bad_alloc if the memory does not suffice. Throws WorkStopped if keepGoing
+ * returns false. The function keepGoing is called about ten times a second.
  */
 Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing);
 

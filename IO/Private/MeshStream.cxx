@@ -13,7 +13,7 @@ constexpr char IsMesh = 'm';
 constexpr char IsError = 'e';
 constexpr char IsNoMemory = 'n';
 
-/// Writes a value, or how many values a vector or a string has, and these.
+/// Writes a value, or the number of values of a vector or a string and then the values.
 struct Sender
 {
   const WriteBytes& write;
@@ -40,7 +40,8 @@ struct Sender
   }
 };
 
-/// Reads the same. Memory grows with what arrives: a count from a damaged process asks for none.
+/// Reads the values that Sender writes. Memory grows only with received bytes, because the number
+/// of values from a crashing program may be wrong.
 struct Receiver
 {
   const ReadBytes& read;
@@ -77,7 +78,7 @@ struct Receiver
   }
 };
 
-/// All of a mesh, to or from a stream.
+/// Passes all members of a mesh to or from a stream.
 template <class Stream, class AnyMesh>
 void Pass(const Stream& stream, AnyMesh& mesh)
 {

@@ -4,7 +4,8 @@
  * @brief Messages from the program that reads meshes: a mesh, or the reason why a mesh cannot be
  * read.
  *
- * Sender and receiver run on one machine and are built together, so numbers are sent as in memory.
+ * Numbers are sent as in memory, because sender and receiver run on one machine and are built
+ * together.
  */
 #ifndef AvianLidarMeshStream_h
 #define AvianLidarMeshStream_h

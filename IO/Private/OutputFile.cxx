@@ -18,10 +18,12 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// So many may write one file at the same time: the last that ends gives it its content.
+/// Greatest number of writers of one file at the same time. The writer that ends last gives the
+/// contents.
 constexpr int MostParts = 16;
 
-/// Opens a part and locks it: its descriptor, or -1, also if another writer has it.
+/// Opens and locks a part. Returns the descriptor, or -1 on failure or if another writer holds the
+/// part.
 int hold(const std::string& part, int flags, unsigned int mode)
 {
   const int file =
@@ -30,10 +32,10 @@ int hold(const std::string& part, int flags, unsigned int mode)
   {
     return -1;
   }
-  // Some file systems have no locks. There a part that is made here counts as locked.
+  // Some file systems do not have locks. On such file systems a newly made part counts as locked.
   const bool isLocked =
     flock(file, LOCK_EX | LOCK_NB) == 0 || ((flags & O_EXCL) && errno != EWOULDBLOCK);
-  // Its writer may have ended, or another one may have removed it, before it was locked.
+  // Before the lock, another writer may have renamed or removed the part.
   struct stat locked = {}, named = {};
   if (isLocked && fstat(file, &locked) == 0 && lstat(part.c_str(), &named) == 0 &&
     locked.st_dev == named.st_dev && locked.st_ino == named.st_ino)
@@ -44,7 +46,7 @@ int hold(const std::string& part, int flags, unsigned int mode)
   return -1;
 }
 
-/// Exchanges the names of two files; false where the file system cannot do so.
+/// Exchanges the names of two files. Returns false if the file system cannot exchange names.
 bool exchangeNames(const std::string& one, const std::string& two)
 {
   return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, two.c_str(), RENAME_EXCHANGE) == 0;
@@ -60,7 +62,7 @@ OutputFile::OutputFile(const std::string& name)
   : Name(name)
 {
   std::error_code ignored;
-  // What a link leads to is written, not the link itself.
+  // The target of a symbolic link is replaced, not the link.
   constexpr int mostLinks = 40;
   for (int i = 0; i < mostLinks && fs::is_symlink(this->Name, ignored); ++i)
   {
@@ -77,7 +79,7 @@ OutputFile::OutputFile(const std::string& name)
   {
     const std::string part = this->Name + ".avianpart" + std::to_string(i);
     const int abandoned = hold(part, 0, 0);
-    if (abandoned >= 0) // its writer was killed
+    if (abandoned >= 0) // the writer of the part was killed
     {
       std::remove(part.c_str());
       close(abandoned);
@@ -161,7 +163,7 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 
 void OutputFile::finish()
 {
-  // What was buffered may fail only now, and on some file systems when a descriptor is closed.
+  // Writing of buffered bytes may fail here or, on some file systems, when a descriptor is closed.
   if (std::fflush(this->File) != 0 || close(dup(fileno(this->File))) != 0)
   {
     fail("cannot be written to its end");

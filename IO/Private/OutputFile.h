@@ -3,11 +3,11 @@
  * @file OutputFile.h
  * @brief Writes a file as a whole or not at all.
  *
- * Bytes are written to a temporary file in the same folder, the part (the name of the file with
- * .avianpart and a number). commit() gives the part the name of the file. Without commit() the part
- * is removed, and an older file of that name stays as it was. A part is locked (flock) while it is
- * written. The part of a killed process is not locked, and the next OutputFile of the same name
- * removes this part.
+ * Bytes are written to a temporary file in the same folder, called the part. The name of the part
+ * is the name of the file with .avianpart and a number. commit() gives the part the name of the
+ * file. Without commit() the part is removed and an older file of that name is unchanged. A part is
+ * locked (flock) while it is written. The part of a killed process is not locked. The next
+ * OutputFile of the same name removes such a part.
  */
 #ifndef AvianLidarOutputFile_h
 #define AvianLidarOutputFile_h
@@ -39,15 +39,16 @@ public:
   /// failure.
   void seek(std::uint64_t at);
 
-  /// True if the other file has the same name.
+  /// Returns whether the other file has the same name.
   bool isSameAs(const OutputFile& other) const;
 
-  /// Ends the part and gives it the name of the file. The part gets the permissions of the file
-  /// that it replaces.
+  /// Ends the part and gives the part the name of the file, and the permissions of the file that
+  /// the part replaces.
   void commit();
 
-  /// Commits two files, or throws FormatError and commits neither. If the file system cannot
-  /// exchange two names, the first file may already be replaced, and the error says so.
+  /// Commits two files, or throws FormatError and commits no file. If the file system cannot
+  /// exchange two names, the first file may already be replaced. The error then names the replaced
+  /// file.
   static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:
@@ -57,7 +58,7 @@ private:
 
   std::string Name;
   std::string Part;
-  std::FILE* File = nullptr; ///< the part, locked until it is renamed or removed
+  std::FILE* File = nullptr; ///< stream of the part, locked until the part is renamed or removed
   unsigned int Mode = 0;     ///< st_mode of the file that is replaced; 0 without such a file
 };
 }

@@ -7,7 +7,7 @@
  * with Ethernet, Linux's cooked capture, BSD's loopback or raw IP. The code reads UDP over IPv4
  * with 1206 bytes, to port 2368, or to another port if the bytes have the blocks of a Velodyne's
  * packet. Other traffic is ignored. Sources: draft-ietf-opsawg-pcap and draft-ietf-opsawg-pcapng;
- * Velodyne, "VLP-16 User Manual", 63-9243 (second-hand; a real revolution agrees).
+ * Velodyne, "VLP-16 User Manual", 63-9243 (second-hand, but checked with a real revolution).
  *
  * A sensor is identified by the address from which it sends and the port to which it sends. Packets
  * are taken in the order of the sensor's clock.
@@ -34,17 +34,17 @@ struct PacketIndex
     double time; ///< time, s since the full hour before the first packet; rising
   };
   std::vector<std::uint64_t> packets; ///< offset in the file of each payload, bytes
-  std::vector<Turn> turns;            ///< begins of the revolutions, at least one
-  std::string warning;                ///< sentence on packets left out; empty: none
+  std::vector<Turn> turns;            ///< starts of the revolutions, at least one
+  std::string warning;                ///< sentence on packets left out, or empty
 };
 
 /// Returns whether a source begins like a pcap or pcapng file.
 bool hasPackets(ByteSource& source);
 
 /// Finds the packets of one sensor: "192.168.1.201", "192.168.1.201:2368", or empty if the file has
-/// only one sensor. Leaves out and counts damaged packets; a warning also says where a file is cut
-/// short. Throws FormatError if the file is not pcap or pcapng, has no whole packet of a VLP-16, or
-/// has no or several sensors that fit.
+/// only one sensor. Leaves out damaged packets. The warning gives the number of damaged packets and
+/// the place where the file is cut short. Throws FormatError if the file is not pcap or pcapng, has
+/// no whole packet of a VLP-16, or if not exactly one sensor fits.
 PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const KeepGoing& keepGoing);
 
 /// Reads one revolution with the columns `intensity` (0 to 255), `laser_id` (0 is the lowest),

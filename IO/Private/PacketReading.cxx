@@ -13,23 +13,23 @@ namespace avianlidar::formats
 namespace
 {
 constexpr std::uint64_t PayloadSize = 1206;
-constexpr std::uint32_t SectionBlock = 0x0A0D0D0A; // of pcapng, the same in either byte order
+constexpr std::uint32_t SectionBlock = 0x0A0D0D0A; // type of a block, in either byte order
 constexpr std::uint64_t UdpSize = 8;
-constexpr std::uint64_t MostBeforePayload = 128; // Ethernet with tags, IP with options, UDP
+constexpr std::uint64_t MostBeforePayload = 128; // greatest size of all headers, bytes
 constexpr unsigned DataPort = 2368;
 constexpr int BlocksPerPacket = 12;
 constexpr int BytesPerBlock = 100;
 constexpr int Lasers = 16;
 constexpr std::size_t PointsPerPacket = BlocksPerPacket * 2 * Lasers;
-constexpr std::size_t PacketsPerCall = 256; // of KeepGoing
+constexpr std::size_t PacketsPerCall = 256; // number of packets between calls of KeepGoing
 constexpr unsigned DualReturn = 0x39;
-constexpr int FullTurn = 36000;       // 0.01 deg
-constexpr int LargestGap = 300;       // above, packets are missing: 20 turns a second are 80
-constexpr double LaserTime = 2.304;   // us from one laser to the next
-constexpr double FiringTime = 55.296; // us from one firing sequence to the next
-constexpr double HourTime = 3.6e9;    // us, after which the sensor's clock begins again
-constexpr double LeastStep = 1e-6;    // s, so that the times of steps rise
-constexpr double GreatestDelay = 1e6; // us, of a packet that comes late
+constexpr int FullTurn = 36000;       // azimuth of a revolution, 0.01 deg
+constexpr int LargestGap = 300;       // greatest step of the azimuth, 0.01 deg (80 at 20 Hz)
+constexpr double LaserTime = 2.304;   // time from one laser to the next, us
+constexpr double FiringTime = 55.296; // time from one firing sequence to the next, us
+constexpr double HourTime = 3.6e9;    // period of the sensor's clock, us
+constexpr double LeastStep = 1e-6;    // least difference of the times of steps, s
+constexpr double GreatestDelay = 1e6; // greatest delay of a packet, us
 
 unsigned bigEndian16(const unsigned char* bytes)
 {
@@ -58,10 +58,11 @@ bool isPcap(std::uint32_t magic)
   return magic == 0xA1B2C3D4 || magic == 0xD4C3B2A1 || magic == 0xA1B23C4D || magic == 0x4D3CB2A1;
 }
 
-/// Where the IPv4 header begins in a packet of that link type, or beyond it.
+/// Returns the offset of the IPv4 header in a packet of a link type, bytes, or at least `size` if
+/// the packet does not have an IPv4 header.
 std::uint64_t beginOfIp(std::uint32_t link, const unsigned char* bytes, std::uint64_t size)
 {
-  std::uint64_t type = 0; // place of the protocol's number
+  std::uint64_t type = 0; // offset of the number of the protocol, bytes
   switch (link)
   {
     case 1: // Ethernet
@@ -69,20 +70,20 @@ std::uint64_t beginOfIp(std::uint32_t link, const unsigned char* bytes, std::uin
       while (type + 2 <= size &&
         (bigEndian16(bytes + type) == 0x8100 || bigEndian16(bytes + type) == 0x88A8))
       {
-        type += 4; // a tag of a virtual network
+        type += 4; // size of a tag of a virtual network
       }
       break;
     case 0:
-    case 108: // BSD's loopback: a family, 2 for IPv4 in either byte order
+    case 108: // BSD's loopback, which begins with 2 for IPv4 in either byte order
       return size >= 4 && (bytes[0] == 2 || bytes[3] == 2) ? 4 : size;
-    case 113: // Linux, cooked
+    case 113: // Linux's cooked capture, version 1
       type = 14;
       break;
-    case 276: // the same, version 2
+    case 276: // Linux's cooked capture, version 2
       return size >= 2 && bigEndian16(bytes) == 0x0800 ? 20 : size;
     case 12:
     case 101:
-    case 228: // bare IP
+    case 228: // raw IP
       return 0;
     default:
       return size;
@@ -95,7 +96,7 @@ bool isBlock(const unsigned char* bytes)
   return bytes[0] == 0xFF && bytes[1] == 0xEE;
 }
 
-/// Whether most of the 1206 bytes are in blocks of a Velodyne.
+/// Returns whether most of the 1206 bytes are in blocks of a Velodyne.
 bool hasBlocks(const unsigned char* payload)
 {
   int blocks = 0;
@@ -106,13 +107,13 @@ bool hasBlocks(const unsigned char* payload)
   return 2 * blocks > BlocksPerPacket;
 }
 
-/// A packet of 1206 bytes, which may be a lidar's.
+/// Packet of 1206 bytes that may come from a lidar.
 struct Datagram
 {
   std::uint64_t begin = 0; ///< offset of the lidar's bytes in the packet; 0 for other traffic
   bool isFragment = false;
-  bool isForLidars = false; ///< by its port
-  std::string sensor;       ///< address and port
+  bool isForLidars = false; ///< whether the packet was sent to DataPort
+  std::string sensor;       ///< address and port of the sensor
 };
 
 Datagram datagramOf(std::uint32_t link, const unsigned char* bytes, std::uint64_t size)
@@ -142,7 +143,7 @@ Datagram datagramOf(std::uint32_t link, const unsigned char* bytes, std::uint64_
   return datagram;
 }
 
-/// Calls packet(link type, place, bytes that are there) for each packet.
+/// Calls packet(link type, offset, number of recorded bytes) for each packet.
 template <class F>
 void forEachPacket(ByteSource& source, F packet)
 {
@@ -186,19 +187,20 @@ void forEachPacket(ByteSource& source, F packet)
     }
     const std::uint32_t kind = load32(head, turned);
     const std::uint64_t size = load32(head + 4, turned);
-    // Packet blocks: enhanced, simple, and the old one, which is as the enhanced one is.
+    // Packet blocks are enhanced (6), simple (3), or obsolete (2) with the layout of enhanced
+    // blocks.
     const bool isEnhanced = kind == 6 || kind == 2;
     const std::uint64_t least = isEnhanced ? 32 : kind == 1 || kind == 3 ? 16 : 12;
     if (size < least || size % 4 != 0)
     {
       throw FormatError("the block at byte " + std::to_string(at) + " has the length " +
         std::to_string(size) + ", expected at least " + std::to_string(least) +
-        " and a multiple of 4: it and what follows are left out");
+        " and a multiple of 4: this block and the rest of the file are left out");
     }
     const unsigned char* block = need(at, size);
     const std::uint32_t number = kind == 6 ? load32(block + 8, turned)
       : kind == 2                          ? load16(block + 8, turned)
-                                           : 0; // of the interface
+                                           : 0; // number of the interface
     if (kind == 1)
     {
       links.push_back(load16(block + 8, turned));
@@ -213,7 +215,7 @@ void forEachPacket(ByteSource& source, F packet)
   }
 }
 
-/// What is wrong with the bytes of a VLP-16; or empty.
+/// Returns the fault of a packet of a VLP-16, or an empty text.
 std::string problemOf(const unsigned char* bytes)
 {
   if (bytes[1205] != 0x22)
@@ -225,7 +227,7 @@ std::string problemOf(const unsigned char* bytes)
     return "has the return mode " + std::to_string(bytes[1204]) +
       ", expected 55 (strongest), 56 (last) or 57 (dual)";
   }
-  constexpr std::uint32_t hour = 3'600'000'000u; // us
+  constexpr std::uint32_t hour = 3'600'000'000u; // duration, us
   if (load<std::uint32_t>(bytes + 1200) > hour)
   {
     return "has a time beyond the hour";
@@ -246,7 +248,7 @@ int azimuthOf(const unsigned char* payload, int block)
   return load<std::uint16_t>(payload + block * BytesPerBlock + 2);
 }
 
-/// us since the hour of the first packet.
+/// Time since the full hour before the first packet, us.
 struct HourClock
 {
   double hours = 0.0;
@@ -261,13 +263,13 @@ struct HourClock
   }
 };
 
-/// Blocks of one firing: in dual mode two.
+/// Returns the number of blocks of one firing, which is two in dual mode.
 int blocksAtOnce(const unsigned char* payload)
 {
   return payload[1204] == DualReturn ? 2 : 1;
 }
 
-/// us from the time of the packet to the begin of a block.
+/// Returns the time from the time of the packet to the begin of a block, us.
 double timeOf(const unsigned char* payload, int block)
 {
   return 2.0 * FiringTime * (block / blocksAtOnce(payload));
@@ -282,7 +284,7 @@ struct TurnPoints
   void add(const unsigned char* value, int channel, double turned, double moment, int i, int n)
   {
     const double range = 0.002 * load<std::uint16_t>(value);
-    // Lasers fire from -15 deg and from 1 deg in turns.
+    // Lasers at -15, 1, -13, 3, ..., -1, 15 deg fire in this order.
     const int ring = channel / 2 + (channel % 2) * Lasers / 2;
     const double up = 2.0 * ring - 15.0;
     const double a = RadiansPerDegree * turned / 100.0;
@@ -301,7 +303,7 @@ struct TurnPoints
   }
 };
 
-/// The two firing sequences of a block, in dual mode with the block behind it.
+/// Adds the points of the two firing sequences of a block and, in dual mode, of the next block.
 void addBlock(TurnPoints& points, const unsigned char* payload, int block, double time, double gap)
 {
   const int returns = blocksAtOnce(payload);
@@ -330,22 +332,22 @@ void addBlock(TurnPoints& points, const unsigned char* payload, int block, doubl
   }
 }
 
-/// The place of a packet in the file, and when it was sent.
+/// Offset of a packet in the file, and the time when the sensor sent the packet.
 struct SentPacket
 {
-  int epoch = 0;     ///< rises where the sensor's clock goes back, as at the full hour
-  double time = 0.0; ///< us
+  int epoch = 0;     ///< number of times that the sensor's clock went back before
+  double time = 0.0; ///< time of the sensor's clock, us
   std::uint64_t begin = 0;
 };
 
-/// What one sensor has sent.
+/// Packets of one sensor.
 struct Sender
 {
   std::vector<SentPacket> packets;
   std::size_t damaged = 0;
-  std::string problem; ///< what is wrong with the first damaged packet
+  std::string problem; ///< fault of the first damaged packet
   int epoch = 0;
-  double latest = 0.0; ///< us, in this epoch
+  double latest = 0.0; ///< latest time in this epoch, us
 
   void add(std::uint64_t begin, const unsigned char* payload)
   {
@@ -368,8 +370,8 @@ struct Sender
 
 struct Recording
 {
-  std::map<std::string, Sender> senders; ///< by address and port
-  std::string cut;                       ///< why it ends too early; or empty
+  std::map<std::string, Sender> senders; ///< packets of each address and port
+  std::string cut;                       ///< reason why the recording is cut short, or empty
 };
 
 Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
@@ -415,7 +417,8 @@ Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
   return recording;
 }
 
-/// The sensor that is wanted, by its address, with its port or without; any if none is named.
+/// Returns the wanted sensor, given by its address with or without its port. An empty text fits all
+/// sensors. Throws FormatError unless one sensor fits.
 Sender& choose(std::map<std::string, Sender>& senders, const std::string& wanted)
 {
   std::vector<Sender*> fitting;
@@ -448,7 +451,8 @@ Sender& choose(std::map<std::string, Sender>& senders, const std::string& wanted
   return *fitting.front();
 }
 
-/// Leaves out packets that were recorded twice, as by two interfaces. Returns how many.
+/// Leaves out packets that were recorded twice, as by two interfaces. Returns the number of such
+/// packets.
 std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
 {
   unsigned char before[PayloadSize] = {};
@@ -467,8 +471,8 @@ std::size_t dropCopies(ByteSource& source, std::vector<SentPacket>& packets)
   return copies;
 }
 
-/// FormatError if two sensors have sent the packets: then azimuths go back again and again, by
-/// more than a motor that stands still lets them jitter.
+/// Throws FormatError if two sensors sent the packets. The azimuth of two sensors often goes back,
+/// by more than the jitter of a motor that stands still.
 void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packets)
 {
   std::size_t backwards = 0;
@@ -489,7 +493,7 @@ void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packet
   }
 }
 
-/// Where the revolutions of the packets begin.
+/// Returns the starts of the revolutions.
 std::vector<PacketIndex::Turn> turnsOf(
   ByteSource& source, const std::vector<std::uint64_t>& packets, const KeepGoing& keepGoing)
 {
@@ -534,7 +538,7 @@ PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const Ke
   {
     throw FormatError(sender.problem);
   }
-  // Networks may change the order.
+  // Networks may change the order of packets.
   std::stable_sort(sender.packets.begin(), sender.packets.end(),
     [](const SentPacket& a, const SentPacket& b)
     { return a.epoch != b.epoch ? a.epoch < b.epoch : a.time < b.time; });
@@ -574,14 +578,14 @@ Cloud readTurn(
   const std::size_t packets = to.packet - from.packet + 1;
   requireMemoryFor(packets * PointsPerPacket, sizeof(double));
   TurnPoints points;
-  double gap = 0.0; // azimuth from one firing to the next
+  double gap = 0.0; // azimuth from one firing to the next, 0.01 deg
   HourClock clock;
   unsigned char payload[PayloadSize];
   for (std::size_t p = from.packet; p < index.packets.size() && p <= to.packet; ++p)
   {
     std::copy_n(source.at(index.packets[p], PayloadSize), PayloadSize, payload);
     const std::string problem = problemOf(payload);
-    if (!problem.empty()) // the file has changed
+    if (!problem.empty()) // the file has changed since indexPackets()
     {
       throw FormatError("packet " + std::to_string(p) + " of the lidar " + problem);
     }
@@ -590,7 +594,7 @@ Cloud readTurn(
       : -1;
     const int step = blocksAtOnce(payload);
     const double time = clock.timeOf(payload);
-    if (p == from.packet) // the hour that the index counted
+    if (p == from.packet) // sets the hour of the index
     {
       const double since = 1e6 * from.time - timeOf(payload, from.block) - time;
       clock.hours = HourTime * std::round(since / HourTime);

@@ -19,7 +19,7 @@ namespace
 {
 constexpr std::uint64_t GreatestCount = 65536;
 
-/// The words behind the keys of a header, not yet understood.
+/// Words of each key of a header, before they are checked.
 using Words = std::map<std::string, std::vector<std::string>>;
 
 char upper(unsigned char c)
@@ -57,7 +57,7 @@ void understandFields(Words& words, PcdHeader& header)
         " and SIZE " + shown(sizes[i]) + ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
     }
     field.count = counts.empty() ? 1 : numberOf<std::uint64_t>(counts[i], "COUNT");
-    // Old converters of ROS write 0 for a single value, and so the Point Cloud Library reads it.
+    // Old converters of ROS write 0 for a single value. The Point Cloud Library accepts 0 too.
     field.count += field.count == 0;
     if (field.count > GreatestCount)
     {
@@ -119,7 +119,7 @@ PcdData understandData(std::string kind)
 
 using Bytes = std::vector<unsigned char>;
 
-/// All bytes of a compressed file: field by field, not point by point.
+/// Returns the unpacked bytes of a compressed file, field by field, not point by point.
 Bytes decompress(ByteSource& source, const PcdHeader& header)
 {
   const Bytes sizes = source.bytes(header.begin, 8);
@@ -130,7 +130,7 @@ Bytes decompress(ByteSource& source, const PcdHeader& header)
     throw FormatError("its compressed data have " + std::to_string(plain) + " bytes, expected " +
       std::to_string(header.points) + " points of " + std::to_string(header.length()));
   }
-  // LZF packs at most 264 bytes into three.
+  // LZF packs at most 264 bytes into three bytes.
   constexpr std::uint64_t greatestRatio = 88;
   const Bytes from = source.bytes(header.begin + 8, packed);
   const bool fits = plain <= greatestRatio * packed;
@@ -167,7 +167,8 @@ void takeCompressed(const Bytes& data, const PcdHeader& header, const TableTarge
   }
 }
 
-/// Whether a row follows the last one of a binary file. PCL fills its last page with zeros.
+/// Returns whether a row follows the last row of a binary file. PCL fills the last page of a file
+/// with zeros.
 bool hasOneMoreRow(ByteSource& source, const PcdHeader& header)
 {
   const std::uint64_t end = header.begin + header.points * header.length();
@@ -230,7 +231,7 @@ PcdHeader readPcdHeader(ByteSource& source)
       header.comments.push_back(line.substr(line.find('#') + 1));
       continue;
     }
-    key = key == "COLUMNS" ? "FIELDS" : key; // in 0.5
+    key = key == "COLUMNS" ? "FIELDS" : key; // key of version 0.5
     if (known.count(key) == 0)
     {
       throw FormatError("this is not a PCD file: its header has the line \"" + shown(line) + "\"");
@@ -248,7 +249,7 @@ PcdHeader readPcdHeader(ByteSource& source)
   header.data = understandData(words["DATA"][0]);
   understandFields(words, header);
   understandSize(words, header);
-  if (header.data != PcdData::Compressed) // of which decompress() does
+  if (header.data != PcdData::Compressed) // decompress() checks compressed files
   {
     header.checkLength(source, header.data == PcdData::Ascii);
   }
@@ -292,13 +293,13 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
   }
   dropEmptyCells(cloud);
   cloud.sensor = { { header.viewpoint[0], header.viewpoint[1], header.viewpoint[2] } };
-  // A writer's note on the sensor, which says more, comes later.
+  // A later note of this project's writers replaces this position.
   cloud.notes.push_back({ "position", "m", { cloud.sensor->begin(), cloud.sensor->end() }, {} });
   for (const std::string& comment : header.comments)
   {
     if (comment.find(".PCD v") < 2)
     {
-      continue; // the line that every PCD file has
+      continue; // first line of every PCD file
     }
     cloud.notes.push_back({ "comment", "", {}, { comment } });
   }

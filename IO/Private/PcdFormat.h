@@ -25,7 +25,7 @@ struct PcdHeader : FieldTable
 {
   std::uint64_t width = 0;
   std::uint64_t height = 1;
-  std::array<double, 7> viewpoint{ { 0, 0, 0, 1, 0, 0, 0 } }; ///< x y z, m; quaternion w x y z
+  std::array<double, 7> viewpoint{ { 0, 0, 0, 1, 0, 0, 0 } }; ///< x y z, m, then quaternion w x y z
   std::vector<std::string> comments;
   PcdData data = PcdData::Ascii;
 };

@@ -24,7 +24,7 @@ struct Element
   std::vector<Property> properties;
 };
 
-/// The names of 1994, which every reader knows, and later ones.
+/// Names of a type: the name of 1994, which all readers accept, and a later name.
 struct TypeName
 {
   const char* name;
@@ -74,7 +74,8 @@ Property propertyOf(std::istringstream& text)
   return property;
 }
 
-/// The header's lines; `header` gets format, comments and where they end.
+/// Reads the lines of the header. Sets the format, the comments and the end of the lines in
+/// `header`.
 std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
 {
   std::vector<Element> elements;
@@ -143,7 +144,7 @@ std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
   return elements;
 }
 
-/// The offset behind a binary element.
+/// Returns the offset of the end of a binary element, bytes.
 std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t begin, bool bigEndian)
 {
   const auto fail = [&]()
@@ -184,7 +185,7 @@ std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t be
           static_cast<std::uint64_t>(std::max(0.0, loadAs(property.countType, bytes.data())));
         begin += size;
       }
-      const std::uint64_t count = values * sizeOf(property.field.type); // of at most 2^35
+      const std::uint64_t count = values * sizeOf(property.field.type); // at most 2^35 bytes
       if (!source.holds(begin, count))
       {
         fail();
@@ -195,7 +196,7 @@ std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t be
   return begin;
 }
 
-/// The offset behind an element of text.
+/// Returns the offset of the end of an element of text, bytes.
 std::uint64_t endOfLines(ByteSource& source, const Element& element, std::uint64_t begin)
 {
   TextLines lines(source, begin);
@@ -210,8 +211,8 @@ std::uint64_t endOfLines(ByteSource& source, const Element& element, std::uint64
   return lines.position();
 }
 
-/// VTK takes lines of up to 4095 characters, RPly of up to 1023. A comment that begins with a plus
-/// continues the one before.
+/// Greatest length of a comment, bytes. VTK reads lines of up to 4095 characters, and RPly reads
+/// lines of up to 1023 characters.
 constexpr std::size_t LongestComment = 900;
 
 const char* nameOf(Scalar type)

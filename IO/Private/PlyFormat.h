@@ -4,8 +4,8 @@
  * @brief Reads and writes the points of PLY, the polygon file format.
  *
  * Source: G. Turk, "The PLY Polygon File Format", 1994. The code writes version 1.0, binary little
- * endian or ASCII. It reads ASCII, binary little endian and binary big endian, but only the element
- * `vertex`, and refuses files whose vertices have a list property. A comment that begins with a
+ * endian or ASCII. It reads the element `vertex` of ASCII, binary little endian and binary big
+ * endian files. Files whose vertices have a list property are refused. A comment that begins with a
  * plus sign continues the comment before.
  */
 #ifndef AvianLidarPlyFormat_h
@@ -15,7 +15,7 @@
 
 namespace avianlidar::formats
 {
-/// Header of the element `vertex`; `begin` is the end of the elements before `vertex`.
+/// Header of the element `vertex`. The member `begin` is the end of the elements before `vertex`.
 struct PlyHeader : FieldTable
 {
   std::vector<std::string> comments;

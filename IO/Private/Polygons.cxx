@@ -10,7 +10,7 @@ namespace avianlidar::scene
 {
 namespace
 {
-// Below what any map resolves; such edges only make slivers.
+// Length of edges that are removed, m. Maps do not resolve such edges, which only make slivers.
 constexpr double SmallestEdge = 1e-6;
 constexpr double AreaTolerance = 1e-9;
 
@@ -49,7 +49,7 @@ double Perimeter(const Polygon& polygon)
 
 double SignedArea(const Ring& ring)
 {
-  // About the first vertex: far from the origin the products would cancel.
+  // Coordinates are relative to the first vertex, because large products would cancel.
   double sum = 0;
   for (std::size_t i = 1; i + 1 < ring.size(); ++i)
   {
@@ -108,7 +108,7 @@ std::vector<Polygon> WidenLine(const Ring& line, double width)
     return {};
   }
   const Geos geos;
-  // A closed line comes without its last vertex twice, and is closed again.
+  // WithoutRepeats() removes the last vertex of a closed line, and Sequence() adds it again.
   const bool closed = line.size() > 2 && line.front() == line.back();
   const Geos::Geometry geometry =
     geos.Own(GEOSGeom_createLineString_r(geos.Get(), geos.Sequence(clean, closed)));
@@ -164,7 +164,8 @@ Sheet Triangulate(const Polygon& polygon)
     covered += SignedArea({ corners[0], corners[1], corners[2] });
   }
   const double area = Area(polygon);
-  // Of a long narrow polygon the products of an area are far above it, and so is their rounding.
+  // The products that make the area of a long narrow polygon are far larger than the area. Their
+  // rounding is as large.
   const double rounding =
     4 * std::numeric_limits<double>::epsilon() * std::pow(Perimeter(polygon), 2);
   if (!(std::abs(covered - area) <= AreaTolerance * area + rounding))

@@ -19,7 +19,7 @@
 namespace avianlidar::scene
 {
 using Vec2 = std::array<double, 2>;
-/// Vertices in order; the first vertex is not repeated at the end.
+/// Vertices in order. The first vertex is not repeated at the end.
 using Ring = std::vector<Vec2>;
 
 /// Polygon of one outer ring, which comes first, and the rings of its holes.
@@ -28,8 +28,8 @@ struct Polygon
   std::vector<Ring> rings;
 };
 
-/// Triangles that run anticlockwise in plan, and the edges of their outline, with the triangles on
-/// the left.
+/// Triangles that run anticlockwise in plan, and the edges of their outline. The triangles are on
+/// the left of each edge.
 struct Sheet
 {
   std::vector<Vec3> points;
@@ -37,8 +37,8 @@ struct Sheet
   std::vector<std::array<std::int64_t, 2>> outline;
 };
 
-/// Context of GEOS. The context has no handlers, so GEOS prints no errors, and returns null on
-/// failure.
+/// Context of GEOS. The context does not have handlers, so GEOS does not print errors. GEOS returns
+/// null on failure.
 class Geos
 {
 public:
@@ -130,7 +130,7 @@ private:
   std::unique_ptr<GEOSContextHandle_HS, decltype(&GEOS_finish_r)> Handle;
 };
 
-/// Returns the area of a ring, m2; positive if the ring runs anticlockwise, else negative.
+/// Returns the area of a ring, m2, positive if the ring runs anticlockwise, else negative.
 double SignedArea(const Ring& ring);
 /// Returns the area of the outer ring minus the areas of the holes, m2.
 double Area(const Polygon& polygon);
@@ -138,7 +138,7 @@ double Area(const Polygon& polygon);
 /**
  * Returns the same region as valid polygons, without repeated vertices and without crossing or
  * overlapping rings (GEOS MakeValid). The result is empty if no region with an area is left.
- * `repaired` becomes true if more than repeated vertices changed.
+ * `repaired` becomes true if the repair changes more than repeated vertices.
  */
 std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// Whether a name of this project means a quantity that has a unit.
+/// Returns whether a name has a unit in this project.
 bool hasUnit(const std::string& name)
 {
   const auto& all = vtkAvianLidarArrays::CloudArrays;
@@ -39,7 +39,7 @@ Column* find(Cloud& cloud, const std::string& name)
   return found == cloud.columns.end() ? nullptr : &*found;
 }
 
-/// Units and field data that a writer of this project left in a comment or text area.
+/// Takes units and field data from a comment or text area that a writer of this project wrote.
 void takeNotes(Cloud& cloud)
 {
   std::vector<Note> kept;
@@ -60,7 +60,7 @@ void takeNotes(Cloud& cloud)
   }
 }
 
-/// Packed as 0x00RRGGBB in four bytes, of whatever type.
+/// Unpacks colours 0x00RRGGBB from four bytes of any type.
 void unpackColours(Cloud& cloud)
 {
   for (const char* name : { "rgb", "rgba" })
@@ -92,7 +92,7 @@ void unpackColours(Cloud& cloud)
   }
 }
 
-/// Three columns of bytes, as PLY has them.
+/// Joins the three columns of bytes of a PLY file to `rgb`.
 void joinColours(Cloud& cloud)
 {
   std::vector<std::uint8_t> colours(3 * cloud.size());
@@ -147,7 +147,7 @@ void rename(Cloud& cloud)
   }
 }
 
-/// Range and angles of the points as the sensor sees them.
+/// Adds range and angles of the points in the sensor's frame.
 void addPolar(Cloud& cloud)
 {
   const std::size_t n = cloud.size();

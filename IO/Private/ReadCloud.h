@@ -16,15 +16,14 @@
 
 namespace avianlidar::formats
 {
-/// Format of files. All code gets the formats from cloudFormats(), so a new format needs only a row
-/// in that table.
+/// Format of files. A new format needs only a row in the table of cloudFormats().
 struct CloudFormat
 {
   std::vector<std::string> endings; ///< file extensions, in lower case, with the dot
-  bool (*fits)(ByteSource& file);   ///< check of the first bytes; an exception means false
+  bool (*fits)(ByteSource& file);   ///< check of the first bytes; an exception counts as false
   Cloud (*read)(ByteSource& file, ByteSource* labels, const KeepGoing& keepGoing);
-  bool hasLabels = false; ///< whether labels may lie in a file, see labelFileOf()
-  bool hasTurns = false;  ///< whether files have packets; read() gives the first revolution
+  bool hasLabels = false; ///< whether a file of labels is possible (labelFileOf())
+  bool hasTurns = false;  ///< whether files have packets (read() gives the first revolution)
 };
 
 const std::vector<CloudFormat>& cloudFormats();
@@ -35,12 +34,12 @@ std::string knownEndings();
 /// Returns the file extension in lower case, with the dot: ".las".
 std::string endingOf(const std::string& fileName);
 
-/// Returns the format of a file extension, in upper or lower case; null for an unknown extension.
+/// Returns the format of a file extension, in upper or lower case, or null if unknown.
 const CloudFormat* formatOf(const std::string& fileName);
 
 /// Returns the file of SemanticKITTI's labels of a .bin file: the same name with .label, in the
-/// folder of the .bin file or in a folder `labels` beside that folder. Empty if there is no such
-/// file.
+/// folder of the .bin file or in a folder `labels` beside that folder. Returns an empty text if the
+/// file of labels does not exist.
 std::string labelFileOf(const std::string& fileName);
 
 /// Reads a file and its labels or, if `packets` is not null, the revolution `turn`.
@@ -51,11 +50,10 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing,
 /// - units and notes that a writer of this project put into a text become units and notes of the
 ///   cloud;
 /// - `ring` or `channel` becomes `laser_id` if the cloud has no `laser_id`;
-/// - a column gets the prefix `file_` if its quantity has a unit in this project, such as
-///   `azimuth`, but not in the file, or if another column has its name;
-/// - `distance_m`, `azimuth` and `vertical_angle` are computed where the sensor's place is known
-/// and
-///   the file does not have them;
+/// - the prefix `file_` is added to a name if another column has this name, or if the name has a
+///   unit in this project, such as `azimuth`, but not in the file;
+/// - `distance_m`, `azimuth` and `vertical_angle` are computed if the sensor's place is known and
+///   the file does not have these columns;
 /// - packed colours of PCD, and `red`, `green` and `blue` of PLY, become `rgb`.
 void harmonise(Cloud& cloud);
 }

@@ -53,7 +53,7 @@ T nearestOf(double value)
       return 0;
     }
     const double rounded = std::nearbyint(value);
-    // The upper end of 64 bits is no double: the next one above it is.
+    // As a double, the greatest 64-bit integer is rounded up.
     if (rounded >= static_cast<double>(Limits::max()))
     {
       return Limits::max();

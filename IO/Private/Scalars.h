@@ -33,8 +33,8 @@ std::size_t sizeOf(Scalar type);
 bool isFloat(Scalar type);
 bool isSigned(Scalar type);
 
-/// Finds the type of a kind ('I', 'U' or 'F') and a size, bytes. Returns false if no such type
-/// exists.
+/// Finds the type of a kind ('I', 'U' or 'F') and a size, bytes. Returns false if the type does not
+/// exist.
 bool scalarOf(char kind, std::size_t size, Scalar& type);
 
 /// Calls f with a value of the C++ type of the scalar type.
@@ -123,7 +123,7 @@ void store(T value, unsigned char* bytes)
 /// NaN becomes 0 if the type is an integer.
 double nearest(Scalar type, double value);
 
-/// Writes nearest() as store() does. Integers are exact up to 2^53.
+/// Writes the result of nearest() as store() does. Integers are exact up to 2^53.
 void storeAs(Scalar type, double value, unsigned char* bytes);
 
 /// Reads a value as load() does, and converts the value to double.

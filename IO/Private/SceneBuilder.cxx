@@ -19,7 +19,7 @@ namespace avianlidar::scene
 {
 namespace
 {
-// Names in a warning; a mesh may have hundreds.
+// Greatest number of names in a warning, because a mesh may have hundreds of materials.
 constexpr std::size_t ListedNames = 10;
 
 // Warns of materials that no rule maps, in the order of their first use.
@@ -49,7 +49,8 @@ void AddOnce(const std::string& name, std::vector<std::string>& names)
   }
 }
 
-// The material of a name: the object's, or by the rules of the object or the scene; -1: none.
+// Returns the id of the object's material, or of the first rule of object or scene that fits the
+// name, or -1 if no rule fits.
 int FindMaterial(const Scene& scene, const Object& object, const std::string& name)
 {
   if (object.material >= 0)
@@ -69,7 +70,7 @@ int FindMaterial(const Scene& scene, const Object& object, const std::string& na
   return -1;
 }
 
-// From indices of the file's own materials to the scene's ids.
+// Replaces indices of the file's materials by material ids of the scene.
 void MapMaterials(
   const Scene& scene, const Object& object, Mesh& mesh, std::vector<std::string>& unmapped)
 {
@@ -120,7 +121,7 @@ Part MakeGround(const Object& object)
   return part;
 }
 
-// Mesh files, each read once, however many objects place it, and kept until the last of them.
+// Reads each mesh file once, and keeps the mesh until the last object that places the mesh.
 class MeshFiles
 {
 public:
@@ -167,7 +168,7 @@ Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
     built.report.push_back(object.name + ": " + std::to_string(part.mesh.skippedFaces) +
       " points or lines were left out");
   }
-  constexpr double leastLoss = 0.01; // m
+  constexpr double leastLoss = 0.01; // rounding that gives a warning, m
   const Vec3& scale = object.placement.scale;
   const double lost =
     part.mesh.rounding * std::max({ std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2]) });
@@ -190,11 +191,11 @@ Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
   return part;
 }
 
-// The surfaces that footprints stand on, each made once.
+// Surfaces on which footprints stand. Each surface is made once.
 class Terrains
 {
 public:
-  // Of the parts so far the first with that name.
+  // Returns the surface of the first part of that name, or null for an empty name.
   const Terrain* Get(const std::string& name, const std::vector<Part>& parts)
   {
     if (name.empty())
@@ -214,7 +215,7 @@ private:
   std::map<std::string, Terrain> Known;
 };
 
-// Adds to the report and the warnings, not to the parts.
+// Returns the parts of an object. Adds to the report and the warnings of `built`.
 std::vector<Part> BuildObject(BuiltScene& built, const Object& object, const Terrain* terrain,
   MeshFiles& files, std::vector<std::string>& unmapped, const std::function<bool()>& keepGoing)
 {
@@ -250,7 +251,7 @@ std::vector<Part> BuildObject(BuiltScene& built, const Object& object, const Ter
   {
     part.medium = object.medium;
     Place(scene, object, part.mesh);
-    // Footprints are in the scene's metres by now.
+    // Footprints are already in metres of the scene.
     if (object.kind == ObjectKind::Mesh && !object.crs.empty() && object.crs != "local")
     {
       GeoreferencedPoints(*scene.origin, object.crs).ToLocal(part.mesh.points);
@@ -266,15 +267,15 @@ const char* FileKey(const Object& object)
     : (object.kind == ObjectKind::Footprints ? ".footprints: " : ": ");
 }
 
-// Whether the file of an object says how many parts it has.
+// Returns whether the number of parts of an object depends on its file.
 bool HasParts(const Object& object)
 {
   return object.kind == ObjectKind::Footprints &&
     (object.footprints.separate || !object.medium.empty());
 }
 
-// Reads all objects or, for an outline, only the footprints whose features say how many parts there
-// are, and the terrain below them. An error names the key. The work may stop between objects.
+// Reads all objects or, for an outline, only the objects of HasParts() and the terrain below these
+// objects. An error names the key. The work may stop between objects.
 BuiltScene Build(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text, bool outline)
 {
@@ -321,7 +322,7 @@ BuiltScene Build(const std::string& file, const std::function<bool(double)>& pro
         built.parts.push_back(std::move(part));
       }
     }
-    catch (const std::runtime_error& e) // Error or MemoryError
+    catch (const std::runtime_error& e) // an Error or a MemoryError
     {
       fail(e.what());
     }

@@ -19,22 +19,22 @@ struct BuiltScene
   std::vector<Part> parts;
   /// Lines of the report on the parts and the lidar.
   std::vector<std::string> report;
-  /// Warnings, sentences on legal input that looks like a mistake.
+  /// Warnings: sentences on valid input that is probably a mistake.
   std::vector<std::string> warnings;
 };
 
 /**
  * Finds the parts of a scene without their triangles, for pieces of the output that are empty.
  * Reads only footprints that become several parts, and the objects on which these footprints stand.
- * The report and the warnings are empty. Arguments and errors are those of BuildScene().
+ * The report and the warnings are empty. Arguments and errors are the same as for BuildScene().
  */
 BuiltScene OutlineScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});
 
 /**
- * Reads a whole scene, and each mesh file once. `text`, unless empty, replaces the contents of the
- * scene file. `progress` gets the share of the work that is done, 0 to 1, and returns false to stop
- * the work. Throws Error (file, key and reason) or WorkStopped.
+ * Reads a whole scene. Each mesh file is read once. `text`, unless empty, replaces the contents of
+ * the scene file. The argument of the function `progress` is the share of the work done, 0 to 1.
+ * The function returns false to stop the work. Throws Error (file, key and reason) or WorkStopped.
  */
 BuiltScene BuildScene(const std::string& file, const std::function<bool(double)>& progress,
   const std::string& text = {});

@@ -15,10 +15,11 @@ namespace avianlidar::scene
 namespace
 {
 constexpr double DegreesToRadians = 3.14159265358979323846 / 180.0;
-// Printed matrices have rounded digits.
+// Greatest error of a rotation, because matrices in files have rounded digits.
 constexpr double OrthonormalTolerance = 1e-6;
 
-/// The id of the material with a name, whatever its case; -1 if no material has the name.
+/// Returns the id of the material with a name, in upper or lower case, or -1 if no material has the
+/// name.
 int FindMaterial(const Scene& scene, const std::string& name)
 {
   const std::string wanted = vtksys::SystemTools::LowerCase(name);
@@ -32,8 +33,8 @@ int FindMaterial(const Scene& scene, const std::string& name)
   return -1;
 }
 
-/// The id of the material that a string names; a shipped one joins the scene when it is first
-/// named, an unknown one is an Error.
+/// Returns the id of the material that a string names. Adds a shipped material to the scene when it
+/// is first named. Throws Error for an unknown material.
 int ParseMaterialName(const JsonNode& node, Scene& scene)
 {
   const int material = FindMaterial(scene, node.Name());
@@ -68,7 +69,7 @@ std::optional<int> FindMaterialName(const JsonNode& owner, const char* key, Scen
   return owner.Find(key, [&](const JsonNode& node) { return ParseMaterialName(node, scene); });
 }
 
-/// One of two words; an empty one without the key.
+/// Returns one of two words, or an empty text if the key is missing.
 std::string FindChoice(
   const JsonNode& owner, const char* key, const std::string& one, const std::string& other)
 {
@@ -80,7 +81,7 @@ std::string FindChoice(
   return word;
 }
 
-/// The "material_map" of the scene or of an object; none if it has none.
+/// Returns the rules of the "material_map" of the scene or of an object. The map may be missing.
 std::vector<MaterialRule> ParseRules(const JsonNode& owner, Scene& scene)
 {
   std::vector<MaterialRule> rules;
@@ -147,7 +148,7 @@ void ParseMaterials(const JsonNode& root, Scene& scene)
     const int known = FindMaterial(scene, name);
     if (known >= NumberOfStandardMaterials)
     {
-      node.Fail("this material is there already; case does not count");
+      node.Fail("this material is already in the scene (case is ignored)");
     }
     if (known >= 0)
     {
@@ -198,8 +199,9 @@ Mat3 ParseMatrix(const JsonNode& node)
   return m;
 }
 
-/// The rotation whose second axis (the model's north, +y) points along a direction, with the
-/// model's up as near to up as that allows; the direction must not be vertical.
+/// Returns the rotation whose second axis (the model's north, +y) points along a direction, and
+/// whose third axis (the model's up) is as near to up as possible. The direction must not be
+/// vertical.
 Mat3 RotationToDirection(const Vec3& direction)
 {
   const double horizontal = std::hypot(direction[0], direction[1]);
@@ -214,7 +216,7 @@ Mat3 ParseRotation(const JsonNode& node)
 {
   if (node.IsNumber())
   {
-    // Clockwise from north: at 90 degrees the model's north points east.
+    // The yaw is clockwise from north. At 90 degrees the model's north points east.
     const double yaw = node.Number() * DegreesToRadians;
     return { std::cos(yaw), std::sin(yaw), 0, -std::sin(yaw), std::cos(yaw), 0, 0, 0, 1 };
   }
@@ -323,7 +325,7 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
   {
     if (options.flat && node.Has(key))
     {
-      node.Get(key).Fail("means nothing for flat footprints");
+      node.Get(key).Fail("cannot be given for flat footprints");
     }
   }
   options.height = node.Find("height", &JsonNode::PositiveNumber);
@@ -399,13 +401,13 @@ void ParseGround(const JsonNode& node, Object& object)
   object.ground.height = ground.Find("height", &JsonNode::Number).value_or(0.0);
 }
 
-// What a medium is made of is checked where it is read as one.
+// Returns the JSON of a medium. vtkAvianLidarMedia checks the contents later.
 std::string ParseMedium(const JsonNode& node, bool hasSurface)
 {
   Json text = node.Content();
   if (!text.is_object())
   {
-    node.Fail("must be an object with kind, what says how much of it there is, and a shape");
+    node.Fail("must be an object with kind, a quantity of the medium, and a shape");
   }
   if (text.contains("name"))
   {
@@ -428,10 +430,11 @@ void ParseMesh(const JsonNode& node, Scene& scene, Object& object)
     "position", "geodetic", "rotation", "scale", "up_axis", "crs" });
   object.kind = ObjectKind::Mesh;
   object.file = AbsoluteFile(node.Get("file"), scene);
-  object.upAxis = FindChoice(node, "up_axis", "y", "z")[0]; // 0 without the key
+  object.upAxis = FindChoice(node, "up_axis", "y", "z")[0]; // 0 if the key is missing
 }
 
-/// One value of "objects"; the scene's origin, materials and file name are known by then.
+/// Parses a value of "objects". The origin, materials and file name of the scene must be set
+/// before.
 Object ParseObject(const JsonNode& node, Scene& scene)
 {
   Object object;
@@ -476,7 +479,7 @@ Object ParseObject(const JsonNode& node, Scene& scene)
 
 bool MatchesPattern(const std::string& pattern, const std::string& name)
 {
-  // Greedy, with one step back to the last star: linear in practice, no recursion.
+  // The match is greedy and steps back only to the last star. Recursion is not needed.
   std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
   while (n < name.size())
   {
@@ -519,7 +522,7 @@ Scene ReadDescription(const std::string& file, const std::string& text)
   const JsonNode version = root.Get("version");
   if (version.Number() != 1)
   {
-    version.Fail("must be 1, the only version there is");
+    version.Fail("must be 1, the only version");
   }
   scene.attribution = root.Find("attribution", &JsonNode::Strings).value_or(scene.attribution);
   scene.origin = root.Find("origin", ParseGeodetic);

@@ -21,8 +21,8 @@ void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3
 
 namespace
 {
-// PROJ opens the grid files that a system names, whatever they are. Those of its own folders have
-// names without a folder.
+// Throws Error if a system names a grid file with a folder, because PROJ would open any such file.
+// Grid files in the folders of PROJ have names without a folder.
 void RequireGridsOfProj(const std::string& text)
 {
   static const std::regex gridInFolder(
@@ -46,7 +46,7 @@ std::string TextOf(const OGRSpatialReference& crs)
 
 OGRSpatialReference FromText(const std::string& crs)
 {
-  RequireGridsOfProj(crs); // asked for its place as it is read
+  RequireGridsOfProj(crs); // before PROJ reads the text
   OGRSpatialReference reference;
   if (reference.SetFromUserInput(
         crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
@@ -73,7 +73,7 @@ GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatia
     this->ToWgs84.reset(OGRCreateCoordinateTransformation(&source, &space));
     if (!this->ToWgs84)
     {
-      throw Error("there is no way from its coordinate reference system to WGS84");
+      throw Error("its coordinate reference system cannot be transformed to WGS84");
     }
   }
 }

@@ -26,8 +26,8 @@ void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3
  * Transforms coordinates of a reference system to metres east, north and up of an origin. The
  * system is a code ("EPSG:32632"), WKT, PROJJSON or a PROJ string, but not a URL or a file. The
  * axes have the order x or longitude, y or latitude. Heights are taken as heights above the
- * ellipsoid, which is right if the height of the origin is of the same kind. Throws Error for an
- * unknown system and for coordinates outside the range of the system.
+ * ellipsoid. Other heights are right if the origin has a height of the same kind. Throws Error for
+ * an unknown system and for coordinates outside the range of the system.
  */
 class GeoreferencedPoints
 {
@@ -39,7 +39,8 @@ public:
 
 private:
   GeodeticFrame Frame;
-  /// Transformation to longitude and latitude on WGS84; null if the coordinates are such already.
+  /// Transformation to longitude and latitude on WGS84. Null if the coordinates are already
+  /// longitude and latitude on WGS84.
   std::unique_ptr<OGRCoordinateTransformation> ToWgs84;
 };
 }

@@ -13,7 +13,7 @@ namespace avianlidar::scene
 namespace
 {
 constexpr double FarAway = 1e5;
-// Of the square of the longest edge.
+// Area of a degenerate triangle, as a share of the square of the longest edge.
 constexpr double DegenerateArea = 1e-12;
 
 using glm::cross;
@@ -34,7 +34,7 @@ bool IsDegenerate(const Vector& a, const Vector& b, const Vector& c)
   return std::sqrt(dot(n, n)) <= DegenerateArea * longest;
 }
 
-// Whether a half-line meets a triangle in front of its start.
+// Returns whether a half-line meets a triangle.
 bool Meets(
   const Vector& start, const Vector& direction, const Vector& a, const Vector& b, const Vector& c)
 {
@@ -49,7 +49,8 @@ bool Meets(
   return u >= 0 && v >= 0 && u + v <= 1 && dot(e2, q) / determinant > 0;
 }
 
-// Up, down and sideways, a little askew so that none runs along an edge of something built square.
+// Directions up, down and sideways, a little askew so that edges of rectangular buildings are not
+// along a direction.
 const Vector Directions[6] = { { 0.00137, 0.00211, 1 }, { 0.00137, 0.00211, -1 },
   { 1, 0.0131, 0.0071 }, { -1, 0.0131, 0.0071 }, { 0.0113, 1, 0.0073 }, { 0.0113, -1, 0.0073 } };
 
@@ -139,12 +140,12 @@ void ReportLidar(BuiltScene& built)
   if (!container.empty() && !scene.lidarInside)
   {
     built.warnings.push_back("the lidar is inside " + container +
-      "; say \"inside\": true beside its position if that is meant");
+      ": if the position is right, add \"inside\": true to the lidar");
   }
   else if (above > 0 && below == 0)
   {
     built.warnings.push_back(
-      "the lidar is under the scene: there are surfaces above it and none below");
+      "the lidar is under the scene: surfaces lie above the lidar, but not below the lidar");
   }
 }
 }

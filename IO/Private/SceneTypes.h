@@ -60,12 +60,12 @@ struct Placement
   Vec3 scale{ 1, 1, 1 };
 };
 
-/// Glass of facades: `share` of the area, in bays about `bay` m wide, each with one centred strip.
+/// Glass of facades. A facade has bays of equal width, and each bay has one centred strip of glass.
 struct Glazing
 {
   int material = 1;
   double share = 0; ///< share of the area that is glass, 0 to 1
-  double bay = 1;   ///< width of a bay, m
+  double bay = 1;   ///< approximate width of a bay, m
 };
 
 /// Condition that a feature has an attribute with a value that fits the pattern.
@@ -129,7 +129,7 @@ struct Object
   FootprintOptions footprints;
   GroundOptions ground;
   /// JSON of the medium (vtkAvianLidarMedium.h) that fills the surface or gives its own shape;
-  /// empty: none.
+  /// empty without a medium.
   std::string medium;
 };
 
@@ -158,7 +158,7 @@ struct Mesh
   /// Distance between neighbouring single-precision numbers at the largest coordinate, in the
   /// file's unit; 0 if the reader keeps double precision.
   double rounding = 0.0;
-  /// Axis that points up according to the file, 'y' or 'z'; 0 if the file does not say.
+  /// Axis that points up according to the file, 'y' or 'z'; 0 if the file does not give the axis.
   char upAxis = 0;
   /// Sentences on parts of the file that were left out.
   std::vector<std::string> warnings;
@@ -170,7 +170,7 @@ struct Part
   std::string name;
   std::string objectClass;
   Mesh mesh;
-  std::string medium{}; ///< medium that fills the part, JSON; empty: none
+  std::string medium{}; ///< medium that fills the part, JSON, or empty
   /// Widths and heights, m, of ellipsoids about the points of a mesh without triangles.
   std::vector<std::array<double, 2>> crowns{};
 };

@@ -17,8 +17,8 @@ struct SemanticLabel
   int kitti; ///< class of SemanticKITTI, the lower 16 bits of a label
 };
 
-/// Returns the labels of an object class, in upper or lower case; 1 (unclassified) and 0
-/// (unlabeled) for a class that is not in the table.
+/// Returns the labels of an object class, in upper or lower case. The labels are 1 (unclassified)
+/// and 0 (unlabeled) for a class that is not in the table.
 SemanticLabel labelOfClass(const std::string& objectClass);
 
 /// Returns the labels of echoes without an object: the labels of the class "air" for light from the

@@ -16,7 +16,7 @@ SensorPose::SensorPose()
 SensorPose::SensorPose(const Point& position, const Point& orientation)
   : Position(position)
 {
-  // The axes are beams: forward at azimuth 0, right at azimuth 90, up at elevation 90.
+  // The axes are the beams forward (azimuth 0), right (azimuth 90) and up (elevation 90 deg).
   ScanPattern pattern;
   pattern.yaw = orientation[0];
   pattern.pitch = orientation[1];
@@ -42,8 +42,8 @@ Point SensorPose::toSensor(const Point& point) const
 
 std::array<double, 7> SensorPose::viewpoint() const
 {
-  // Rows of the rotation matrix R; its columns are the axes. The largest of the four squares
-  // (Shepperd 1978) keeps the square root away from zero.
+  // The columns of the rotation matrix R are the axes. Shepperd (1978) takes the largest of the
+  // four squares, so that the square root is far from zero.
   const auto r = [this](int row, int column) { return this->Axes[column][row]; };
   std::array<double, 4> squares{ 1.0 + r(0, 0) + r(1, 1) + r(2, 2),
     1.0 + r(0, 0) - r(1, 1) - r(2, 2), 1.0 - r(0, 0) + r(1, 1) - r(2, 2),
@@ -58,7 +58,7 @@ std::array<double, 7> SensorPose::viewpoint() const
   };
   const double scale = 0.5 / std::sqrt(squares[largest]);
   const double sign = sums[largest][0] < 0.0 ? -scale : scale;
-  // + 0: no zero with a sign.
+  // Adding 0 turns -0 into 0.
   return { this->Position[0], this->Position[1], this->Position[2], sign * sums[largest][0] + 0.0,
     sign * sums[largest][1] + 0.0, sign * sums[largest][2] + 0.0, sign * sums[largest][3] + 0.0 };
 }

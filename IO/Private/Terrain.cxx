@@ -22,7 +22,7 @@ double LowestOf(const std::vector<TerrainPiece>& pieces)
 
 Terrain::Terrain(const std::string& name, const Mesh& mesh)
 {
-  constexpr double vertical = 1e-6; // of a triangle's area in plan
+  constexpr double vertical = 1e-6; // greatest share of a vertical triangle's area in plan
   bool up = false;
   bool down = false;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -62,7 +62,7 @@ Terrain::Terrain(const std::string& name, const Mesh& mesh)
   }
 }
 
-// In the order of the mesh.
+// Returns the faces near a place, in the order of the mesh.
 std::vector<const TerrainPiece*> Terrain::Near(const GEOSGeometry* place) const
 {
   std::vector<const TerrainPiece*> found;
@@ -80,8 +80,8 @@ std::vector<const TerrainPiece*> Terrain::Near(const GEOSGeometry* place) const
 
 std::vector<TerrainPiece> Terrain::Cut(const Polygon& polygon) const
 {
-  constexpr double smallestPiece = 1e-6; // m2
-  constexpr double smallestWidth = 1e-4; // m, below which vertices of pieces are one
+  constexpr double smallestPiece = 1e-6; // area, m2
+  constexpr double smallestWidth = 1e-4; // width, m, at which vertices of pieces merge
   GEOSContextHandle_t context = this->Context.Get();
   const Geos::Geometry whole = this->Context.MakePolygon(polygon);
   const std::unique_ptr<const GEOSPreparedGeometry,

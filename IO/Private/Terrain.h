@@ -11,8 +11,8 @@
 
 namespace avianlidar::scene
 {
-/// Common part of a polygon and a triangle of a terrain in plan, and the plane of the triangle: z =
-/// a x + b y + c with x and y relative to `center`.
+/// Part that a polygon and a triangle of a terrain have in common in plan, and the plane of the
+/// triangle: z = a x + b y + c, with x and y relative to `center`.
 struct TerrainPiece
 {
   Polygon polygon;
@@ -37,7 +37,7 @@ public:
   /// Cuts a valid polygon along the edges of the terrain. Leaves out the part beyond the terrain,
   /// and pieces smaller than 1e-6 m2 or narrower than 1e-4 m (area over half the perimeter).
   std::vector<TerrainPiece> Cut(const Polygon& polygon) const;
-  /// Returns the height at a place, m; no value beyond the terrain.
+  /// Returns the height at a place, m, or no value beyond the terrain.
   std::optional<double> HeightAt(const Vec2& place) const;
 
 private:

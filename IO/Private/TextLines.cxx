@@ -37,7 +37,7 @@ bool TextLines::get(std::string& line)
       break;
     }
   }
-  if (isFirst && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // a byte-order mark
+  if (isFirst && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte-order mark
   {
     line.erase(0, 3);
   }

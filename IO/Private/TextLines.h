@@ -27,7 +27,7 @@ public:
   {
   }
 
-  /// Reads the next line, without its end and without a byte-order mark. Returns false behind the
+  /// Reads the next line, without its end and without a byte-order mark. Returns false after the
   /// last line. Throws FormatError for a line of more than 16 MiB.
   bool get(std::string& line);
 

@@ -12,7 +12,7 @@ namespace avianlidar::scene
 {
 namespace
 {
-// Without the place in GDAL's own sources.
+// Returns a message without the file and line of GDAL's source code.
 std::string WithoutPlace(const std::string& message)
 {
   const std::string line = ", at line ";
@@ -24,7 +24,7 @@ std::string WithoutPlace(const std::string& message)
     : message.substr(end + 2);
 }
 
-// PROJ's switch belongs to the process, so the readings of all threads are counted.
+// The objects of all threads are counted, because PROJ has one switch for the process.
 std::mutex ProjMutex;
 int ProjUsers = 0;
 int ProjNetworkBefore = FALSE;
@@ -32,9 +32,9 @@ int ProjNetworkBefore = FALSE;
 CPLHTTPResult* Refuse(
   const char* url, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*, void*)
 {
-  constexpr const char* reason = "%s is not fetched: scenes are read from files alone";
+  constexpr const char* reason = "%s is not fetched: scenes are read only from files";
   CPLError(CE_Failure, CPLE_AppDefined, reason, url);
-  // Without a result GDAL would go on and fetch it.
+  // Without a result GDAL would fetch the URL.
   auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
   result->nStatus = 1;
   result->pszErrBuf = CPLStrdup(CPLSPrintf(reason, url));

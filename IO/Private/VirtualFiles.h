@@ -18,9 +18,10 @@ namespace avianlidar::scene
 std::string VirtualName(const std::string& file);
 
 /// While an object exists, GDAL does not use the network in this thread, and PROJ does not use the
-/// network in any thread. PROJ has one switch for the process, which gets its old value back when
-/// the last object ends. GDAL keeps no state of a compressed file, because GDAL would use this
-/// state for a later file of the same name, and writes no file beside a compressed file.
+/// network in any thread. PROJ has one switch for the whole process. This switch is set back when
+/// the last object ends. GDAL does not keep the state of a compressed file, because GDAL would use
+/// this state for a later file of the same name. GDAL does not write a file beside a compressed
+/// file.
 class OfflineGdal
 {
 public:
@@ -36,13 +37,13 @@ private:
   CPLConfigOptionSetter NoSizes{ "CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false };
 };
 
-/// While an object exists, GDAL prints no messages of this thread, and the last error is kept.
+/// While an object exists, GDAL does not print messages of this thread. The last error is kept.
 class QuietGdal
 {
 public:
   QuietGdal();
 
-  /// Returns whether GDAL reported an error; warnings do not count.
+  /// Returns whether GDAL reported an error. Warnings do not count.
   bool Failed() const { return !this->LastError.empty(); }
   /// Returns ": <last error>", or an empty text without an error.
   std::string Reason() const { return this->Failed() ? ": " + this->LastError : std::string(); }

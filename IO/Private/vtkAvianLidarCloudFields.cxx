@@ -48,7 +48,7 @@ std::string UnitOf(vtkAbstractArray* array)
   return unit ? unit : "";
 }
 
-/// Three numbers of the field data, or nothing if the array is not there.
+/// Returns three numbers of the field data, or no value if the array is missing.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
   Require(names::CheckNumeric(input->GetFieldData(), name, "field data"));
@@ -85,13 +85,13 @@ Field CoordinateField(vtkPointSet* input, int axis, bool single)
       if (single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
       {
         throw FormatError("point " + std::to_string(i) +
-          " has a coordinate that single precision has no number for: set Precision to Double");
+          " has a coordinate beyond the range of single precision: set Precision to Double");
       }
       return value;
     } };
 }
 
-/// Largest rounding of a coordinate as float.
+/// Returns the largest rounding error of a coordinate as float, m.
 double RoundingOf(vtkPointSet* input)
 {
   double bounds[6];
@@ -101,7 +101,7 @@ double RoundingOf(vtkPointSet* input)
   {
     largest = std::max(largest, std::abs(bound));
   }
-  // Beyond, it is an error.
+  // Larger coordinates give an error elsewhere.
   largest = std::min<double>(largest, std::numeric_limits<float>::max());
   return input->GetNumberOfPoints() > 0
     ? 0.5 * (std::nextafter(static_cast<float>(largest), INFINITY) - static_cast<float>(largest))
@@ -114,7 +114,7 @@ vtkSmartPointer<vtkDataArray> ToArray(const formats::Column& column)
     [&](const auto& values)
     {
       using Own = typename std::decay_t<decltype(values)>::value_type;
-      // VTK has two types of 64 bits.
+      // VTK has two types for 64-bit integers.
       using T = std::conditional_t<std::is_same_v<Own, std::int64_t>, vtkTypeInt64,
         std::conditional_t<std::is_same_v<Own, std::uint64_t>, vtkTypeUInt64, Own>>;
       auto array = vtkSmartPointer<vtkDataArray>::Take(
@@ -134,7 +134,7 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
 {
   if (!note.texts.empty())
   {
-    // Comments of a file: all under one name.
+    // All comments of a file are in one array.
     if (auto* there = vtkStringArray::SafeDownCast(fields->GetAbstractArray(note.name.c_str())))
     {
       for (const std::string& text : note.texts)
@@ -166,7 +166,7 @@ void Require(const std::string& wrong)
 //------------------------------------------------------------------------------
 bool IsTooLongForDouble(vtkDataArray* array)
 {
-  constexpr double limit = 9007199254740992.0; // 2^53: the next number is rounded to it
+  constexpr double limit = 9007199254740992.0; // 2^53, to which 2^53 + 1 is rounded
   bool tooLong = false;
   for (vtkIdType i = 0; array->GetDataTypeSize() == 8 && !formats::isFloat(ScalarOf(array)) &&
        i < array->GetNumberOfTuples() && !tooLong;
@@ -248,7 +248,7 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
   const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
   const std::function<void(const std::string&)>& warn)
 {
-  constexpr double noticeable = 1e-3; // m
+  constexpr double noticeable = 1e-3; // rounding that gives a warning, m
   const double rounding = single ? RoundingOf(input) : 0.0;
   if (rounding > noticeable)
   {
@@ -283,7 +283,7 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
     {
       std::replace_if(
         field.name.begin(), field.name.end(), [](unsigned char c) { return c <= ' '; }, '_');
-      // Neither format has integers of 64 bits.
+      // PCD and PLY do not have 64-bit integers.
       const bool isLong = field.type == Scalar::Int64 || field.type == Scalar::UInt64;
       field.type = isLong ? Scalar::Float64 : field.type;
       taken = taken ||
@@ -303,7 +303,7 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
   {
     warn(" is without the point arrays " + left + ": another field of the file has the name.");
   }
-  std::vector<std::string> cut; // nothing: a comment may be as long as it is
+  std::vector<std::string> cut; // not used, because a comment may have any length
   CloudNotes notes = ToNotes(input);
   for (std::size_t i = 3; i < all.size(); ++i)
   {
@@ -378,7 +378,7 @@ CloudNotes ToNotes(vtkPointSet* input)
     vtkAbstractArray* array = fields->GetAbstractArray(i);
     formats::Note note{ array->GetName() ? array->GetName() : "", UnitOf(array), {}, {} };
     auto* numbers = vtkDataArray::SafeDownCast(array);
-    // The digits of long numbers are kept as text.
+    // Long numbers become text, which keeps all digits.
     const bool asText = !numbers || IsTooLongForDouble(numbers);
     for (vtkIdType j = 0; j < array->GetNumberOfValues(); ++j)
     {

@@ -49,7 +49,7 @@ vtkDataArray* Need(vtkPointSet* input, const char* name);
 /// Returns a component of an array as a field, with the type and unit of the array.
 Field ToField(vtkDataArray* array, int component = 0);
 
-/// True if an array of 64-bit integers has a magnitude of 2^53 or more, such as a checksum.
+/// Returns whether an array has a 64-bit integer of 2^53 or more in magnitude, such as a checksum.
 bool IsTooLongForDouble(vtkDataArray* array);
 
 /// Throws unless the array has `components` components and a tuple for each point.
@@ -63,9 +63,9 @@ std::vector<vtkDataArray*> NumericArrays(vtkPointSet* input);
 std::vector<Field> ToFields(vtkDataArray* array);
 
 /// Returns x, y, z (as floats if `single`), intensity as float, the fields of all other numeric
-/// arrays (`toColours` makes those of `rgb`), and the notes as comment. Blanks in names become `_`,
-/// and 64-bit integers become doubles. A warning names arrays that are left out because another
-/// field has their name. Another warning is given if coordinates are rounded by more than 1 mm.
+/// arrays (`toColours` makes the fields of `rgb`), and the notes as comment. Blanks in names become
+/// `_`, and 64-bit integers become doubles. A warning names arrays that are left out because
+/// another field has their name. A second warning reports rounding by more than 1 mm.
 avianlidar::formats::TableOutput ToTable(vtkPointSet* input, bool single,
   const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
   const std::function<void(const std::string&)>& warn);
@@ -89,13 +89,13 @@ CloudNotes ToNotes(vtkPointSet* input);
 /// Throws if the field data are not a valid origin.
 std::optional<Point> FindOrigin(vtkPointSet* input);
 
-/// Returns the texts of a name in the field data, or null. Throws if the array is not of texts.
+/// Returns the texts of a name in the field data, or null. Throws if the array does not hold texts.
 vtkStringArray* FindTexts(vtkPointSet* input, const char* name);
 
 /// Returns the first text of a name in the field data, or an empty text.
 std::string FindText(vtkPointSet* input, const char* name);
 
-/// Returns the pose that the field data `position` and `orientation` give; no value without
+/// Returns the pose that the field data `position` and `orientation` give, or no value without
 /// `position`.
 std::optional<SensorPose> FindPose(vtkPointSet* input);
 
@@ -103,14 +103,14 @@ std::optional<SensorPose> FindPose(vtkPointSet* input);
 Point Carry(const avianlidar::GeodeticFrame& geodesy, avianlidar::Frame from, avianlidar::Frame to,
   const Point& point, std::int64_t i);
 
-/// Publishes the times of the time steps, s, which may be empty, and that piece 0 has the whole
-/// output.
+/// Publishes the times of the time steps, s, unless `times` is empty. Also publishes that piece 0
+/// has the whole output.
 void SetTimes(const std::vector<double>& times, vtkInformation* output);
 
-/// Returns the last step up to the requested time, or the first step.
+/// Returns the index of the last step up to the requested time, or of the first step.
 std::size_t StepOf(const std::vector<double>& times, vtkInformation* output);
 
-/// Returns whether another piece than the first is requested.
+/// Returns whether a piece other than piece 0 is requested.
 bool IsOtherPiece(vtkInformation* output);
 
 /// Runs a step of reading. Returns the name of the file and the error of the step, or an empty
@@ -137,8 +137,8 @@ std::string ErrorIn(const std::string& fileName, const char* noMemory, Step step
   }
 }
 
-/// Converts a cloud to vtkPolyData with a vertex for each point. Frees the values of the cloud
-/// meanwhile.
+/// Converts a cloud to vtkPolyData with a vertex for each point. Frees the values of the cloud as
+/// they are converted.
 void ToPolyData(Cloud& cloud, vtkPolyData* output);
 }
 

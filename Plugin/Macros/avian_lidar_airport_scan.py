@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: scans the selected surfaces with the lidar Airport 16 and shows the echoes, coloured by energy.
 
-With nothing selected it opens the airport that comes with the plugin. What it makes are pipeline objects as from the
-menus: a collision tree, a sensor, an echo filter. The sensor stands where the scene says (field data `lidar_position`),
-else south of the surfaces, off by a tenth of their width or depth, 3 m above their lowest point or, if they are lower
-than 6 m, at half their height: move it from there. What an earlier scan shows is hidden. If something does not fit,
-nothing is made and the reason is given in Output Messages.
+With nothing selected, the macro opens the airport that comes with the plugin. The macro makes a collision tree, a
+sensor and an echo filter, as the menus do. The sensor stands at the position that the scene gives (field data
+`lidar_position`). Without this position, the sensor stands south of the surfaces, at a distance of a tenth of their
+width or depth. Its height is then 3 m above their lowest point, or half their height if they are lower than 6 m. The
+macro hides earlier scans. After an error there are no new objects, and Output Messages gives the reason.
 
-In ParaView: the button is there with the plugin; select surfaces, or nothing, and click it. In a script:
-scan(surfaces, view).
+In ParaView: select surfaces, or nothing, and click the button in the toolbar. In a script: scan(surfaces, view).
 """
 
 import math
@@ -19,26 +18,26 @@ from avian_lidar_plugin import (
 from paraview import servermanager, simple
 
 TITLE = "airport scan"
-WIDE = 50e3  # m: surfaces that extend farther may be in millimetres
-# Where the scene does not say where the lidar stands: metres above the lowest point; share of the width or depth.
+WIDE = 50e3  # m, extent from which on surfaces may be in millimetres
+# Place of the lidar if the scene does not give a position: metres above the lowest point, share of the width or depth.
 HEIGHT = 3
 DISTANCE = 0.1
-ECHO_SIZE = 5  # pixels
-# One looks over the sensor to the strongest echoes, from so many degrees above the horizon: from higher up, the rows of
-# echoes on a wall cover one another. In sight are the echoes of at least this share of the strongest one's energy.
+ECHO_SIZE = 5  # size of an echo's point, pixels
+# Elevation of the camera, deg. From higher up, the rows of echoes on a wall hide each other. The view contains the echoes
+# with at least the share STRONG of the largest energy, and looks at the echoes with at least the share STRONGEST.
 CAMERA_ELEVATION = 20
 STRONG, STRONGEST = 0.25, 0.9
 
 
 def place_beside(tree):
-    """A place to start from: beside the surfaces, neither in them nor above."""
+    """A place for the sensor beside the surfaces, neither inside nor above them."""
     west, east, south, north, bottom, top = tree.GetDataInformation().GetBounds()
     height = min(HEIGHT, (top - bottom) / 2) or HEIGHT
     return [(west + east) / 2, south - DISTANCE * max(east - west, north - south), bottom + height]
 
 
 def bounds_of_strong(echoes, share):
-    """Bounds of the echoes of at least this share of the strongest one's energy."""
+    """Bounds of the echoes with at least this share of the largest energy."""
     strongest = echoes.GetPointDataInformation().GetArray("energy").GetRange(0)[1]
     threshold = servermanager.filters.Threshold(
         Input=echoes, Scalars=["POINTS", "energy"], ThresholdMethod="Above Upper Threshold", UpperThreshold=share * strongest
@@ -56,7 +55,7 @@ def inside(point, bounds):
 
 
 def look(view, beams, tree, echoes, seen, elevation):
-    """The sensor with the strong echoes ahead; without echoes, with the surfaces, from the south."""
+    """Points the camera over the sensor at the strong echoes or, without echoes, from the south at the surfaces."""
     sensor = [value for value in beams.Position for _ in range(2)]
     if not seen:
         frame(view, math.pi / 2, elevation, sensor, tree.GetDataInformation().GetBounds())
@@ -67,10 +66,10 @@ def look(view, beams, tree, echoes, seen, elevation):
 
 
 def show_scan(surfaces, tree, beams, echoes, view, colour, elevation=CAMERA_ELEVATION):
-    """Grey surfaces, the sensor as a large point, coloured echoes, all in sight."""
+    """Shows grey surfaces, the sensor as a large point, and coloured echoes."""
     simple.Hide(surfaces, view)
     show_grey(tree, view)
-    # A ball on the ground is not cut by it as a square is; but the nearest ball of all vanishes from ParaView's picture.
+    # The ground cuts a square, but not a ball. ParaView does not draw a ball that is nearer than all other objects.
     show_sensor(beams, view, int(inside(beams.Position, tree.GetDataInformation().GetBounds())))
     seen = echoes.GetDataInformation().GetNumberOfPoints() > 0
     if seen:
@@ -80,7 +79,7 @@ def show_scan(surfaces, tree, beams, echoes, view, colour, elevation=CAMERA_ELEV
 
 
 def scan(surfaces=None, view=None):
-    """Scans the surfaces, or the example: returns (collision tree, sensor, echo filter)."""
+    """Scans the surfaces, or the airport. @return (collision tree, sensor, echo filter)"""
     colour = neighbour(ENERGY_COLOURS, globals().get("__file__")).colour
     view = start(view)
     surfaces = surfaces or open_example()
@@ -94,17 +93,17 @@ def scan(surfaces=None, view=None):
     show_scan(surfaces, tree, beams, echoes, view, colour)
     simple.SetActiveSource(echoes)
     where = "({:g}, {:g}, {:g}) m".format(*place)
-    move = f"select {name_of(beams)}, set Position or tick Show Point and drag the handle, Apply"
+    move = f"select {name_of(beams)}, set Position (or tick Show Point and drag the handle), and click Apply"
     if echoes.GetDataInformation().GetNumberOfPoints() == 0:
         bounds = surfaces.GetDataInformation().GetBounds()
         if max(bounds[1] - bounds[0], bounds[3] - bounds[2]) > WIDE:
             say(TITLE, f"no echoes: the surfaces are {bounds[1] - bounds[0]:g} m wide and {bounds[3] - bounds[2]:g} m deep. "
-                "If they are in millimetres, apply Transform with the scale 0.001 to them, select it and click again")
+                "If the unit is the millimetre, apply Transform with the scale 0.001, select the result and click again")
         else:
-            say(TITLE, f"no echoes: the sensor at {where} sees nothing. Move it: {move}; "
-                "then select the echoes and click Colour by Energy")
+            say(TITLE, f"no echoes: the sensor at {where} sees nothing. To move the sensor, {move}. "
+                "Then select the echoes and click Colour by Energy")
     elif not known:
-        say(TITLE, f"the surfaces have no {POSITION}: the sensor stands beside them, at {where}. To move it: {move}",
+        say(TITLE, f"the surfaces have no {POSITION}: the sensor stands beside the surfaces, at {where}. To move the sensor, {move}",
             failed=False)
     return tree, beams, echoes
 

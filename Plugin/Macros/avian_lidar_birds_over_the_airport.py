@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: birds over the airport that comes with the plugin, scanned ten times by a lidar that turns, to play.
+"""ParaView macro: birds over the airport that comes with the plugin, in ten scans of a rotating lidar to play.
 
-Gulls and crows cross the airport, a flock of starlings passes. Each is an Avian Lidar Tracks, whose movers, as one
-group, are the third input of the echo filter; the lidar is a Search 905 where the scene says. Echoes are coloured by energy,
-those of birds by kind, and large; lines are the ways that the birds fly. Play goes from scan to scan. An airport that is in
-the pipeline is used, with its collision tree; what an earlier scan shows is hidden. If something does not fit, nothing is
-made and the reason is given in Output Messages.
+Gulls and crows cross the airport, and a flock of starlings passes. Each kind is a source Avian Lidar Tracks. A group of all movers
+is the third input of the echo filter. The lidar is a Search 905 at the position that the scene gives. Echoes of surfaces are
+coloured by energy. Echoes of birds are large points, coloured by kind. Lines show the paths of the birds. Play goes from scan
+to scan. If the pipeline contains the airport and its collision tree, the macro uses them. The macro hides earlier scans. After
+an error there are no new objects, and Output Messages gives the reason.
 
-In ParaView: the button is there with the plugin; click it. In a script: scan(view).
+In ParaView: click the button in the toolbar. In a script: scan(view).
 """
 
 from avian_lidar_plugin import (
@@ -16,8 +16,8 @@ from avian_lidar_plugin import (
 from paraview import simple
 
 REVOLUTIONS = 10
-AIR = 8.9e-5  # 1/m, haze
-# Object ids: of the first bird, and how many a kind of birds may have.
+AIR = 8.9e-5  # attenuation of haze, 1/m
+# Object id of the first bird, and number of ids of a kind of birds.
 FIRST, IDS = 10000, 1000
 BIRDS = {
     "Gulls": ((0.9, 0.1, 0.5), {"Pattern": "Crossings", "Species": "herring gull", "NumberOfBirds": 12, "Radius": 250.0,
@@ -27,9 +27,9 @@ BIRDS = {
     "Starlings": ((0.2, 0.9, 0.4), {"Pattern": "Flock", "Species": "starling", "NumberOfBirds": 30, "Radius": 180.0,
                                     "Heights": [8.0, 14.0], "Seed": 1}),
 }
-BIRD_SIZE, CLUTTER_SIZE, TRAIL_WIDTH = 9, 4, 1.5  # pixels
-# What the view shows: metres west, east, and to either side of the lidar (the terminal is in the east), from so many degrees
-# above the horizon.
+BIRD_SIZE, CLUTTER_SIZE, TRAIL_WIDTH = 9, 4, 1.5  # sizes of points and width of lines, pixels
+# Region of the view: metres west, east, and to either side of the lidar (the terminal is in the east). Elevation of the
+# camera, deg.
 WEST, EAST, SIDE = 260.0, 480.0, 330.0
 CAMERA_ELEVATION = 40
 
@@ -38,7 +38,7 @@ def flights(kinds, position, seconds):
     """A source of tracks for each kind of birds."""
     found = []
     for number, (name, (_, properties)) in enumerate(kinds.items()):
-        simple.SetActiveSource(None)  # else it becomes the input Lines
+        simple.SetActiveSource(None)  # an active source would become the input Lines
         tracks = simple.AvianLidarTracks(registrationName=free_name(name), Center=[*position[:2], 0.0],
                                          TimeRange=[0.0, seconds], FirstObjectId=FIRST + IDS * number, **properties)
         tracks.UpdatePipeline()
@@ -47,7 +47,7 @@ def flights(kinds, position, seconds):
 
 
 def show_birds(kinds, tracks, echoes, view, trail_width=TRAIL_WIDTH):
-    """Ways as thin lines, echoes of each kind as large points of the same colour; returns these echoes."""
+    """Shows paths as thin lines, and echoes of each kind as large points of the same colour. @return these echoes"""
     found = []
     for number, (source, (name, (colour, _))) in enumerate(zip(tracks, kinds.items())):
         simple.Hide(source, view)
@@ -55,14 +55,14 @@ def show_birds(kinds, tracks, echoes, view, trail_width=TRAIL_WIDTH):
         points = simple.Threshold(registrationName=free_name(f"Echoes of {name.lower()}"), Input=echoes,
                                   Scalars=["POINTS", "object_id"], ThresholdMethod="Between",
                                   LowerThreshold=FIRST + IDS * number, UpperThreshold=FIRST + IDS * (number + 1) - 1)
-        # Not as spheres: software rendering leaves out most of them. Squares lie over the point coloured by energy.
+        # Not spheres, because software rendering leaves out most spheres. Squares hide the points coloured by energy.
         show(points, view, colour, Representation="Points", PointSize=BIRD_SIZE)
         found.append(points)
     return found
 
 
 def scan(view=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WIDTH):
-    """Scans the airport with birds: returns (tracks, sensor, echo filter, echoes of each kind of birds)."""
+    """Scans the airport with birds. @return (tracks, sensor, echo filter, echoes of each kind of birds)"""
     colour = neighbour(ENERGY_COLOURS, globals().get("__file__")).colour
     view = start(view)
     scene, tree = airport_and_tree()

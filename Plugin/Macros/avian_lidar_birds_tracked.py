@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: birds over the airport, tracked from scan to scan, to play.
 
-It makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns what stands still, and an
-Avian Lidar Tracker of what is left. It goes through all scans once: clutter is grey, other echoes are white, confirmed tracks
-have colours of their own, thin lines are the ways that the birds fly. Play goes from scan to scan; the first five scans are
-learned, and nothing is tracked in them. If something does not fit, nothing is made and the reason is given in Output Messages.
+The macro makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns clutter, and an
+Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are white. Each confirmed track has its own colour.
+Thin lines show the paths of the birds. The macro executes all scans once. Play goes from scan to scan. In the first five scans
+the filter learns, and all points are clutter. After an error there are no new objects, and Output Messages gives the reason.
 
-In ParaView: it is in the menu Macros with the plugin. In a script: track(view).
+In ParaView: choose the macro in the menu Macros. In a script: track(view).
 """
 
 from avian_lidar_plugin import free_name, neighbour, run, show, start
@@ -15,11 +15,11 @@ from paraview import simple
 BIRDS = "avian_lidar_birds_over_the_airport"
 REVOLUTIONS = 20
 CLUTTER_COLOUR, POINT_COLOUR = (0.55, 0.55, 0.6), (1.0, 1.0, 1.0)
-CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # pixels
+CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # sizes of points and widths of lines, pixels
 
 
 def track(view=None):
-    """Scans the airport with birds and tracks them: returns (ways of the birds, echo filter, clutter filter, tracker)."""
+    """Scans the airport with birds and tracks the birds. @return (paths of the birds, echo filter, clutter filter, tracker)"""
     birds = neighbour(BIRDS, globals().get("__file__"))
     view = start(view)
     ways, beams, echoes, of_birds = birds.scan(view, REVOLUTIONS, TRAIL_WIDTH)
@@ -29,7 +29,7 @@ def track(view=None):
                                  ThresholdMethod="Above Upper Threshold", UpperThreshold=1)
     scene = simple.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
-    for time in beams.TimestepValues:  # both remember what came before
+    for time in beams.TimestepValues:  # in order, because clutter filter and tracker keep earlier scans
         scene.AnimationTime = time
         tracker.UpdatePipeline(time)
     for points in (echoes, *of_birds):

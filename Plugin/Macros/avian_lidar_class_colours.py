@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: colours the selected labelled points (semantic_label) by class, with the classes' names.
 
-The first Apply of an Avian Lidar Sequence Reader does so, too. Colours and names are those of the sequences'
-semantic-kitti.yaml. The boxes of what moves are drawn as lines.
+The first Apply of an Avian Lidar Sequence Reader also runs the macro. Colours and names are as in the file
+semantic-kitti.yaml of the sequences. Boxes of moving objects are drawn as lines.
 
-In ParaView: it is in the menu Macros with the plugin; select the points and click it. In a script: colour(source, view).
+In ParaView: select the points, and choose the macro in the menu Macros. In a script: colour(source, view).
 """
 
 from avian_lidar_plugin import run, show
@@ -12,7 +12,7 @@ from paraview import simple
 
 ARRAY = "semantic_label"
 READER = "AvianLidarSequenceReader"
-# Name and colour (red, green, blue) of each class: those of avianlidar's sequences.
+# Name and colour (red, green, blue) of each class, as in avianlidar's sequences.
 CLASSES = {
     0: ("unlabeled", (0, 0, 0)),
     1: ("outlier", (200, 215, 235)),
@@ -34,15 +34,15 @@ CLASSES = {
     258: ("moving-truck", (25, 190, 205)),
     259: ("moving-other-vehicle", (45, 160, 45)),
 }
-POINT_SIZE = 4  # pixels
-FONT_SIZE, LEGEND = 10, 0.6  # of the legend; share of the view's height
+POINT_SIZE = 4  # size of a point, pixels
+FONT_SIZE, LEGEND = 10, 0.6  # font size and length of the legend (points, share of the view's height)
 BOX_COLOUR = (1.0, 1.0, 1.0)
 
 
 def colour(source, view=None):
-    """Colours the points of the source by class, and shows a sequence's boxes: returns the display."""
+    """Colours the points of the source by class, and shows the boxes of a sequence. @return the display"""
     if source is None or not source.GetPointDataInformation().GetArray(ARRAY):
-        raise ValueError(f"select labelled points first (point array {ARRAY}), such as a sequence that was opened")
+        raise ValueError(f"select labelled points first (point array {ARRAY}), such as an opened sequence")
     view = view or simple.GetActiveViewOrCreate("RenderView")
     display = show(source, view, Representation="Points", PointSize=POINT_SIZE)
     simple.ColorBy(display, ("POINTS", ARRAY))

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: where a lidar at the airport would detect a gull, and why not elsewhere.
+"""ParaView macro: where a lidar at the airport would detect or miss a gull, and why.
 
-It makes a sensor Search 905 where the scene says and an Avian Lidar Coverage around it, of a herring gull in clear air.
-The view shows the airport under a surface within which a scan detects the bird at least every other time, and a slice
-30 m above the ground with the probability. A second view beside it shows the same slice with the reasons: seen, too weak,
-shadowed, in clutter, between beams, outside the band. Change Species, Meteorological Visibility or Reflectance of the coverage: no line
-of sight is traced again. An airport that is in the pipeline is used, with its collision tree; what an earlier scan shows
-is hidden. If something does not fit, nothing is made and the reason is given in Output Messages.
+The macro makes a sensor Search 905 at the position that the scene gives, and an Avian Lidar Coverage for a herring gull in
+clear air around the sensor. The first view shows the airport, a surface within which a scan detects the bird with a
+probability of at least 1/2, and a slice 30 m above the ground with the probability. The second view shows the same slice
+with the status: seen, too weak, shadowed, in clutter, between beams, outside the band. A change of Species, Meteorological
+Visibility or Reflectance of the coverage does not need new lines of sight. If the pipeline contains the airport and its
+collision tree, the macro uses them. The macro hides earlier scans. After an error there are no new objects, and Output
+Messages gives the reason.
 
-In ParaView: the button is there with the plugin; click it. In a script: cover(view).
+In ParaView: click the button in the toolbar. In a script: cover(view).
 """
 
 from avian_lidar_plugin import (
@@ -18,31 +19,31 @@ from paraview import simple
 
 STATUS = "avian_lidar_status_colours"
 SPECIES = "herring gull"
-# Metres: the region to either side of the lidar and above the ground, the distances of its points, the slice.
+# Extent of the region to either side of the lidar and above the ground, spacing of its points, height of the slice, m.
 REACH, CEILING = 900.0, 75.0
 SPACING = [12.0, 12.0, 7.5]
 HEIGHT = 30.0
 LIMIT = 0.5  # probability on the surface
-LEAST = 0.02  # what is less probable is not drawn, and the airport is seen below
+LEAST = 0.02  # least probability that is drawn; below, the view shows the airport
 PROBABILITY = "detection_probability"
 SURFACE_COLOUR, SURFACE_OPACITY = (1.0, 0.85, 0.85), 0.4
 FONT_SIZE = 17
-# One looks east, where the terminal is, from so many degrees above the horizon, with so many metres west of the region in
-# sight, for the legend.
+# Elevation of the camera, deg; its azimuth, rad, towards the terminal; width of a strip west of the region, for the
+# legend, m.
 CAMERA_ELEVATION = 40
 EAST = 0.0
 ROOM = 820.0
-REASONS = "Reasons"  # the second view
+REASONS = "Reasons"  # name of the second view
 
 
 def region(place):
-    """About the lidar; the slice lies at a row of its points, which are not mixed then."""
+    """Bounds of the region around the lidar, m. The slice lies at a layer of points, so status values are not interpolated."""
     x, y = place[:2]
     return [x - REACH, x + REACH, y - REACH, y + REACH, 0.0, CEILING]
 
 
 def second_view(view):
-    """A view beside it, or the one where an earlier coverage has shown its reasons; and the pixels of each."""
+    """A view beside the given view, or the existing view of reasons, and the size of both views in pixels."""
     width, height = view.ViewSize
     other = simple.FindView(REASONS)
     if other is not None:
@@ -59,7 +60,7 @@ def second_view(view):
 
 
 def show_legend(display, table, view, title, horizontal):
-    """Below the map, in letters of one size."""
+    """Shows the legend, with letters of one size."""
     bar = simple.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = title, ""
     bar.TitleFontSize = bar.LabelFontSize = FONT_SIZE
@@ -73,17 +74,17 @@ def show_legend(display, table, view, title, horizontal):
 
 
 def show_probability(probable, surface, view):
-    """The slice, and the surface, through which it is seen."""
+    """Shows the slice by probability, and the translucent surface above it."""
     display = show(probable, view, Ambient=1.0, Diffuse=0.0)  # colours as in the legend
     table = colour_by(display, "POINTS", PROBABILITY, "Viridis (matplotlib)", (0.0, 1.0))
     title = f"probability of detection at {HEIGHT:g} m; surface: {LIMIT:g}"
     show_legend(display, table, view, title, horizontal=True)
-    # Its upper side alone: one layer needs no order of drawing.
+    # Only the upper side of the surface: a single translucent layer needs no order of drawing.
     show(surface, view, SURFACE_COLOUR, Opacity=SURFACE_OPACITY, BackfaceRepresentation="Cull Backface")
 
 
 def show_reasons(status, level, view):
-    """The slice by status, which words explain."""
+    """Shows the slice by status, with words in the legend."""
     display = status.colour(level, view)
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the legend
     table = simple.GetColorTransferFunction(status.ARRAY, display, separate=True)
@@ -91,13 +92,13 @@ def show_reasons(status, level, view):
 
 
 def cover(view=None):
-    """The coverage of the airport: returns (sensor, coverage, slice, surface)."""
+    """Makes the coverage of the airport. @return (sensor, coverage, slice, surface)"""
     status = neighbour(STATUS, globals().get("__file__"))
     view = start(view)
     scene, tree = airport_and_tree()
     place = lidar_place(tree)
     beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=place)
-    simple.SetActiveSource(None)  # else it becomes the input Places
+    simple.SetActiveSource(None)  # an active source would become the input Places
     coverage = simple.AvianLidarCoverage(registrationName=free_name("Coverage map"), Beams=beams, Surfaces=tree,
                                          Bounds=region(place), Spacing=SPACING, Species=SPECIES)
     coverage.UpdatePipeline()

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: colours the active echoes by energy as the paper does, blue at Qlow and red at Qhigh; a range image, too,
-in a view of its own, where cells without an echo are transparent.
+"""ParaView macro: colours the active echoes or range image by energy as in the paper, blue at Qlow and red at Qhigh.
 
-The range is the receiver's, from the field data that travel with the echoes, and stays: rescaled to the data, a
-colour would no longer mean one energy. Without limits in the field data, the array `energy` or the preset,
-nothing is changed and the reason is printed. ParaView's window runs it at the first Apply of an echo filter or a range image.
+A range image gets its own view, in which cells without an echo are transparent. The range of the colours is the dynamic range
+of the receiver, from the field data of the echoes. The range is fixed, so that a colour always means the same energy. If limits in the
+field data, the array `energy` or the preset are missing, the macro changes nothing and prints the reason. ParaView's window
+runs the macro at the first Apply of an echo filter or a range image.
 
-In ParaView: the button is there with the plugin; select the echoes and click it. In a script: colour(source, view).
+In ParaView: select the echoes, and click the button in the toolbar. In a script: colour(source, view).
 """
 
 from avian_lidar_plugin import colour_by, run, write
@@ -15,9 +15,9 @@ from paraview import servermanager, simple
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"
 LIMITS = ("lower_energy_limit", "upper_energy_limit")
-# A full circle is 60 times as wide as six degrees are high: an image is drawn that many times as wide as high.
+# Width of a drawn range image divided by its height. With equal scales, an image of 360 by 6 degrees would have 60.
 ASPECT = 4
-MARGIN = 1.35  # for numbers and legend
+MARGIN = 1.35  # factor of the width, for numbers and legend
 
 
 def energy_limits(source):
@@ -37,7 +37,7 @@ def is_image(source):
 
 
 def titles(source, columns, rows):
-    """Of the axes, which are degrees, or counts where the angles are not equally spaced."""
+    """Titles of the axes: degrees, or counts if the angles are not equally spaced."""
     found = []
     for name, ends, degrees, counts in (("column_azimuths", columns, "azimuth (deg)", "column"),
                                         ("row_elevations", rows, "elevation (deg)", "row")):
@@ -48,7 +48,7 @@ def titles(source, columns, rows):
 
 
 def new_view(active):
-    """A view below the active one: a view without a place in a layout is not to be seen in ParaView's window."""
+    """A view below the active view, with a place in the layout: ParaView's window shows only views with a place."""
     view = simple.CreateView("RenderView")
     layout = simple.GetLayout(active) if active else None
     simple.AssignViewToLayout(view, layout, layout.SplitViewVertical(active) if layout else 0)
@@ -56,7 +56,7 @@ def new_view(active):
 
 
 def show_image(source, view=None):
-    """Shows an image in a view of its own (if it is not in the active one already), seen from above: its axes are
+    """Shows an image from above in its own view, or in the active view if that view shows the image. The axes are in
     degrees."""
     active = simple.GetActiveView()
     if view is None and active is not None and servermanager.GetRepresentation(source, active) is not None:
@@ -75,8 +75,8 @@ def show_image(source, view=None):
     view.InteractionMode = "2D"
     view.CameraParallelProjection = 1
     view.OrientationAxesVisibility = 0
-    simple.ResetCamera(view)  # for the grid; in the window, the camera would not know the scale yet
-    # The legend is below.
+    simple.ResetCamera(view)  # for the grid; in the window, the reset does not include the scale yet
+    # Room for the legend below the image.
     width, middle = east - west, display.Scale[1] * (down + up) / 2 - 0.2 * (east - west) / ASPECT
     view.CameraFocalPoint = [(west + east) / 2, middle, 0]
     view.CameraPosition = [(west + east) / 2, middle, width]
@@ -86,7 +86,7 @@ def show_image(source, view=None):
 
 
 def legend(table, view, title):
-    """The legend of a table of colours, with numbers that are all written alike."""
+    """The legend of a table of colours, with one format for all numbers."""
     bar = simple.GetScalarBar(table, view)
     bar.Title = title
     bar.ComponentTitle = ""
@@ -96,7 +96,7 @@ def legend(table, view, title):
 
 
 def colour(source, view=None):
-    """Colours an output by energy with the preset over the receiver's limits; returns (Qlow, Qhigh)."""
+    """Colours an output by energy with the preset over the receiver's limits. @return (Qlow, Qhigh), J"""
     if source is None:
         raise ValueError("select the echoes first")
     if source.GetPointDataInformation().GetArray(ARRAY) is None:
@@ -111,7 +111,7 @@ def colour(source, view=None):
         display = simple.Show(source, view)
     table = colour_by(display, "POINTS", ARRAY, PRESET, (low, high))
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
-    table.NanOpacity = 0  # no echo
+    table.NanOpacity = 0  # cells without an echo
     bar = legend(table, view, "energy (J)")
     if is_image(source):
         bar.Orientation, bar.WindowLocation = "Horizontal", "Lower Center"

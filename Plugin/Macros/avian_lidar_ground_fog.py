@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: the airport in ground fog, and what a lidar receives of it.
+"""ParaView macro: the airport in ground fog, and the echoes of a lidar.
 
-It makes a sensor Search 905 where the scene says, a medium (fog of 400 m visibility up to 5 m, fading above) and a scan of
-both together, as Group Datasets gives them to an Avian Lidar Echo Filter. The fog is drawn translucent, the airport grey,
-echoes by energy. Change Kind, Visibility or the shape of the medium, and Apply. An airport that is in the pipeline is used,
-with its collision tree; what an earlier scan shows is hidden. If something does not fit, nothing is made and the reason is
-given in Output Messages.
+The macro makes a sensor Search 905 at the position that the scene gives, and a medium (fog of 400 m visibility up to a height
+of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo Filter. The fog is translucent, the
+airport is grey, and echoes are coloured by energy. You can then change Kind, Meteorological Visibility or the shape of the
+medium. If the pipeline contains the airport and its collision tree, the macro uses them. The macro hides earlier scans. After
+an error there are no new objects, and Output Messages gives the reason.
 
-In ParaView: it is in the menu Macros with the plugin. In a script: cover(view).
+In ParaView: choose the macro in the menu Macros. In a script: cover(view).
 """
 
 from avian_lidar_plugin import (
@@ -15,7 +15,7 @@ from avian_lidar_plugin import (
 from paraview import simple
 
 AIRPORT = "avian_lidar_airport_scan"
-# m: visibility, height of the dense part, and over which it fades above.
+# Visibility, height of the dense part, and height over which the density decreases to 1/e above, m.
 VISIBILITY, TOP, SOFTNESS = 400.0, 5.0, 3.0
 FOG_COLOUR, FOG_OPACITY = (0.9, 0.95, 1.0), 0.45
 
@@ -30,7 +30,7 @@ def show_fog(fog, view):
 
 
 def cover(view=None):
-    """The airport in ground fog: returns (sensor, medium, group, scan)."""
+    """Scans the airport in ground fog. @return (sensor, medium, group, scan)"""
     airport, colours = (neighbour(name, globals().get("__file__")) for name in (AIRPORT, ENERGY_COLOURS))
     view = start(view)
     scene, tree = airport_and_tree()

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: the beam of the selected echo, the surfaces that it sees, and the share of each.
+"""ParaView macro: the beam of the selected echo, the surfaces in the beam, and the share of each surface.
 
-Select an echo first: Select Points On in a render view, or a row of a spreadsheet; of the echo filter's outputs or of anything
-made of them that has beam_id. It makes an Avian Lidar Beam View with the inputs and the air of that scan, or sets Beam Id of
-the one that is there: the cone translucent, the parts of the surfaces in the beam coloured by their share of the energy, and
-a table. If something does not fit, nothing is made and the reason is given in Output Messages.
+Select an echo first, by Select Points On in a render view or as a row of a spreadsheet. The echo may be of the echo filter, or
+of a filter downstream that keeps beam_id. The macro makes an Avian Lidar Beam View with the inputs and the air of the scan. If
+the scan already has a beam view, the macro sets its Beam Id. The cone is translucent, and the parts of the surfaces in the beam
+are coloured by their share of the energy. A table lists the shares. After an error there are no new objects, and Output
+Messages gives the reason.
 
-In ParaView: the button is there with the plugin. In a script: show_beam(echoes, beam_id, view).
+In ParaView: choose the macro in the menu Macros. In a script: show_beam(echoes, beam_id, view).
 """
 
 from avian_lidar_plugin import colour_by, free_name, plugin_folder, run, say, show, start
@@ -18,24 +19,24 @@ SCAN, VIEW = "AvianLidarEchoFilter", "AvianLidarBeamView"
 WHAT_TO_SELECT = "select an echo first (Select Points On in the view, or a row of a spreadsheet)"
 AIR = ("AttenuationCoefficient", "MeteorologicalVisibility", "AirBackscatter", "RainRate", "ReflectanceModel")
 CONE_COLOUR, CONE_OPACITY = (1.0, 0.7, 0.2), 0.25
-# Towards the lidar, so that nothing is drawn at the same depth: metres, and of the range.
+# Shift of the drawn parts towards the lidar, off the surfaces of the scene: metres, and share of the range.
 NEARER, NEARER_SHARE = 0.01, 0.002
 TABLE = "Shares of the beam"
-HEIGHT = 0.75  # of the view, that is not the table's
+HEIGHT = 0.75  # share of the height of the view above the table
 
 
 def scan_of(source):
-    """The echo filter that it is, or is made of; or None."""
+    """The echo filter that the source is or uses upstream, or None."""
     while source is not None and source.SMProxy.GetXMLName() != SCAN:
         names = [name for name in ("Input", "Echoes", "Simulated") if source.SMProxy.GetProperty(name)]
         source = getattr(source, names[0]) if names else None
-        source = source if source is None or hasattr(source, "SMProxy") else source[0]  # of several
-        source = getattr(source, "Proxy", source)  # of a port
+        source = source if source is None or hasattr(source, "SMProxy") else source[0]  # first of several inputs
+        source = getattr(source, "Proxy", source)  # source of a port
     return source
 
 
 def selections():
-    """(source, port, selection) of all that is selected, the active source first."""
+    """(source, port, selection) of all selections, with the active source first."""
     active = simple.GetActiveSource()
     for source in sorted(simple.GetSources().values(), key=lambda one: one != active):
         for port in range(source.SMProxy.GetNumberOfOutputPorts()):
@@ -45,7 +46,7 @@ def selections():
 
 
 def selected_beam():
-    """(source, beam_id) of the first echo that is selected."""
+    """(source, beam_id) of the first selected echo."""
     for source, port, selection in selections():
         if scan_of(source) is None:
             continue
@@ -55,13 +56,13 @@ def selected_beam():
         ids = [int(ids.GetTuple1(i)) for i in range(ids.GetNumberOfTuples())] if ids else []
         if ids:
             if len(set(ids)) > 1:
-                say(TITLE, f"echoes of {len(set(ids))} beams are selected: this is the beam {ids[0]}", failed=False)
+                say(TITLE, f"echoes of {len(set(ids))} beams are selected: the view shows the beam {ids[0]}", failed=False)
             return source, ids[0]
     raise ValueError(WHAT_TO_SELECT)
 
 
 def same(one, other):
-    """Whether two inputs are one output."""
+    """Whether two inputs are connected to the same output."""
     pairs = [(getattr(port, "Proxy", port), getattr(port, "Port", 0)) if port is not None else None for port in (one, other)]
     return pairs[0] == pairs[1]
 
@@ -76,7 +77,7 @@ def view_of(scan):
 
 
 def show_parts(beam, view):
-    """The surfaces by their share of the energy, a little nearer to the lidar than they are; the cone."""
+    """Shows the surfaces by their share of the energy, shifted towards the lidar, and the cone."""
     cone = simple.OutputPort(beam, 1)
     data = servermanager.Fetch(beam, idx=1)
     show(cone, view, CONE_COLOUR, Opacity=CONE_OPACITY)
@@ -84,7 +85,7 @@ def show_parts(beam, view):
     apex, count = data.GetPoint(0), data.GetNumberOfPoints()
     middle = [sum(data.GetPoint(i)[axis] for i in range(1, count)) / (count - 1) for axis in range(3)]
     length = sum((a - b) ** 2 for a, b in zip(middle, apex)) ** 0.5
-    place = "Translation" if "Translation" in display.ListProperties() else "Position"  # from ParaView 5.12 on, and before
+    place = "Translation" if "Translation" in display.ListProperties() else "Position"  # Translation exists from ParaView 5.12 on
     display.SetPropertyWithName(place, [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)])
     table = colour_by(display, "CELLS", SHARE, "Viridis (matplotlib)", (0.0, 1.0))
     bar = simple.GetScalarBar(table, view)
@@ -93,7 +94,7 @@ def show_parts(beam, view):
 
 
 def show_table(beam, view):
-    """The shares below the view, in a spreadsheet of its own."""
+    """Shows the shares in a spreadsheet below the view."""
     sheet = simple.FindView(TABLE)
     if sheet is None:
         sheet = simple.CreateView("SpreadSheetView")
@@ -108,7 +109,7 @@ def show_table(beam, view):
 
 
 def show_beam(source=None, beam_id=None, view=None):
-    """Shows the beam of the selected echo, or the one of that number in a scan: returns the beam view."""
+    """Shows the beam of the selected echo, or the beam `beam_id` of a scan. @return the beam view"""
     plugin_folder(on_server=True)
     if beam_id is None:
         source, beam_id = selected_beam()

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: colours a beam report, or a range image of one, by what became of each beam, with words as legend; a
-coverage, or a slice of one, by why a bird is seen there or not.
+"""ParaView macro: colours a beam report, range image or coverage by status, with words in the legend.
 
-Echo, no surface, below the lower limit, saturated, outside the gate: each has one colour. If the active output has no
-array `status` but the filter's Beam Report has, that is coloured. Places of a coverage have words and colours of their
-own. Without an array `status`, or without the preset, nothing is changed and the reason is printed.
+Beams are coloured by status: echo, no surface, below the lower limit, saturated, outside the gate. Places of a coverage are
+coloured by other status values: seen, or the reason why a bird is missed. A range image needs a beam report as Beams. A
+slice of a coverage is also possible. If the active output has no array `status` but the filter's Beam Report has, the macro colours
+the report. Without an array `status`, or without the preset, the macro changes nothing and prints the reason.
 
-In ParaView: the button is there with the plugin; select the output and click it. In a script: colour(source, view).
+In ParaView: select the output, and click the button in the toolbar. In a script: colour(source, view).
 """
 
 from avian_lidar_plugin import ENERGY_COLOURS, neighbour, run, write
@@ -15,13 +15,13 @@ from paraview import servermanager, simple
 PRESET = "Avian lidar status"
 COVERAGE_PRESET = "Avian lidar coverage status"
 ARRAY = "status"
-# An array that only places of a coverage have.
+# Array that only a coverage has.
 OF_COVERAGE = "track_probability"
 FILES = {PRESET: "AvianLidarStatus.json", COVERAGE_PRESET: "AvianLidarCoverageStatus.json"}
 
 
 def with_status(source):
-    """The output with the array: the one given, else the second of its filter."""
+    """The output with the array: the given output, else the second output of its filter."""
     ports = [source]
     if source.SMProxy.GetNumberOfOutputPorts() > 1:
         proxy = source.SMProxy
@@ -29,7 +29,7 @@ def with_status(source):
     for port in ports:
         if port.GetPointDataInformation().GetArray(ARRAY) is not None:
             return port
-    raise ValueError(f"there is no point array {ARRAY}: select a beam report, or a range image whose beams are one")
+    raise ValueError(f"there is no point array {ARRAY}: select a beam report, or a range image with a beam report as Beams")
 
 
 def of_coverage(source):
@@ -37,7 +37,7 @@ def of_coverage(source):
 
 
 def colour(source, view=None):
-    """Colours an output by status; returns its display."""
+    """Colours an output by status. @return the display of the output"""
     if source is None:
         raise ValueError("select the beam report first")
     source = with_status(source)
@@ -54,7 +54,7 @@ def colour(source, view=None):
         display = simple.Show(source, view)
     if places and image and display.Representation == "Outline":
         display.SetRepresentationType("Slice")
-    # Numbers of places mean other words than those of beams: a table of colours of their own.
+    # Status values of places have other meanings than status values of beams, so places have a separate table of colours.
     simple.ColorBy(display, ("POINTS", ARRAY), separate=places)
     table = simple.GetColorTransferFunction(ARRAY, display, separate=places)
     table.AutomaticRescaleRangeMode = "Never"

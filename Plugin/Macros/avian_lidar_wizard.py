@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: a scan of a scene with a sensor, birds and weather, as a dialog has asked for them.
+"""ParaView macro: a scan of a scene with a sensor, birds and weather, which the user chooses in a dialog.
 
-In ParaView the button opens the dialog; pressing Finish at once gives birds over the airport that comes with the plugin, in
-clear air. It makes a scene (unless the airport is in the pipeline), a collision tree, the sensor, birds (Avian Lidar Tracks and their
-group), an echo filter with ten scans to play, and in ground fog a medium. If something does not fit, nothing is made and the
-reason is given in Output Messages. In a script: make(scene, sensor, species, number, weather, view).
+In ParaView, Macros > Avian Lidar: Scan as You Choose... opens the dialog. The button Finish on the first page gives birds over
+the airport that comes with the plugin, in clear air. The macro makes a scene (unless the pipeline contains the airport), a
+collision tree, the sensor, birds (Avian Lidar Tracks in a group) and an echo filter with ten scans to play. Ground fog also
+needs a medium. After an error there are no new objects, and Output Messages gives the reason. In a script: make(scene, sensor,
+species, number, weather, view).
 """
 
 import os
@@ -17,8 +18,8 @@ from paraview import servermanager, simple
 AIRPORT, BIRDS, FOG = "avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_ground_fog"
 REVOLUTIONS = 10
 BIRD_COLOUR = (0.9, 0.1, 0.5)
-RADIUS, HEIGHTS = 250.0, [4.0, 20.0]  # m
-# Properties of the echo filter; a medium is in the scene.
+RADIUS, HEIGHTS = 250.0, [4.0, 20.0]  # region of the birds, m
+# Properties of the echo filter. For ground fog, the scene also has a medium.
 WEATHER = {
     "clear": {"MeteorologicalVisibility": 23000.0},
     "haze": {"MeteorologicalVisibility": 5000.0},
@@ -30,19 +31,19 @@ SCATTERS = ("fog", "rain", "ground fog")
 
 
 def check(sensor, weather):
-    """Nothing is made before all fits."""
+    """Raises an error if sensor and weather do not fit, before any object is made."""
     if weather not in WEATHER:
         raise ValueError(f"the weather is {weather!r}, expected one of {', '.join(WEATHER)}")
     prototype = servermanager.ProxyManager().GetPrototypeProxy("sources", sensor)
     if prototype is None or prototype.GetVTKClassName() != "vtkAvianLidarBeamSource":
-        raise ValueError(f"the sensor is {sensor!r}, expected a sensor's source as AvianLidarSearch905")
+        raise ValueError(f"the sensor is {sensor!r}, expected the source of a sensor, such as AvianLidarSearch905")
     if weather in SCATTERS and not prototype.GetProperty("ReceiverAperture").GetElement(0) > 0:
-        raise ValueError(f"{weather} sends light back and needs a sensor with a Receiver Aperture, as Search 905; "
-                         f"{prototype.GetXMLLabel()} has none")
+        raise ValueError(f"{weather} sends light back and needs a sensor with a Receiver Aperture, such as Search 905. "
+                         f"{prototype.GetXMLLabel()} does not have a Receiver Aperture")
 
 
 def open_scene(scene):
-    """The scene, its collision tree."""
+    """The scene and its collision tree."""
     if scene is None:
         return airport_and_tree()
     surfaces = simple.OpenDataFile(scene)
@@ -54,14 +55,14 @@ def open_scene(scene):
 
 
 def name_of(sensor):
-    """What the menu calls it."""
+    """The name of a sensor in the menu."""
     prototype = servermanager.ProxyManager().GetPrototypeProxy("sources", sensor)
     hint = prototype.GetHints().FindNestedElementByName("AvianLidarMenu")
     return hint.GetAttribute("text") if hint else prototype.GetXMLLabel().replace("Avian Lidar ", "")
 
 
 def build(macros, view, scene, sensor, species, number, weather):
-    """The pipeline, and what the view shows of it."""
+    """Makes the pipeline, and shows it in the view."""
     airport, birds, fogs, colours = macros
     surfaces, tree = open_scene(scene)
     place = lidar_place(tree) or airport.place_beside(tree)
@@ -80,7 +81,7 @@ def build(macros, view, scene, sensor, species, number, weather):
         kinds = {species.capitalize(): (BIRD_COLOUR, flight)}
         tracks = birds.flights(kinds, place, REVOLUTIONS / beams.RotationRate)
         for each in tracks if scene else ():
-            each.Center = [*place[:2], place[2] - airport.HEIGHT]  # heights are above the lidar's foot
+            each.Center = [*place[:2], place[2] - airport.HEIGHT]  # the macro's heights are above the lidar's foot
         inputs["Movers"] = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan"), Beams=beams, Surfaces=solid,
                                          NumberOfReflections=1, **inputs, **WEATHER[weather])
@@ -102,7 +103,7 @@ def build(macros, view, scene, sensor, species, number, weather):
 
 
 def make(scene=None, sensor="AvianLidarSearch905", species="herring gull", number=12, weather="clear", view=None):
-    """A scan as asked for: returns (sensor, tracks, echo filter). After an error nothing is left of it."""
+    """Makes a scan. @return (sensor, tracks, echo filter). After an error there are no new objects."""
     macros = [neighbour(name, globals().get("__file__")) for name in (AIRPORT, BIRDS, FOG, ENERGY_COLOURS)]
     plugin_folder(on_server=True)
     check(sensor, weather)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView state: the airport Hongqiao, scanned by the lidar Airport 16, echoes coloured by energy.
+"""ParaView state: the airport Hongqiao, scanned by the lidar Airport 16, with echoes coloured by energy.
 
-In ParaView: File > Load State. From the command line: paraview --state avian_lidar_airport.py. It loads the plugin that
-it lies beside, if ParaView has not, and finds its files from its own place. On a remote server the plugin must have been
-loaded: else nothing is made, and the reason is printed.
+In ParaView: File > Load State. From the command line: paraview --state avian_lidar_airport.py. The state loads the plugin
+from the folder above, unless ParaView has loaded the plugin. On a remote server the plugin must already be loaded.
+Otherwise there are no new objects, and the state prints the reason.
 """
 
 import os

@@ -7,12 +7,12 @@
     sensor = al.Sensor("Airport16", position=(0, 0, 3))        # metres east, north, up
     scan = al.Scan(scene, sensor, rays_per_beam=200)
     print(scan["distance_m"].mean(), scan.echoes.units)        # NumPy arrays, not copied
-    scan.attenuation_coefficient = 8.8e-5                      # 1/m: lit again, hits are kept
+    scan.attenuation_coefficient = 8.8e-5                      # 1/m: the hits of the rays are kept
     scan.save("echoes.vtp")
     scan.plot_range_image()                                    # with Matplotlib
 
-These helpers stand on the wrapped VTK classes, which they show as `Sensor.algorithm`, `Scan.algorithm`, `Scene.tree`
-and `Cloud.data`:
+These helpers are built on wrapped VTK classes. `Sensor.algorithm`, `Scan.algorithm`, `Scene.tree` and `Cloud.data` give the
+VTK objects:
 
     from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
 """

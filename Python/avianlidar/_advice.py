@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a scene requires of a scan, measured on it."""
+"""The settings that a scene requires of a scan, as measured on the scene."""
 from __future__ import annotations
 
 import dataclasses
@@ -13,18 +13,18 @@ import numpy as np
 
 from ._properties import snake
 
-# Of vtkAvianLidarEchoFilter.
+# properties of vtkAvianLidarEchoFilter
 SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
-KINDS = ("energy", "range", "missed")  # of errors
+KINDS = ("energy", "range", "missed")  # kinds of errors
 VERDICTS = ("not met", "undecided", "met")
 NOT_MET, UNDECIDED, MET = range(3)
-UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # of columns; of others "1"
-MOST_ROWS = 12  # of settings beside the scan's own, for a reader
+UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # units of columns; the other columns have the unit "1"
+MOST_ROWS = 12  # number of settings that a reader sees beside the scan's own
 SUFFIXES = (".json", ".csv", ".png")
 
 
 class Setting(NamedTuple):
-    """Values of SETTINGS, choices by their numbers."""
+    """Values of SETTINGS; choices are given by their numbers."""
 
     samples: int  # 0 cells, 1 rays
     rays: int
@@ -37,13 +37,13 @@ class Setting(NamedTuple):
         return said + (f", 2 reflections, {self.connections} connections" if self.reflections > 1 else ", 1 reflection")
 
     def properties(self) -> Dict[str, Any]:
-        """As `Scan.set` takes them."""
+        """The settings as keywords of `Scan.set`."""
         samples, sampling = ("Cells", "Rays")[self.samples], ("MonteCarlo", "Stratified")[self.sampling]
         values = (samples, self.rays, sampling, self.reflections, self.connections)
         return {"preset": "Custom", **dict(zip(map(snake, SETTINGS), values))}
 
     def as_commands(self) -> List[str]:
-        """For the command, Python and ParaView's panel."""
+        """The settings as options of the command, in Python and for ParaView's panel."""
         values = self.properties()
         return ["Command: " + " ".join(f"--scan-set {name}={value}" for name, value in values.items()),
                 "Python: scan.set(" + ", ".join(f'{name}="{value}"' if isinstance(value, str) else f"{name}={value}"
@@ -53,16 +53,16 @@ class Setting(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Advice:
-    """What was measured of a scene, and what is advised.
+    """The measurements of a scene, and the advice.
 
-    settings  properties of a Scan, for `scan.set(**advice.settings)`; None if no setting surely meets what is asked
-    lines     what is advised and why, each a sentence; the last ones are the settings as options of the command, in Python and
+    settings  properties of a Scan, for `scan.set(**advice.settings)`; None if no setting surely keeps the limits
+    lines     sentences on what is advised and why; the last lines give the settings as options of the command, in Python and
               for ParaView's panel
-    asked     errors that were asked for: `energy` (rms, relative), `range` (m, rms), `missed` (share)
-    row       of the table that is advised, -1 if none is
-    table     a column of every setting that was tried, the first is the scan's own: `beam_samples` (0 cells, 1 rays),
-              `rays_per_beam`, ..., `seconds_per_beam` (s of one core), `energy_error`, `energy_error_most` (the upper bound, 95 %),
-              `range_error` (m), `missed_share`, `verdict` (0 not met, 1 the beams cannot tell, 2 met)
+    asked     largest allowed errors: `energy` (rms, relative), `range` (m, rms), `missed` (share)
+    row       number of the advised row of the table, -1 if no row is advised
+    table     columns with one value for each setting that was tried, the scan's own setting first: `beam_samples` (0 cells, 1 rays),
+              `rays_per_beam`, ..., `seconds_per_beam` (s of one core), `energy_error`, `energy_error_most` (upper bound, 95 %),
+              `range_error` (m), `missed_share`, `verdict` (0 limits exceeded, 1 undecided, 2 limits kept)
     """
 
     settings: Optional[Dict[str, Any]]
@@ -75,15 +75,15 @@ class Advice:
         return "\n".join(self.lines)
 
     def words(self, row: int) -> str:
-        """A setting of the table in words."""
+        """The setting in a row of the table, in words."""
         return self.setting(row).words()
 
     def setting(self, row: int) -> Setting:
-        """A setting of the table."""
+        """The setting in a row of the table."""
         return Setting(*(int(self.table[snake(name)][row]) for name in SETTINGS))
 
     def save(self, file: Union[str, os.PathLike]) -> None:
-        """Write it: .json has all, .csv the table, .png a picture of errors over time (with Matplotlib)."""
+        """Writes the advice: .json holds everything, .csv the table, .png a picture of errors over time (needs Matplotlib)."""
         from ._disk import write_whole
         from ._writers import as_csv
         target, content = pathlib.Path(file), io.BytesIO()
@@ -98,7 +98,7 @@ class Advice:
         write_whole(target, content.getvalue())
 
     def plot(self, axes=None):
-        """Draw error of energy over time with Matplotlib, a point for each setting: filled if it meets all that is asked.
+        """Draws the error of energy over time with Matplotlib, one point for each setting. A filled point keeps all limits.
         Returns the axes."""
         from matplotlib.figure import Figure
         axes = axes or Figure(figsize=(7, 4.5), layout="constrained").add_subplot()
@@ -126,7 +126,7 @@ def check_suffix(file: pathlib.Path) -> None:
 
 
 def table_rows(advice: Advice) -> List[Tuple[Any, ...]]:
-    """Rows for a reader: the scan's own settings, and the fastest of those that are not surely too bad, then of the others."""
+    """Rows for a reader: the scan's own settings, then the fastest settings that are not surely too inaccurate, then others."""
     table = advice.table
     order = sorted(range(1, len(table["verdict"])), key=lambda t: (table["verdict"][t] == 0, table["seconds_per_beam"][t]))
     shown = [0, *order[:MOST_ROWS]]
@@ -141,7 +141,7 @@ def table_rows(advice: Advice) -> List[Tuple[Any, ...]]:
 
 
 def notes_of(fields: Mapping[str, Any]) -> List[str]:
-    """What was modelled of a scan and what was left out, by field data of its echoes: nothing where there are none."""
+    """Sentences on what was modelled of a scan and what was left out, from field data of the echoes; empty without such data."""
     def note(name: str) -> str:
         return " ".join(fields.get("note_" + name, ()))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which settings of the echo filter a scene requires, in words: what `_measurement` has measured."""
+"""Sentences on the settings of the echo filter that a scene requires, from what `_measurement` has measured."""
 from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Sequence
@@ -17,7 +17,7 @@ def per_cent(share: float) -> str:
 
 
 def errors_in_words(errors: np.ndarray) -> str:
-    """@param errors by kind: a value, or value, least and most"""
+    """Errors in words. @param errors by kind: a value, or value, least and most"""
     words = []
     for kind, name in enumerate(("energy {} rms", "range {} rms", "echoes missed or invented {}")):
         value, most = (f"{one:.3g} m" if kind == 1 else per_cent(one) for one in np.atleast_1d(errors[kind])[[0, -1]])
@@ -30,7 +30,7 @@ def errors_in_words(errors: np.ndarray) -> str:
 
 
 def cost(trial: Trial, other: Trial) -> str:
-    """The time of one over that of the other."""
+    """The time of a trial compared with the time of another trial, in words."""
     share = round(100 * (trial.seconds / other.seconds - 1))
     if trial.is_as_fast_as(other):
         return "about the same time"
@@ -38,74 +38,74 @@ def cost(trial: Trial, other: Trial) -> str:
 
 
 def lines_of(m: Measurement, advised: Optional[Trial]) -> List[str]:
-    """What is advised and why."""
+    """Sentences on what is advised and why."""
     number = m.beams.GetNumberOfPoints()
     sure = sum(len(truth.sure) for _, truth in m.batches)
-    lines = [f"Asked: {errors_in_words(m.asked)}; measured on {len(m.sample)} of {number} beams with {sure} echoes"]
+    lines = [f"Limits: {errors_in_words(m.asked)}. Measured on {len(m.sample)} of {number} beams with {sure} echoes"]
     if not sure:
-        return [*lines, "Advised: nothing, as none of these beams has an echo"]
+        return [*lines, "Advised: no setting, because none of these beams has an echo"]
     of = {trial.setting: trial for trial in m.trials[1:]}
     seconds = number * (advised or of[DEFAULT]).seconds
     if advised:
         faster = f"{m.trials[0].seconds / advised.seconds:.3g} times as fast as"
         lines.append(f"Advised: {advised.setting.words()}: {errors_in_words(advised.errors)}; "
                      f"{1e6 * advised.seconds:.3g} us a beam of one core, {seconds:.3g} s the scan, "
-                     f"{'as fast as' if advised.is_as_fast_as(m.trials[0]) else faster} the settings now")
+                     f"{'as fast as' if advised.is_as_fast_as(m.trials[0]) else faster} the present settings")
     else:
         best = min(m.trials, key=lambda trial: trial.parts(m.asked))
         unclear = sum(trial.verdict == UNDECIDED for trial in m.trials)
-        more = f"; of {unclear} these beams cannot tell: measure more beams, or ask for less" if unclear else ""
-        lines.append(f"Advised: none of {len(m.trials)} settings surely meets what is asked; the best, "
+        more = f"; for {unclear} settings these beams do not decide: measure more beams, or allow larger errors" if unclear else ""
+        lines.append(f"Advised: none of {len(m.trials)} settings surely keeps the limits. The best setting, "
                      f"{best.setting.words()}, has {errors_in_words(best.errors)}{more}")
 
     second, one, unconnected = cost(of[DEFAULT], of[DIRECT]), *m.without
     if not m.reflects_twice:
         why = ": the scene is one convex body, seen from outside, and a convex body cannot light itself"
-        lines.append(f"One reflection is enough: second reflections carry {'less than 1e-6' if m.secondary else '0'} "
-                     f"of the light (measured over {len(m.sample)} beams){why if m.convex else ''}; two take {second}")
+        lines.append(f"One reflection is enough: second reflections return {'less than 1e-6' if m.secondary else '0'} "
+                     f"of the light (measured over {len(m.sample)} beams){why if m.convex else ''}. Two reflections take {second}")
     else:
         enough = advised and advised.setting.reflections == 1
-        start = "One reflection is enough for what is asked: second reflections" if enough else "Second reflections"
-        lines.append(f"{start} carry {per_cent(m.secondary)} of the light, up to {per_cent(m.largest)} of an echo; "
-                     f"without them energy errs by {per_cent(one[0, 0])} rms, and {per_cent(one[2, 0])} of the echoes "
-                     f"are wrong; they take {second}")
-    lines.append(f"Connections carry {per_cent(m.connected)} of the light; without them energy errs by "
-                 f"{per_cent(unconnected[0, 0])} rms; two take {cost(of[DEFAULT], of[UNCONNECTED])}")
+        start = "One reflection is enough for the limits: second reflections" if enough else "Second reflections"
+        lines.append(f"{start} return {per_cent(m.secondary)} of the light, up to {per_cent(m.largest)} of an echo; "
+                     f"without second reflections the error of energy is {per_cent(one[0, 0])} rms, and "
+                     f"{per_cent(one[2, 0])} of the echoes are wrong. Second reflections take {second}")
+    lines.append(f"Connections return {per_cent(m.connected)} of the light. Without connections the error of energy is "
+                 f"{per_cent(unconnected[0, 0])} rms. Two connections take {cost(of[DEFAULT], of[UNCONNECTED])}")
 
     needs = []
     for samples, name in ((CELLS, "cells"), (RAYS, "plain rays")):
         met = [trial for trial in m.trials if trial.setting.samples == samples and trial.verdict == MET]
         fewest = min(met, key=lambda trial: (trial.setting.rays, trial.seconds), default=None)
         needs.append(f"{name} need {fewest.setting.rays} ({1e6 * fewest.seconds:.3g} us a beam)" if fewest else
-                     f"no number of {name} that was tried is enough")
+                     f"no tried number of {name} is enough")
     nothing, polygons, cells = m.views[1], m.views[2], m.views[3] + m.views[5]
-    lines.append(f"Density of rays: of the beams {per_cent(polygons)} are integrated over polygons, {per_cent(cells)} "
-                 f"need cells, {per_cent(nothing)} meet nothing; {', '.join(needs)}")
+    lines.append(f"Density of rays: {per_cent(polygons)} of the beams are integrated over polygons, {per_cent(cells)} "
+                 f"need cells, {per_cent(nothing)} meet nothing. To keep the limits, {', '.join(needs)}")
 
     if not m.scatters and not m.fields["attenuation_coefficient"] > 0:
         lines.append("Weather: none")
     else:
-        back = "it sends no light back and costs no time"
+        back = "the air sends no light back and costs no time"
         if m.scatters:
-            back = f"{per_cent(m.of_air)} of the points are of the air itself; it takes {cost(m.hazy, m.clear)}"
+            back = f"{per_cent(m.of_air)} of the points are echoes of the air; the air takes {cost(m.hazy, m.clear)}"
         light, echoes = map(per_cent, m.lost)
         lines.append(f"Weather: the air takes {light} of the light and {echoes} of the echoes; {back}")
     two, eight = (f"{(m.tree_seconds + seconds) / (m.tree_seconds + seconds / n):.2g}" for n in (2, 8))
-    return [*lines, f"Processes: the collision tree ({m.tree_seconds:.2g} s of one core) is the same for all, the scan "
-                    f"({seconds:.2g} s) is divided: 2 gain at most a factor of {two}, 8 of {eight}; later scans keep "
+    return [*lines, f"Processes: the collision tree ({m.tree_seconds:.2g} s of one core) is built by every process, and the scan "
+                    f"({seconds:.2g} s) is divided. The speed-up is at most {two} with 2 processes and {eight} with 8. Later scans keep "
                     "the tree",
             f"The reference's own error: {errors_in_words(m.own())}"]
 
 
 def measure(like: Any, inputs: Sequence[Any], asked: Dict[str, float], beams: int,
             progress: Optional[Progress] = None) -> Advice:
-    """What a scene requires. @param like an echo filter with the properties of the scan @param inputs its beams,
-    surfaces, and movers or None @param asked errors by kind @param beams to measure on"""
+    """Measures which settings a scene requires. @param like an echo filter with the properties of the scan @param inputs beams,
+    surfaces, and movers or None @param asked largest allowed errors by kind @param beams number of beams that are measured"""
     for kind, value in asked.items():
         if not 0 < value <= 1e30:
-            raise ValueError(f"{kind} is {value!r}, expected an error that is allowed, above 0")
+            raise ValueError(f"{kind} is {value!r}, expected an allowed error above 0")
     if not 50 <= beams <= 1000000:
-        raise ValueError(f"beams is {beams!r}, expected 50 to 1000000 beams to measure on")
+        raise ValueError(f"beams is {beams!r}, expected 50 to 1000000 beams that are measured")
     m = Measurement(like, inputs, asked, beams, progress)
     m.look()
     m.done = 0.1

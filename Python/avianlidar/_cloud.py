@@ -19,15 +19,15 @@ FRAMES = ("enu", "sensor", "geodetic", "utm", "ecef")
 
 
 def as_numpy(array) -> np.ndarray:
-    """The memory of a VTK array as a NumPy array that keeps it alive. It cannot be written to, as filters keep such
-    arrays for their next execution: copy it to change it."""
+    """The memory of a VTK array as a read-only NumPy array that keeps the VTK array alive. Filters reuse such arrays in their next
+    execution, so change a copy."""
     view = vtk_to_numpy(array).view()
     view.flags.writeable = False
     return view
 
 
 def unit_of(array) -> str:
-    """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" where it has none, as identifiers."""
+    """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" for arrays without a unit, such as identifiers."""
     return array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or ""
 
 
@@ -37,7 +37,7 @@ def _field_arrays(data) -> List[Any]:
 
 
 def field_values(data) -> Dict[str, Any]:
-    """The field data of a VTK data set by name: text as a list, one number as it is, more numbers as a NumPy array."""
+    """The field data of a VTK data set by name: texts as a list, a single number as a number, several numbers as a NumPy array."""
     found: Dict[str, Any] = {}
     for array in _field_arrays(data):
         if isinstance(array, vtkStringArray):
@@ -58,7 +58,7 @@ def leaves_of(data) -> Iterator[Any]:
 
 
 def array_names(data) -> List[str]:
-    """Names of the point arrays of numbers."""
+    """Names of the numeric point arrays."""
     arrays = data.GetPointData()
     return [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)]
 
@@ -72,13 +72,13 @@ def point_array(data, name: str) -> np.ndarray:
 
 
 def triangles_of(surface) -> Tuple[np.ndarray, np.ndarray]:
-    """Points (n x 3) of vtkPolyData and the numbers of the corners of its triangles (m x 3)."""
+    """Points (n x 3) of vtkPolyData, and the point numbers of the triangles' corners (m x 3)."""
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     return vtk_to_numpy(surface.GetPoints().GetData()), corners
 
 
 def rows_of(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
-    """Numbers in rows of this shape, in double precision."""
+    """Numbers as an array in double precision whose rows have the shape `row`."""
     rows = np.asarray(values)
     if rows.dtype.kind not in "biuf":
         raise TypeError(f"{what} are of the type {rows.dtype}, expected real numbers")
@@ -88,7 +88,7 @@ def rows_of(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
 
 
 def add_array(arrays, name: str, values, unit: str = "") -> None:
-    """Add a copy of numbers (a NumPy array) or of texts to point, cell or field data."""
+    """Adds a copy of numbers (a NumPy array) or texts to point, cell or field data."""
     if isinstance(values, np.ndarray):
         array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
     else:
@@ -102,7 +102,7 @@ def add_array(arrays, name: str, values, unit: str = "") -> None:
 
 
 def with_points(rows) -> vtkPolyData:
-    """vtkPolyData with a copy of n rows of x, y, z as points, and no cells."""
+    """vtkPolyData whose points are a copy of n rows of x, y, z, without cells."""
     data, places = vtkPolyData(), vtkPoints()
     places.SetData(numpy_to_vtk(np.ascontiguousarray(rows), deep=True))
     data.SetPoints(places)
@@ -110,7 +110,7 @@ def with_points(rows) -> vtkPolyData:
 
 
 def vertices(points) -> vtkPolyData:
-    """A vertex for each of n rows of x, y, z; a copy."""
+    """vtkPolyData with one vertex for each of n rows of x, y, z, which are copied."""
     data, cells = with_points(rows_of("points", points, (3,))), vtkCellArray()
     cells.SetData(1, numpy_to_vtkIdTypeArray(np.arange(data.GetNumberOfPoints()), deep=True))
     data.SetVerts(cells)
@@ -120,8 +120,8 @@ def vertices(points) -> vtkPolyData:
 class Cloud(Mapping):
     """A vtkPointSet as a read-only mapping from the names of its point arrays to NumPy arrays.
 
-    The arrays are VTK's own memory, kept alive by them, and cannot be written to. `points` are the coordinates, in
-    metres east, north and up unless the data say otherwise; `units` and `fields` say what the data are.
+    The arrays are VTK's own memory, stay valid as long as you hold them, and cannot be written to. `points` are the coordinates, in
+    metres east, north and up unless the data have another frame. `units` and `fields` describe the data.
 
     >>> scene = Scene(([(-5, 9, -5), (5, 9, -5), (0, 9, 5)], [(0, 1, 2)]), material="Wood")
     >>> scan = Scan(scene, Sensor(azimuth_step=6))
@@ -133,12 +133,13 @@ class Cloud(Mapping):
     """
 
     data: Any
-    __eq__ = object.__eq__  # not that of a mapping, as arrays compare element by element
+    __eq__ = object.__eq__  # not the equality of a mapping, because arrays compare element by element
     __hash__ = object.__hash__
 
     def __init__(self, data):
-        """`data`: a vtkPointSet (also a PolyData of PyVista), of which this keeps a shallow copy: arrays are shared, later
-        changes are not seen. Or a point cloud of Open3D, or whatever has `points` that NumPy takes as n rows of x, y, z: a copy of these."""
+        """`data` is a vtkPointSet (also a PolyData of PyVista), of which the Cloud holds a shallow copy: arrays are shared, and later
+        changes of the point set do not show. A point cloud of Open3D, or any object with `points` that NumPy reads as n rows of
+        x, y, z, is copied."""
         if isinstance(data, Cloud):
             data = data.data
         elif not isinstance(data, vtkDataObject) and hasattr(data, "points"):  # VTK 9.4 gives images `points`, too
@@ -149,7 +150,7 @@ class Cloud(Mapping):
         self.data.ShallowCopy(data)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Point array by name, in its unit (`units`): n values, or n rows of its components."""
+        """The point array of a name, in its unit (`units`): n values, or n rows of components."""
         return point_array(self.data, name)
 
     def __iter__(self) -> Iterator[str]:
@@ -168,7 +169,7 @@ class Cloud(Mapping):
 
     @property
     def points(self) -> np.ndarray:
-        """Coordinates as n rows of x, y, z, in the frame of the data: of scans metres east, north and up."""
+        """Coordinates as n rows of x, y, z, in the frame of the data. The frame of scans is metres east, north and up."""
         if not self.data.GetNumberOfPoints():
             return np.zeros((0, 3))
         return as_numpy(self.data.GetPoints().GetData())
@@ -189,7 +190,7 @@ class Cloud(Mapping):
         return {array.GetName(): unit_of(array) for array in _field_arrays(self.data)}
 
     def structured(self) -> np.ndarray:
-        """A copy as one structured array: `points` (m) and every point array as a field of its own name and unit."""
+        """A copy as one structured array with the fields `points` (m) and one field for each point array."""
         columns = {"points": self.points, **self}
         result = np.empty(self.number_of_points, [(name, of.dtype, of.shape[1:]) for name, of in columns.items()])
         for name, values in columns.items():
@@ -197,8 +198,8 @@ class Cloud(Mapping):
         return result
 
     def annotated(self) -> "Cloud":
-        """A copy of an echo cloud with what maps and viewers want: `hue` (deg) and `rgb` (paper, Eq. 13), and with an origin on
-        the Earth `longitude`, `latitude` (deg), `height` (m above the ellipsoid WGS84)."""
+        """A copy of an echo cloud with arrays for maps and viewers: `hue` (deg) and `rgb` (paper, Eq. 13). With an origin on
+        the Earth, also `longitude`, `latitude` (deg) and `height` (m above the ellipsoid WGS84)."""
         last: Any = _wrapped.vtkAvianLidarHSBColorMap()
         last.SetInputData(self.data)
         if "geodetic_origin" in self.fields:
@@ -208,38 +209,38 @@ class Cloud(Mapping):
         return Cloud(last.GetOutputDataObject(0))
 
     def to_pandas(self):
-        """A copy as a pandas DataFrame, a row for each point: `x`, `y`, `z` (m) and every point array, those of several
-        components as `name_0`, `name_1`, ...; `attrs` holds `units` and `fields`. ImportError without pandas."""
+        """A copy as a pandas DataFrame with one row for each point: `x`, `y`, `z` (m) and every point array. An array of several
+        components becomes `name_0`, `name_1`, ...; `attrs` holds `units` and `fields`. Raises ImportError without pandas."""
         try:
             import pandas
         except ImportError:
-            raise ImportError("a table needs pandas, which is not there: install python3-pandas, or pandas with pip") from None
+            raise ImportError("a table needs pandas, which is not installed: install python3-pandas, or pandas with pip") from None
         frame = pandas.DataFrame({name: values.copy() for name, _, values in columns_of(self)})
         fields = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in self.fields.items()}
-        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares them
+        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares these values
         return frame
 
     def plot_map(self, array: str = "energy", axes=None, **options):
-        """Draw the points from above with Matplotlib; see `plot_map`."""
+        """Draws the points from above with Matplotlib; see `plot_map`."""
         return plot_map(self, array, axes, **options)
 
     def coordinates(self, frame: str = "enu") -> np.ndarray:
-        """Coordinates of an echo cloud or its beams in another frame, as n rows of three.
+        """Coordinates of an echo cloud or a cloud of beams in another frame, as n rows of three numbers.
 
-        enu       metres east, north, up of the scene's origin (the points themselves, not a copy)
-        sensor    metres right, forward, up of the sensor, as it is turned
+        enu       metres east, north, up of the scene's origin (the array `points`, not a copy)
+        sensor    metres right, forward, up of the sensor, including its orientation
         geodetic  longitude and latitude in degrees, height above the ellipsoid WGS84 in metres
         utm       easting, northing in metres (zone of the origin), height above the ellipsoid in metres
         ecef      geocentric metres
 
-        All but the first two need a scene with an origin on the Earth (field data `geodetic_origin`).
+        All frames but `enu` and `sensor` need a scene with an origin on the Earth (field data `geodetic_origin`).
         """
         if frame == "enu":
             return self.points
         if frame == "sensor":
             return self._to_sensor()
         if frame not in FRAMES:
-            raise ValueError(f"frame {frame!r} is not known; known are {', '.join(FRAMES)}")
+            raise ValueError(f"frame {frame!r} is unknown, expected one of {', '.join(FRAMES)}")
         if "geodetic_origin" not in self.fields:
             raise ValueError(f"the frame {frame!r} needs field data 'geodetic_origin'; the scene has no origin")
         transform = _wrapped.vtkAvianLidarGeodeticTransform()
@@ -254,9 +255,9 @@ class Cloud(Mapping):
         if "position" not in fields or "orientation" not in fields:
             raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
         from scipy.spatial.transform import Rotation
-        yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, to the right
+        yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
         return (self.points - fields["position"]) @ Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True).as_matrix()
 
     def save(self, file, **properties) -> None:
-        """Write the cloud; see `save`."""
+        """Writes the cloud; see `save`."""
         write(self, file, **properties)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a bird would be seen."""
+"""Coverage: the places where a bird would be detected."""
 from __future__ import annotations
 
 from typing import Any, Dict, List, Mapping, Optional, Sequence
@@ -17,8 +17,8 @@ from ._sensor import Sensor
 
 
 def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyData:
-    """Places to look at. @param points n x 3, m @param regions names, each with the numbers of its points; those that no
-    region has are of the region "elsewhere" """
+    """Places of a coverage. @param points n x 3, m @param regions for each name the numbers of its points; points without a
+    region belong to the region "elsewhere" """
     points = rows_of("places", points, (3,))
     data = with_points(points)
     if regions is not None:
@@ -32,8 +32,8 @@ def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyDat
 
 @wraps(_wrapped.vtkAvianLidarCoverage)
 class Coverage(SceneAndSensor):
-    """Where a lidar would detect a bird, where not, and why. Every property of vtkAvianLidarCoverage is an attribute, in
-    the unit that its description says. Another bird, air or receiver traces no line of sight.
+    """Where a lidar would detect a bird, and why the bird is missed elsewhere. Every property of vtkAvianLidarCoverage is an attribute,
+    in the unit of its description. Lines of sight are kept when bird, air or receiver change.
 
     >>> wall = Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)]), material="Wall")
     >>> cover = Coverage(wall, Sensor("Search905"), places=[(0, 200, 1), (100, 200, 1)], species="crow")
@@ -45,11 +45,11 @@ class Coverage(SceneAndSensor):
                  height_limits: Optional[Sequence[float]] = None, **settings: Any):
         """Coverage, not yet computed.
 
-        scene          a Scene, or what a Scene is made of: a scene file, VTK data, (points, triangles)
-        sensor         default: Airport16 where the scene puts the lidar, else at the origin
-        places         n x 3 coordinates (m), or a vtkDataSet; None: the points of an image, see bounds and spacing
-        progress       called with the share done (0 to 1) and the name of the class at work
-        height_limits  of the table's bands, m, rising; default 0, 15, 30, 60, 150
+        scene          a Scene, or any source of a Scene: a scene file, VTK data, (points, triangles)
+        sensor         default: Airport16 at the scene's lidar position, else at the origin
+        places         n x 3 coordinates (m), or a vtkDataSet; None: the points of an image given by `bounds` and `spacing`
+        progress       called with the completed share (0 to 1) and the name of the running class
+        height_limits  limits of the table's height bands, m, ascending; default 0, 15, 30, 60, 150
         settings       any property by name, for example species="crow", visibility=10e3 (m), bounds, spacing
         """
         super().__init__(_wrapped.vtkAvianLidarCoverage(), scene, sensor, progress, settings)
@@ -59,7 +59,7 @@ class Coverage(SceneAndSensor):
 
     @property
     def height_limits(self) -> List[float]:
-        """Limits of the table's height bands, m, rising."""
+        """Limits of the table's height bands, m, ascending."""
         return [self.algorithm.GetHeightLimit(i) for i in range(self.algorithm.GetNumberOfHeightLimits())]
 
     @height_limits.setter
@@ -70,7 +70,7 @@ class Coverage(SceneAndSensor):
 
     @property
     def places(self) -> Optional[vtkDataSet]:
-        """The places, None for an image; others may be set."""
+        """The places; None for an image. May be set."""
         return self._places
 
     @places.setter
@@ -80,27 +80,27 @@ class Coverage(SceneAndSensor):
 
     @property
     def data(self) -> vtkDataSet:
-        """The image, or the places, with what was found."""
+        """The image or the places, with the results."""
         return self.update().algorithm.GetOutputDataObject(0)
 
     def __getitem__(self, name: str) -> np.ndarray:
         """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area` (m2)
-        or `status`: of an image by z, y, x. `pose_probabilities`, where they are asked for, have a last axis of poses."""
+        or `status`; the axes of an image are z, y, x. `pose_probabilities`, if switched on, have a last axis of poses."""
         data = self.data
         if name not in array_names(data):
-            raise KeyError(f"there is no array {name!r}; known are {', '.join(array_names(data))}")
+            raise KeyError(f"there is no array {name!r}, expected one of {', '.join(array_names(data))}")
         values = point_array(data, name)
         return values.reshape(data.GetDimensions()[::-1] + values.shape[1:]) if isinstance(data, vtkImageData) else values
 
     @property
     def status_names(self) -> List[str]:
-        """What the numbers of `status` mean."""
+        """The meanings of the numbers in `status`."""
         return field_values(self.data)["status_names"]
 
     @staticmethod
     def strike_height_density(heights) -> np.ndarray:
-        """Density of bird strikes over height, 1/m, by which `strike_height_weights` weights the table. @param heights n, m above
-        ground"""
+        """Density of bird strikes over height, 1/m, with which `strike_height_weights` weights the table. @param heights n heights, m
+        above ground"""
         return np.array([*map(_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity, np.asarray(heights, dtype=float))])
 
     def __repr__(self) -> str:
@@ -108,18 +108,18 @@ class Coverage(SceneAndSensor):
 
     @property
     def table(self) -> List[Dict[str, Any]]:
-        """Shares by region, species and height band (m), with standard errors: a row each, as vtkAvianLidarCoverage says."""
+        """Shares by region, species and height band (m), with standard errors, one row each, as in vtkAvianLidarCoverage."""
         table = self.update().algorithm.GetOutputDataObject(1)
         columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
         return [{column.GetName(): column.GetValue(row) for column in columns} for row in range(table.GetNumberOfRows())]
 
     @property
     def clutter_map(self) -> Cloud:
-        """The range units with an echo of a surface, a point each (m), with `energy_received` (J) and
-        `detection_probability`: in which share of scans it is perceived."""
+        """The range units with an echo of a surface, one point each (m), with `energy_received` (J) and
+        `detection_probability`, the share of scans in which the echo is detected."""
         return Cloud(self.update().algorithm.GetOutputDataObject(2))
 
     @property
     def number_of_traced_places(self) -> int:
-        """Lines of sight that the last execution traced; 0 if all were known."""
+        """Number of lines of sight that the last execution traced; 0 if all were kept from before."""
         return int(self.algorithm.GetNumberOfTracedPlaces())

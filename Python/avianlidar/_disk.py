@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are written as a whole or not at all, and one run in a folder."""
+"""Files that are written completely or not at all, and exclusive use of a folder by one run."""
 from __future__ import annotations
 
 import contextlib
@@ -11,13 +11,13 @@ from typing import Any, Callable, Iterator
 
 from ._pipeline import Error, signals_kept
 
-LOCK = ".avianlidar.lock"  # in a folder while a run writes there
-PARTS = 16  # so many may write one file at the same time
+LOCK = ".avianlidar.lock"  # name of the lock file in a folder during a run
+PARTS = 16  # greatest number of processes that may write one file at the same time
 
 
 def _hold(name: str, flags: int = 0, mode: int = 0o666) -> int:
-    """Open a file and lock it: its descriptor. `BlockingIOError` if another process has it or it is gone, `Error` where the file system
-    has no locks. There a file that is made here (O_EXCL) counts as locked."""
+    """Opens and locks a file, and returns its descriptor. `BlockingIOError` if another process holds the lock or the file is gone; `Error`
+    where the file system has no locks. On such file systems a file that this call creates (O_EXCL) counts as locked."""
     handle = os.open(name, flags | os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK, mode)
     try:
         try:
@@ -29,7 +29,7 @@ def _hold(name: str, flags: int = 0, mode: int = 0o666) -> int:
                 raise Error(f"files here have no locks: if no other run is there, remove {name}") from None
         locked = os.fstat(handle)
         if not locked.st_nlink or not os.path.samestat(locked, os.lstat(name)):
-            raise BlockingIOError(f"{name} is another file now")
+            raise BlockingIOError(f"{name} was replaced by another file")
         return handle
     except BaseException:
         os.close(handle)
@@ -38,18 +38,18 @@ def _hold(name: str, flags: int = 0, mode: int = 0o666) -> int:
 
 @contextlib.contextmanager
 def replacing(path: pathlib.Path) -> Iterator[str]:
-    """A name beside `path` that takes its place at the end, once all is on the disk; nothing is left if something goes wrong,
-    and what a killed process leaves goes when the file is written again: as in the library's OutputFile.h."""
+    """A temporary name beside `path`, renamed to `path` at the end, when the content is on the disk. An exception leaves no file. A
+    temporary file of a killed process is removed when the file is written again. The library's OutputFile.h does the same."""
     try:
-        mode = path.stat().st_mode  # before links are followed: those to open pipes lead to no name
+        mode = path.stat().st_mode  # before links are followed, because links to open pipes lead to no name
     except FileNotFoundError:
         mode = 0
     if mode and not stat.S_ISREG(mode):
         raise FileExistsError(f"{path}: it exists and is not a regular file")
-    path = path.resolve()  # a link stays a link
+    path = path.resolve()  # a link is kept
     handle, name = None, ""
     for part in (f"{path}.avianpart{i}" for i in range(PARTS)):
-        with contextlib.suppress(OSError, Error):  # another writer's
+        with contextlib.suppress(OSError, Error):  # a file of another writer
             abandoned = _hold(part)
             os.unlink(part)
             os.close(abandoned)
@@ -57,7 +57,7 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
             with contextlib.suppress(FileExistsError, BlockingIOError):
                 handle, name = _hold(part, os.O_CREAT | os.O_EXCL, stat.S_IMODE(mode or 0o666) | stat.S_IWUSR), part
     if handle is None:
-        raise FileExistsError(f"{path} is being written by {PARTS} others")
+        raise FileExistsError(f"{path} is being written by {PARTS} other processes")
     try:
         yield name
         if mode:
@@ -67,7 +67,7 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
     except BaseException as error:
         with contextlib.suppress(FileNotFoundError):
             os.unlink(name)
-        if isinstance(error, OSError) and error.errno:  # of a full disk, which names no file
+        if isinstance(error, OSError) and error.errno:  # errors of a full disk name no file
             raise OSError(error.errno, error.strerror, str(path)) from None
         raise
     finally:
@@ -75,7 +75,7 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
 
 
 def synchronize(folder: pathlib.Path) -> None:
-    """Names in the folder are on the disk."""
+    """Writes the names in a folder to the disk."""
     number = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(number)
@@ -84,7 +84,7 @@ def synchronize(folder: pathlib.Path) -> None:
 
 
 def write_whole(path, content: bytes) -> None:
-    """After this the file is there, whole, whatever happens then; before, it was as it had been."""
+    """Writes a file. Afterwards the whole file is on the disk; until then, the old file is unchanged."""
     path = pathlib.Path(path)
     with replacing(path) as name:
         with open(name, "wb") as stream:
@@ -94,11 +94,11 @@ def write_whole(path, content: bytes) -> None:
 
 @contextlib.contextmanager
 def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] = lambda: None) -> Iterator[None]:
-    """The folder, which is made, is of this run alone: `Error` where another one has it. A run that was killed has none. A folder
-    that a failed run has made goes again, with what is in it unless the next run goes on with that.
-    @param ranks of this run: the first has the folder for all, so none must leave before the others are done
-    @param goes_on whether what a failed run has left stays
-    @param known what ranks must agree on before anything is written, see `Ranks.agree`"""
+    """Reserves a folder for this run, and makes the folder if needed. `Error` if another run holds the folder. A killed run holds no
+    folder. A folder that a failed run has made is removed, with its content unless `goes_on`.
+    @param ranks ranks of this run: the first rank holds the folder for all, so no rank may leave before all are done
+    @param goes_on whether the files of a failed run are kept
+    @param known what the ranks must agree on before writing, see `Ranks.agree`"""
     folder = pathlib.Path(folder)
     if ranks is not None:
         ranks.agree(folder, known)
@@ -108,7 +108,7 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
     try:
         if ranks is None or ranks.rank == 0:
             try:
-                with signals_kept():  # so that what was made is known when Ctrl+C comes
+                with signals_kept():  # so that new folders are recorded even at Ctrl+C
                     folder.mkdir(parents=True, exist_ok=True)
                     for flags in 3 * (os.O_CREAT | os.O_EXCL, 0):  # the run before may end just now
                         with contextlib.suppress(FileExistsError, FileNotFoundError, BlockingIOError):
@@ -116,7 +116,7 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
                             break
             except Error as error:
                 problem = Error(f"{problem}; {error}")
-            except OSError as error:  # the others are to know before it is said
+            except OSError as error:  # the other ranks must hear of the error before it is raised
                 problem = error
         has_it = handle is not None
         if not (ranks.first_says(has_it) if ranks else has_it):
@@ -125,13 +125,13 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
         failed = False
     finally:
         if handle is not None:
-            for path in sorted(folder.rglob("*"), reverse=True) if failed and folder in new else ():  # while it is locked
+            for path in sorted(folder.rglob("*"), reverse=True) if failed and folder in new else ():  # while the lock is held
                 with contextlib.suppress(OSError):
                     if path.is_dir() and not path.is_symlink():
                         path.rmdir()
                     elif path != name and not goes_on:
                         path.unlink()
-            with contextlib.suppress(FileNotFoundError):  # with its folder
+            with contextlib.suppress(FileNotFoundError):  # removed with its folder
                 name.unlink()
             os.close(handle)
         for path in new if failed else ():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What scenes, sensors and scans look like in a notebook: a small table and, with Matplotlib, a picture."""
+"""Representations of scenes, sensors and scans in a notebook: a small table and, with Matplotlib, a picture."""
 from __future__ import annotations
 
 import base64
@@ -13,11 +13,11 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from ._cloud import triangles_of
 from ._sight import extent
 
-MOST = 20000  # triangles or beams that a picture shows
+MOST = 20000  # number of triangles or beams in a picture, at most
 
 
 def page(thing, rows: Callable[[Any], Dict[str, Any]], draw: Optional[Callable[[Any], None]] = None, size=(4.0, 3.0)) -> str:
-    """HTML of a table and a picture, of an error its words. @param draw draws into axes of Matplotlib @param size of the
+    """HTML of a table and a picture; after an exception, its message. @param draw draws into axes of Matplotlib @param size size of the
     picture, inches"""
     try:
         lines = "".join(f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>"
@@ -40,7 +40,7 @@ def _picture(draw: Callable[[Any], None], size) -> str:
 
 
 def place_rows(scene) -> Dict[str, Any]:
-    """What is known of a scene without merging its surfaces."""
+    """The rows of a scene that need no merged surfaces."""
     rows = {"cells": scene.surfaces.GetNumberOfCells()}
     if rows["cells"]:
         bounds = [0.0] * 6
@@ -63,14 +63,14 @@ def scene_rows(scene) -> Dict[str, Any]:
 
 
 def draw_from_above(scene, axes) -> None:
-    """The surfaces from above, darker where they are higher."""
+    """Draws the surfaces from above; higher surfaces are darker."""
     from matplotlib.collections import PolyCollection
     if not scene.number_of_triangles:
         return
     corners, triangles = triangles_of(scene.tree.GetOutput())
     least, greatest = corners[:, 2].min(), corners[:, 2].max()
     shades: Dict[str, Any] = {"cmap": "Greys", "clim": (1.5 * least - 0.5 * greatest - 1, 1.5 * greatest - 0.5 * least + 1)}
-    if len(triangles) > MOST:  # the highest corner in each cell of a raster
+    if len(triangles) > MOST:  # draw the highest corner in each cell of a raster
         low, high = corners.min(axis=0), corners.max(axis=0)
         cells = (199.999 * (corners[:, :2] - low[:2]) / np.maximum(high[:2] - low[:2], 1e-9)).astype(int)
         raster = np.full((200, 200), -np.inf)
@@ -117,7 +117,7 @@ def sensor_rows(sensor) -> Dict[str, Any]:
 
 
 def draw_pattern(sensor, axes) -> None:
-    """The beams by azimuth and elevation."""
+    """Draws the beams by azimuth and elevation."""
     beams = sensor.beams
     step = -(-max(beams.number_of_points, 1) // MOST)
     axes.plot(beams["azimuth"][::step] / 100, beams["vertical_angle"][::step], ",k")
@@ -125,9 +125,9 @@ def draw_pattern(sensor, axes) -> None:
 
 
 def scan_rows(scan) -> Dict[str, Any]:
-    """The rows of a scan's table, of what is known without running it."""
+    """The rows of a scan's table that need no execution."""
     if not scan.is_current():
-        return {"state": "not yet run: ask for scan.echoes, scan[\"energy\"], scan.update()"}
+        return {"state": "not yet run: read scan.echoes, scan[\"energy\"], scan.update()"}
     echoes = scan.echoes
     rows = {"beams": scan.report.number_of_points, "echoes": echoes.number_of_points, "arrays": ", ".join(echoes)}
     if echoes.number_of_points:
@@ -136,7 +136,7 @@ def scan_rows(scan) -> Dict[str, Any]:
 
 
 def coverage_rows(cover) -> Dict[str, Any]:
-    """The rows of coverage, of what is known without computing it."""
+    """The rows of a coverage's table that need no execution."""
     rows = {"bird": cover.species or f"target of {cover.effective_area:g} m2",
             "air": f"visibility {cover.visibility:g} m" if cover.visibility > 0.0 else f"attenuation {cover.attenuation_coefficient:g} per metre",
             "sensor": "({:g}, {:g}, {:g}) m".format(*cover.sensor.position)}
@@ -146,7 +146,7 @@ def coverage_rows(cover) -> Dict[str, Any]:
 
 
 def line(thing, rows: Callable[[Any], Dict[str, Any]]) -> str:
-    """For `repr`: never an error."""
+    """The text of `repr`. Never raises an exception."""
     try:
         return f"<{type(thing).__name__}: " + "; ".join(f"{key} {value}" for key, value in rows(thing).items()) + ">"
     except Exception as error:

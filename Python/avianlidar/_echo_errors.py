@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors of echoes against a reference of the same beams: of energy, of range, and echoes missed or invented. They have
-bounds, as the beams are a weighted sample.
+"""Errors of echoes compared with a reference of the same beams: errors of energy and of range, and shares of missed or invented echoes.
+The errors have bounds, because the beams are a weighted sample.
 
-Echoes are rows of numbers, in the order of beam and range. They are matched within a beam: each is the nearest of the
-other, within a tolerance. Energy and range are judged for strong echoes that are not ghosts (at most half of the energy
-over two reflections). A strong echo that is missed has an energy error of -1. Ghosts count as found or missed alone.
+Echoes are rows of numbers, in the order of beam and range. Echoes of one beam are matched: two echoes match if each is the nearest to
+the other within a tolerance. Energy and range are judged for strong echoes that are not ghosts; a ghost has more than half of its
+energy from paths with two reflections. A missed strong echo has an energy error of -1. Ghosts count only as found or missed.
 Echoes that only some scans of the reference have are not judged.
 
 Bounds are one-sided, 95 %, and hold for a scan of all beams with another seed. They follow from the spread among beams
 (variance of a ratio of weighted sums, linearised: Cochran, Sampling Techniques, 3rd ed., section 6, second-hand). The
-spread counts twice where all beams were taken, as both scans are random. Three times the share of a single beam is
-added, as a few beams that err say little about how many do, and the reference's own error. An rms of fewer than 30
+spread counts twice where all beams were taken, because both scans are random. Two terms are added: three times the share of a single
+beam, because a few wrong beams say little about the number of wrong beams, and the error of the reference. An rms of fewer than 30
 beams has no bound.
 """
 from __future__ import annotations
@@ -19,23 +19,23 @@ from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes: m, J, share, J
-GHOST = 0.5  # share of the energy over two reflections
+BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes; RANGE in m, ENERGY in J, SECONDARY a share, TOTAL in J
+GHOST = 0.5  # least share of a ghost's energy that comes from two reflections
 SURELY = 1.645  # standard deviations of a one-sided bound of 95 %
-FEW = 3.0  # 95 % bound of a count, beyond its square root, if few were seen
-FEWEST = 30  # beams from which a bound of an rms follows
+FEW = 3.0  # 95 % bound of a small count, beyond its square root
+FEWEST = 30  # least number of beams for the bound of an rms
 
 
 class Known(NamedTuple):
-    """What is taken for true of some beams."""
+    """Reference values of some beams, which count as true."""
 
-    sure: np.ndarray  # echoes
+    sure: np.ndarray  # echoes that are judged
     unsure: np.ndarray  # echoes that are not judged
-    x: np.ndarray  # by kind of error and beam: spread of the mean, ...
-    y: np.ndarray  # ... and what it is divided by
+    x: np.ndarray  # spread of the mean by kind of error and beam ...
+    y: np.ndarray  # ... and the divisor of x
 
     def replaced(self, which: np.ndarray, other: "Known") -> "Known":
-        """With what another one has of some beams."""
+        """This Known with the values of another Known for some beams."""
         parts = []
         for mine, rows in zip(self[:2], other[:2]):
             there = rows.copy()
@@ -47,13 +47,13 @@ class Known(NamedTuple):
 
 
 class Judge:
-    """Compares echoes. @param tolerance between echoes that are one, m @param strong least energy that is judged, J"""
+    """Compares echoes. @param tolerance greatest distance between matching echoes, m @param strong least judged energy, J"""
 
     def __init__(self, tolerance: float, strong: float):
         self.tolerance, self.strong = tolerance, strong
 
     def match(self, one: np.ndarray, other: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """Rows of echoes that are each the nearest of the other."""
+        """Row numbers of matching echoes in two arrays of echoes."""
         if not len(one) or not len(other):
             return np.zeros(0, int), np.zeros(0, int)
         apart = 2 * (max(one[:, RANGE].max(), other[:, RANGE].max()) + self.tolerance)
@@ -70,11 +70,11 @@ class Judge:
         return np.flatnonzero(found), theirs[found]
 
     def judged(self, rows: np.ndarray) -> np.ndarray:
-        """Whether energy and range count."""
+        """Whether energy and range of each echo are judged."""
         return (rows[:, ENERGY] >= self.strong) & (rows[:, SECONDARY] <= GHOST)
 
     def average(self, scans: Sequence[np.ndarray], count: int) -> Known:
-        """The mean of scans of so many beams; an echo is sure if seven of eight have it, of fewer all."""
+        """The mean of scans of `count` beams. An echo is sure if at least seven of eight scans have the echo, or all of fewer scans."""
         values, others = np.full((len(scans), *scans[0].shape), np.nan), []
         for into, scan in zip(values, scans):
             i, j = self.match(scans[0], scan)
@@ -92,8 +92,8 @@ class Judge:
         return Known(mean[sure], unsure, x, np.stack([per_beam(rows, count) for rows in (true, true, mean[sure])]))
 
     def compare(self, scans: Sequence[np.ndarray], known: Known) -> Tuple[np.ndarray, np.ndarray]:
-        """By beam, of energy and range: the product of what two scans by other means are off by, and the number of
-        echoes. The two are independent, so the mean of the product is the square of what both have in common."""
+        """For energy and range, by beam: the product of the errors of two independent scans with other settings, and the number of
+        echoes. The mean of the product is the square of the common error of both scans."""
         (i, j), (k, l) = (self.match(known.sure, scan) for scan in scans)
         common, first, second = np.intersect1d(i, k, return_indices=True)
         strong = self.judged(known.sure[common])
@@ -104,7 +104,7 @@ class Judge:
         return np.stack([per_beam(true, count, square) for square in squares]), np.stack([per_beam(true, count)] * 2)
 
     def count(self, found: np.ndarray, known: Known) -> Tuple[np.ndarray, np.ndarray]:
-        """The errors of a scan by kind and beam: sums, and what they are divided by."""
+        """The errors of a scan by kind and beam: sums and their divisors."""
         count = known.x.shape[1]
         i, j = self.match(known.sure, found)
         strong = self.judged(known.sure[i])
@@ -123,26 +123,26 @@ def in_order(rows: np.ndarray) -> np.ndarray:
 
 
 def per_beam(rows: np.ndarray, count: int, values: Optional[np.ndarray] = None) -> np.ndarray:
-    """Sums over the echoes of each beam; of 1 without values."""
+    """Sums over the echoes of each beam; without values, the number of echoes."""
     return np.bincount(rows[:, BEAM].astype(int), values, count).astype(float)
 
 
 def ratio_of(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Tuple[float, float]:
-    """The ratio of weighted sums and its standard deviation; 0 of nothing."""
+    """The ratio of weighted sums and its standard deviation; 0 without data."""
     x, y = weights * x, weights * y
     ratio = x.sum() / y.sum() if y.sum() else 0.0
     return ratio, np.sqrt(((1 + 1 / weights) * (x - ratio * y) ** 2).sum()) / (y.sum() or 1.0)
 
 
 def bounds(x: np.ndarray, y: np.ndarray, weights: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Value, least and most of each kind of error. @param own errors of the reference"""
+    """Value, lower and upper bound of each kind of error. @param own errors of the reference"""
     errors = np.zeros((3, 3))
     squared = (1 + 1 / weights) * weights**2
     for kind in range(3):
         ratio, deviation = ratio_of(x[kind], y[kind], weights)
         total = (weights * y[kind]).sum() or 1.0
         by = SURELY * deviation + (FEW * (squared * x[kind] ** 2).sum() / (ratio * total**2) if ratio > 0 else 0)
-        if kind == 2:  # a share
+        if kind == 2:  # the kind of error is a share
             none = FEW * (squared * y[kind] ** 2).sum() / total**2
             errors[kind] = ratio, max(0, ratio - by - own[kind]), max(ratio + by, none) + own[kind]
         elif np.count_nonzero(y[kind]) < FEWEST:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Clouds to and from files; names of files, and what is read."""
+"""Reading and writing of clouds, names of files, and regular files."""
 from __future__ import annotations
 
 import contextlib
@@ -25,17 +25,17 @@ from ._properties import set_properties
 from ._suffixes import PACKETS, READERS, TABLES
 from ._writers import refuse, suffixes, write
 
-LARGEST = 256 << 20  # bytes that a compressed file may hold
-LONGEST = 200  # bytes of a name: a file's name is longer by what stands behind it
+LARGEST = 256 << 20  # greatest number of bytes after decompression
+LONGEST = 200  # bytes of a name; the names of files add suffixes
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
-_AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCompare, LAStools, spreadsheets
-_POINTS = [stem + mark for stem in ("Points", "Points_m_XYZ") for mark in ":_"]  # of ParaView and VeloView, before a number
-# What HELIOS++ writes, without a first line of names; and what any table of places has.
+_AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # spellings of CloudCompare, LAStools and spreadsheets
+_POINTS = [stem + mark for stem in ("Points", "Points_m_XYZ") for mark in ":_"]  # spellings of ParaView and VeloView, before a number
+# Columns of HELIOS++, which writes no line of names, and columns of any table of places.
 _HELIOS = ("x y z intensity echo_width return_number number_of_returns fullwave_index hit_object_id classification gps_time").split()
 
 
 def checked_name(name: str, what: str) -> str:
-    """The name, if files and folders may be called so. @param what the input that says it"""
+    """The name, if files and folders may have this name. @param what the input that gives the name"""
     control = any(unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
     if not name or name.startswith(".") or "/" in name or control or len(name.encode()) > LONGEST:
         raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no control character, no dot "
@@ -44,15 +44,15 @@ def checked_name(name: str, what: str) -> str:
 
 
 def read_regular(file) -> bytes:
-    """What a regular file holds, or a link to one; of a file compressed by gzip what it holds then. A pipe may wait for ever,
-    a device never end: they are an error, as in the library's RegularFile.h."""
+    """The content of a regular file, or of a link to a regular file; gzip is decompressed. A pipe may wait for ever, and a device may never
+    end: both are an error, as in the library's RegularFile.h."""
     try:
         kind = os.stat(file).st_mode
         if not stat.S_ISREG(kind):
             what = "it is a folder" if stat.S_ISDIR(kind) else "it is not a regular file but a pipe or a device"
             raise Error(f"{file}: {what}")
         content = pathlib.Path(file).read_bytes()
-    except (OSError, ValueError) as error:  # ValueError of names that no file has
+    except (OSError, ValueError) as error:  # ValueError for a name that no file can have
         raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
     if not content.startswith(b"\x1f\x8b"):
         return content
@@ -66,7 +66,7 @@ def read_regular(file) -> bytes:
 
 
 def _axes(names: List[str]) -> List[str]:
-    """The names with x, y and z for what other programs call so, unless these are there."""
+    """The names, with x, y and z in place of other programs' names of coordinates, unless x, y and z are among the names."""
     if set("xyz") <= {_NAME_AND_UNIT.fullmatch(name)[1] for name in names}:  # type: ignore[index]
         return names
     for points in _POINTS:
@@ -78,13 +78,13 @@ def _axes(names: List[str]) -> List[str]:
 
 
 def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optional[str]]:
-    """Names of the columns, the rows behind them, and what stands between their numbers (None: blanks)."""
+    """Names of the columns, the rows below, and the separator (None: blanks)."""
     text = read_regular(path).decode("utf-8-sig")
     first = text.partition("\n")[0].strip()
-    if first.lower().startswith("sep=") and len(first) == 5:  # of Excel
+    if first.lower().startswith("sep=") and len(first) == 5:  # a line that Excel writes
         text, delimiter = text.partition("\n")[2], first[4]
     else:
-        delimiter = max(",;\t", key=re.sub(r'"[^"]*"', "", first).count)  # outside of quotes
+        delimiter = max(",;\t", key=re.sub(r'"[^"]*"', "", first).count)  # outside of quotation marks
     if path.suffix.lower() == ".xyz":
         delimiter = max(",;", key=first.count)
         words = first.replace(delimiter, " ").split()
@@ -98,7 +98,7 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
             return _axes(first.removeprefix("//").split()), io.StringIO(text.partition("\n")[2]), None
     stream = io.StringIO(text, newline="")
     names = _axes([cell.strip() for cell in next(csv.reader(stream, delimiter=delimiter), [])])
-    if delimiter != ",":  # then a comma stands in a number
+    if delimiter != ",":  # then a comma may be a decimal mark
         rest = stream.read()
         if "," in rest and "." in rest:
             raise ValueError("numbers have points and commas: either may be the decimal mark")
@@ -107,7 +107,7 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
 
 
 def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
-    """Units by name of the columns, and the rows."""
+    """Units of the columns by name, and the rows."""
     try:
         names, stream, delimiter = _names_and_rows(path)
         units: Dict[str, str] = {}
@@ -120,7 +120,7 @@ def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
         if wrong:
             raise ValueError(f"has no column {wrong[0]} in metres")
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of no rows
+            warnings.simplefilter("ignore")  # about missing rows
             table = np.loadtxt(stream, delimiter=delimiter, quotechar='"', comments=None, ndmin=2)
         table = table if table.size else np.empty((0, len(units)))
         if table.shape[1] != len(units):
@@ -132,8 +132,8 @@ def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
 
 
 def _read_table(path: pathlib.Path) -> Cloud:
-    """What `_write_csv` has written, and tables of other programs: whole numbers as int64, columns name_0, name_1, ... (or name:0, ...) as one
-    array, colours (rgb) as bytes."""
+    """Reads what `_write_csv` writes, and tables of other programs: whole numbers become int64, columns name_0, name_1, ... (or
+    name:0, ...) become one array, and colours (rgb) become bytes."""
     units, table = _table(path)
     columns = dict(zip(units, table.T))
     data = vertices(np.column_stack([columns.pop(axis) for axis in "xyz"]))
@@ -143,7 +143,7 @@ def _read_table(path: pathlib.Path) -> Cloud:
         while name.endswith(("_0", ":0")) and f"{stem}{len(parts)}" in columns:
             parts.append(f"{stem}{len(parts)}")
         values = np.column_stack([columns.pop(part) for part in parts])
-        if (np.abs(values) < 2.0**53).all() and (values == np.floor(values)).all():  # of NaN neither
+        if (np.abs(values) < 2.0**53).all() and (values == np.floor(values)).all():  # NaN fails both conditions
             colours = stem[:-1] == "rgb" and len(parts) == 3 and ((values >= 0) & (values < 256)).all()
             values = values.astype(np.uint8 if colours else np.int64)
         several = len(parts) > 1
@@ -152,30 +152,31 @@ def _read_table(path: pathlib.Path) -> Cloud:
 
 
 def save(cloud, file, **properties: Any) -> None:
-    """Write a cloud (a Cloud, a Scan, or what a Cloud is made of) to the kind of file that the suffix says.
+    """Writes a cloud (a Cloud, a Scan, or any source of a Cloud) in the format of the suffix.
 
-    .vtp      VTK's: everything, units and field data too
-    .csv      15 digits, units in the header (`energy [J]`); x, y, z are in metres
-    others    as far as this build has the writers (Documentation/reference/formats.md); `properties` are theirs, by name. LAS and LAZ
-              are in UTM, of a scene without an origin on the Earth in its own frame
+    .vtp      VTK's format: everything, with units and field data
+    .csv      15 digits, units in the header (`energy [J]`); x, y and z are in metres
+    others    if this build has the writer (Documentation/reference/formats.md); `properties` are properties of the writer, by name. LAS and
+              LAZ are in UTM, or in the scene's frame if the scene has no origin on the Earth
 
-    The file is replaced as a whole or not at all. An unknown suffix is a ValueError that says what is known.
+    The file is replaced completely or not at all. An unknown suffix is a ValueError that names the known suffixes.
     """
     file_name(pathlib.Path(file))
     write(Cloud(getattr(cloud, "echoes", cloud)), file, **properties)
 
 
 def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
-    """Read a cloud: .vtp, .csv as `save` and other programs write it, .xyz, and as far as this build has the reader other formats
-    (Documentation/reference/formats.md), whose `properties` are given by name. Coordinates are metres; arrays have the units that the file says (`Cloud.units`).
+    """Reads a cloud from .vtp, .csv (as `save` and other programs write it), .xyz, or another format for which this build has a reader
+    (Documentation/reference/formats.md); `properties` are properties of the reader, by name. Coordinates are metres.
+    `Cloud.units` gives the units of arrays.
 
-    Of packets (.pcap, .pcapng) it is the revolution at `time` (s since the full hour); default: the first, with a warning if there are more.
-    `sensor_address` chooses among the sensors of a recording, as "192.168.1.201"."""
+    Packets (.pcap, .pcapng) give the revolution at `time` (s since the full hour); default: the first revolution, with a warning if
+    the file has several. `sensor_address` chooses among the sensors of a recording, as "192.168.1.201"."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()
     if time is not None and suffix not in PACKETS:
-        raise TypeError(f"a {suffix} file has no revolutions, expected no time: it is {time!r}")
+        raise TypeError(f"a {suffix} file has no revolutions, expected no time, got {time!r}")
     if time is not None and not math.isfinite(time):
         raise ValueError(f"time is {time}, expected seconds since the full hour")
     if suffix not in (".vtp", *TABLES) and not hasattr(_wrapped, READERS.get(suffix, "")):
@@ -190,7 +191,7 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
         reader = vtkXMLPolyDataReader()
         with open(path, "rb") as stream:
-            if b"<VTKFile" not in stream.read(4096):  # of which VTK says more than one thing
+            if b"<VTKFile" not in stream.read(4096):  # VTK reports several errors for such files
                 raise ValueError(f"{path}: this is not a VTK XML file")
     else:
         reader = getattr(_wrapped, READERS[suffix])()
@@ -199,6 +200,7 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)
     cloud = Cloud(reader.GetOutput())
     if time is None and suffix in PACKETS and cloud.fields["number_of_revolutions"] > 1:
-        warnings.warn(f"{path}: has {cloud.fields['number_of_revolutions']:g} revolutions, this is the first; load_cloud(file, time=...) or "
-                      "--time of the command gives another one", RuntimeWarning, stacklevel=callers_level())
+        warnings.warn(f"{path}: has {cloud.fields['number_of_revolutions']:g} revolutions, of which the first was read; "
+                      "load_cloud(file, time=...) or --time of the command reads another revolution", RuntimeWarning,
+                      stacklevel=callers_level())
     return cloud

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a scene requires of the echo filter: a ladder of settings is measured on some beams of a scan.
+"""Measurement of the settings that a scene requires of the echo filter: a ladder of settings is measured on some beams of a scan.
 
-1. Up to fifty beams for each beam of the sample are scanned with default settings. They show which beams meet a mover,
-   which meet nothing, which meet a surface without an echo, and which have an echo. A weighted sample is drawn of each.
-2. The reference is the mean of two scans of the sample by cells with 6400 rays; of eight scans with 25600 rays for
-   beams in which the two differ much. Its own error follows from their spread, and from what two scans by plain rays
-   differ by beyond it.
-3. Each setting scans the same beams, and `_echo_errors` counts its errors. An error is met if its bound is below what
-   is asked.
-4. Times are processor times of one thread over runs of neighbouring beams, which share work, less what a scan without
-   beams takes. Promising settings are timed five times, with other seeds.
-5. If a setting is 1.5 times as fast as all that surely meet everything, and of its errors only the share of wrong
-   echoes is undecided, the sample is doubled, up to four times its size.
-6. Of the settings whose times overlap with those of the fastest that meets everything, the most accurate is advised.
+1. Up to fifty beams for each beam of the sample are scanned with default settings. The scan sorts these beams into four kinds: beams that
+   meet a mover, beams that meet nothing, beams that meet a surface without an echo, and beams with an echo. A weighted sample is
+   drawn of each kind.
+2. The reference is the mean of two scans of the sample by cells with 6400 rays. For beams whose two scans differ much, the reference is
+   the mean of eight scans with 25600 rays. The error of the reference follows from the spread of its scans, and from the additional
+   difference to two scans by plain rays.
+3. Each setting scans the same beams, and `_echo_errors` computes the errors. A limit is kept if the bound of the error is below the
+   limit.
+4. Times are processor times of one thread over runs of neighbouring beams, which share work, less the time of a scan without
+   beams. Promising settings are timed five times, with other seeds.
+5. The sample is doubled, up to four times its size, if a setting is undecided only in its share of wrong echoes and is
+   1.5 times as fast as all settings that surely keep every limit.
+6. Several settings may overlap in time with the fastest setting that keeps every limit. The most accurate of these is advised.
 
-Noise is off: it belongs to the receiver and is not an error. Errors have the same bits for any number of threads.
+Noise is off, because noise belongs to the receiver and is not an error of the model. Errors have the same bits for any number of threads.
 """
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ from ._echo_errors import (BEAM, ENERGY, OBJECT, RANGE, SECONDARY, SURELY, TOTAL
 from ._pipeline import Progress, update
 from ._properties import get_property, property_names, set_properties, snake
 
-CELLS, RAYS, STRATIFIED = 0, 1, 1  # of vtkAvianLidarEchoFilter
+CELLS, RAYS, STRATIFIED = 0, 1, 1  # choices of vtkAvianLidarEchoFilter
 LADDER = [Setting(CELLS, rays, STRATIFIED, *paths) for rays in (8, 25, 100, 400, 1600)
           for paths in ((1, 0), (2, 0), (2, 2), (2, 8)) if rays >= 100 or paths != (2, 8)]
 LADDER += [Setting(RAYS, rays, STRATIFIED, *paths) for rays in (8, 25, 100, 400, 1600, 6400)
@@ -41,28 +42,28 @@ DEFAULT, UNCONNECTED, DIRECT = (Setting(CELLS, 100, STRATIFIED, *paths) for path
 REFERENCE, FINER = (Setting(CELLS, rays, STRATIFIED, 2, 8) for rays in (6400, 25600))
 WITNESS = Setting(RAYS, 10000, STRATIFIED, 2, 2)
 SEEDS, WITNESS_SEEDS, FINER_SEEDS = (1000003, 1000033), (1000037, 1000039), range(1000103, 1000111)
-CANDIDATES = 50  # for each beam of the sample
-MOST_BEAMS = 4  # times those that are asked for
-RUN, RUNS = 32, 32  # neighbouring beams that are timed together, and how often
+CANDIDATES = 50  # scanned beams for each beam of the sample
+MOST_BEAMS = 4  # greatest sample, as a multiple of the chosen number of beams
+RUN, RUNS = 32, 32  # neighbouring beams that are timed together, and number of such runs
 TURNS = 5
-SLOW = 3.0  # times what the fastest that is good takes: no further turns
-FASTER = 1.5  # times as fast as the fastest that is good: worth more beams
-AS_FAST = 1.03  # times of one setting differ by that much from one start of a program to the next
-COARSE = 0.25  # of an error asked: the reference of a beam is made finer
-OF_AIR = -2  # object_id of echoes
+SLOW = 3.0  # time relative to the fastest good setting beyond which a setting is not timed again
+FASTER = 1.5  # speed relative to the fastest good setting that justifies more beams
+AS_FAST = 1.03  # ratio by which times of one setting differ between two starts of a program
+COARSE = 0.25  # share of a limit above which the reference of a beam is refined
+OF_AIR = -2  # object_id of echoes of the air
 COLUMNS = ("distance_m", "energy_received", "secondary_share", "return_energy", "object_id")  # RANGE to OBJECT
 
 
 class Trial:
-    """A setting, and what is measured of it."""
+    """A setting, and the measured errors and times of the setting."""
 
     def __init__(self, setting: Setting):
         self.setting = setting
-        self.x = self.y = np.zeros((3, 0))  # by kind of error and beam: sums, and what they are divided by
-        self.batches = 0  # of the sample
-        self.errors = np.full((3, 3), np.nan)  # by kind: value, least, most
+        self.x = self.y = np.zeros((3, 0))  # by kind of error and beam: sums, and the divisors
+        self.batches = 0  # number of scanned batches of the sample
+        self.errors = np.full((3, 3), np.nan)  # by kind: value, lower and upper bound
         self.verdicts = np.zeros(3, int)
-        self.times: List[float] = []  # s of a beam, each turn
+        self.times: List[float] = []  # time of a beam in each turn, s
 
     @property
     def verdict(self) -> int:
@@ -73,17 +74,17 @@ class Trial:
         return float(np.median(self.times)) if self.times else np.nan
 
     def parts(self, asked: np.ndarray) -> List[float]:
-        """Bounds relative to what is asked, the largest first."""
+        """Error bounds divided by the limits, the largest first."""
         return sorted(self.errors[:, 2] / asked, reverse=True)
 
     def is_as_fast_as(self, other: "Trial") -> bool:
-        """As far as times tell: the middle halves of their turns overlap, or they differ by 3 % at most."""
+        """Whether times do not differ: the middle halves of both settings' turns overlap, or the times differ by 3 % at most."""
         (low, high), (least, most) = (np.percentile(one.times, (25, 75)) for one in (self, other))
         return low <= max(most, AS_FAST * other.seconds) and least <= max(high, AS_FAST * self.seconds)
 
 
 def choose(trials: Sequence[Trial], asked: np.ndarray) -> Optional[Trial]:
-    """The most accurate of the settings that meet everything as fast as the fastest one; None if none meets it."""
+    """The most accurate of the settings that keep all limits and are as fast as the fastest such setting; None without such a setting."""
     met = [trial for trial in trials if trial.verdict == MET]
     if not met:
         return None
@@ -92,12 +93,12 @@ def choose(trials: Sequence[Trial], asked: np.ndarray) -> Optional[Trial]:
 
 
 def spread(items: np.ndarray, start: float) -> np.ndarray:
-    """In an order of which every beginning is spread evenly over all: by multiples of the golden section."""
+    """The items in an order whose every beginning is spread evenly over all items: multiples of the golden section."""
     return items[np.argsort((start + 0.5 * (np.sqrt(5) - 1) * np.arange(len(items))) % 1)]
 
 
 def some_of(beams: vtkPolyData, which: np.ndarray) -> vtkPolyData:
-    """Some of the beams, with the ids that they have."""
+    """Some of the beams, with their ids."""
     some = with_points(as_numpy(beams.GetPoints().GetData())[which])
     some.GetFieldData().ShallowCopy(beams.GetFieldData())
     for name, values in {"beam_id": np.arange(beams.GetNumberOfPoints()), **Cloud(beams)}.items():
@@ -106,8 +107,8 @@ def some_of(beams: vtkPolyData, which: np.ndarray) -> vtkPolyData:
 
 
 def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
-    """Whether triangles, 20,000 at most, are one closed convex body that is seen from outside: it cannot light itself.
-    All corners lie on one side of each triangle, and the triangles' normals, as long as twice the areas, sum to 0."""
+    """Whether at most 20,000 triangles are one closed convex body seen from outside, so that no light returns to the body.
+    All corners lie on one side of each triangle, and the triangles' normals, with twice the area as length, sum to 0."""
     if not 0 < surfaces.GetNumberOfPolys() <= 20000:
         return False
     corners = as_numpy(surfaces.GetPoints().GetData()) - place
@@ -115,7 +116,7 @@ def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
     size, normals = np.linalg.norm(np.ptp(corners, axis=0)), np.cross(b - a, c - a)
     areas = np.linalg.norm(normals, axis=1)
     outside, total = False, np.zeros(3)
-    for i in np.flatnonzero(areas > 1e-12 * size**2):  # without the degenerate ones at the poles of a sphere
+    for i in np.flatnonzero(areas > 1e-12 * size**2):  # without the degenerate triangles at the poles of a sphere
         heights = (corners - a[i]) @ normals[i]
         outwards = normals[i] if heights.max() < -heights.min() else -normals[i]
         if min(heights.max(), -heights.min()) > 1e-6 * size * areas[i]:
@@ -125,7 +126,7 @@ def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
 
 
 class Scanner:
-    """An echo filter with the properties of another. It keeps nothing from scan to scan."""
+    """An echo filter with the properties of another echo filter. Nothing is kept from scan to scan."""
 
     def __init__(self, like: Any, beams: vtkPolyData, surfaces: Any, movers: Any, threads: int, **settings: Any):
         self.filter = _wrapped.vtkAvianLidarEchoFilter()
@@ -134,15 +135,15 @@ class Scanner:
         set_properties(self.filter, **{**own, **settings})
         self.filter.SetSurfacesData(surfaces)
         self.filter.SetMoversData(movers)
-        self.seconds, idle = 0.0, []  # of this thread, the last scan
-        for _ in range(TURNS):  # the first one merges the surfaces
+        self.seconds, idle = 0.0, []  # time of this thread in the last scan, s
+        for _ in range(TURNS):  # the first turn merges the surfaces
             self.scan(some_of(beams, np.zeros(0, int)), None, 0)
             idle.append(self.seconds)
-        self.idle = float(np.median(idle))  # s, what a scan takes without beams
+        self.idle = float(np.median(idle))  # time of a scan without beams, s
 
     def scan(self, beams: vtkPolyData, setting: Optional[Setting], seed: int,
              progress: Optional[Progress] = None) -> np.ndarray:
-        """The echoes as rows, with beams counted from 0. @param setting None: the filter's own"""
+        """The echoes as rows, with beams counted from 0. @param setting None: the filter's own setting"""
         if setting:
             set_properties(self.filter, **setting.properties())
         self.filter.SetSeed((seed + 2**31) % 2**32 - 2**31)
@@ -157,11 +158,11 @@ class Scanner:
 
 
 class Measurement:
-    """What a scene requires, step by step."""
+    """The steps of the measurement, see the module."""
 
     def __init__(self, like: Any, inputs: Sequence[Any], asked: Dict[str, float], count: int,
                  progress: Optional[Progress]):
-        """@param like an echo filter with its properties @param inputs beams, surfaces, movers or None"""
+        """@param like an echo filter with the scan's properties @param inputs beams, surfaces, movers or None"""
         self.like, (self.beams, self.surfaces, self.movers) = like, inputs
         self.asked, self.count = np.array([asked[kind] for kind in KINDS]), count
         self.progress, self.done = progress or (lambda *_: None), 0.0
@@ -169,13 +170,13 @@ class Measurement:
         self.scanner = Scanner(like, self.beams, self.surfaces, self.movers, self.threads)
         self.timer = Scanner(like, self.beams, self.surfaces, self.movers, 1)
         self.fields = fields = Cloud(self.scanner.filter.GetOutput(0)).fields
-        own = Setting(*(int(fields[snake(name)]) for name in SETTINGS))  # a preset's, if there is one
+        own = Setting(*(int(fields[snake(name)]) for name in SETTINGS))  # the values of a preset, if there is one
         self.trials = [Trial(setting) for setting in (own, *LADDER)]
         length = 0.5 * 299792458.0 * np.array((fields["sampling_interval"], fields["pulse_width"]))  # m
         self.judge = Judge(length.sum(), 2 * fields["lower_energy_limit"])
-        self.sample = np.zeros(0, int)  # of the candidates
-        self.batches: List[Tuple[np.ndarray, Known]] = []  # of the sample, with what is taken for true
-        self.bias = np.zeros(2)  # of the reference, squares
+        self.sample = np.zeros(0, int)  # numbers of the sampled candidates
+        self.batches: List[Tuple[np.ndarray, Known]] = []  # batches of the sample, each with its reference
+        self.bias = np.zeros(2)  # squared error of the reference
 
     def scan(self, beams: vtkPolyData, setting: Setting, seed: int, by: Optional[Scanner] = None) -> np.ndarray:
         return (by or self.scanner).scan(beams, setting, seed, lambda *_: self.progress(self.done, "advise"))
@@ -183,7 +184,7 @@ class Measurement:
     # Beams.
 
     def look(self) -> None:
-        """Find out which beams are of which kind."""
+        """Finds the kind of each candidate beam."""
         random, total = np.random.default_rng(1), self.beams.GetNumberOfPoints()
         wanted = min(total, CANDIDATES * self.count)
         places = (np.arange(wanted) + random.random(wanted)) * (total / max(1, wanted))
@@ -206,10 +207,10 @@ class Measurement:
         self.timed = some_of(self.beams, timed[timed < total])
 
     def grow(self, count: int) -> np.ndarray:
-        """Draw further beams, up to so many in all: places of the candidates. The first ones stay."""
+        """Draws further beams, up to `count` in all, and returns their numbers among the candidates. Earlier beams are kept."""
         numbers: List[int] = []
         for order, most in zip(self.orders, (count // 4, count // 8, count // 4, count)):
-            numbers.append(min(len(order), max(1, min(most, count - sum(numbers)))))  # each kind has a weight
+            numbers.append(min(len(order), max(1, min(most, count - sum(numbers)))))  # at least one beam, so that each kind has a weight
         numbers[2] = min(len(self.orders[2]), numbers[2] + max(0, count - sum(numbers)))
         chosen = np.concatenate([order[:number] for order, number in zip(self.orders, numbers)])
         new = np.setdiff1d(chosen, self.sample)
@@ -217,7 +218,7 @@ class Measurement:
         return new
 
     def weights(self) -> np.ndarray:
-        """How many beams of the scan each of the sample stands for."""
+        """For each beam of the sample, the number of the scan's beams that the beam represents."""
         drawn = self.kinds[self.sample]
         numbers, all_ = (np.bincount(kinds, minlength=4) for kinds in (drawn, self.kinds))
         return (all_ / np.maximum(1, numbers) * (self.beams.GetNumberOfPoints() / len(self.kinds)))[drawn]
@@ -228,10 +229,10 @@ class Measurement:
     # The reference.
 
     def refer(self, new: np.ndarray) -> np.ndarray:
-        """Scan the reference of new beams: its first scan."""
+        """Scans the reference of new beams, and returns the first scan."""
         scans = [self.scan(self.beams_of(new), REFERENCE, seed) for seed in SEEDS]
         known = self.judge.average(scans, len(new))
-        # Where rare paths carry much light.
+        # Beams in which rare paths return much light.
         coarse = np.flatnonzero((known.x[:2] > (COARSE * self.asked[:2, None]) ** 2).any(axis=0))
         if len(coarse):
             beams = self.beams_of(new[coarse])
@@ -241,7 +242,7 @@ class Measurement:
         return scans[0]
 
     def look_at_scene(self, first: np.ndarray) -> None:
-        """What the reference's light consists of, by its first scan, and how far plain rays are from it."""
+        """Analyses the light of the reference in its first scan, and the difference of plain rays."""
         (new, truth), weights = self.batches[0], self.weights()
         beams = self.beams_of(new)
         witness = [self.scan(beams, WITNESS, seed) for seed in WITNESS_SEEDS]
@@ -266,7 +267,7 @@ class Measurement:
         tree, before = _wrapped.vtkAvianLidarCollisionTree(), time.process_time()
         tree.SetInputDataObject(self.surfaces)
         update(tree)
-        self.tree_seconds = time.process_time() - before  # of all its threads
+        self.tree_seconds = time.process_time() - before  # processor time of all threads
         surfaces = tree.GetOutput()
         self.convex = self.movers is None and is_convex(surfaces, as_numpy(self.beams.GetPoints().GetData())[0])
 
@@ -296,7 +297,7 @@ class Measurement:
         return bounds(x, y, self.weights(), self.own())
 
     def measure(self, trial: Trial) -> None:
-        """The errors on the beams of the sample that it has not scanned yet."""
+        """Measures the errors on beams of the sample that the trial has not scanned yet."""
         for new, truth in self.batches[trial.batches:]:
             x, y = self.judge.count(self.scan(self.beams_of(new), trial.setting, self.seed + 1), truth)
             trial.x, trial.y = np.hstack((trial.x, x)), np.hstack((trial.y, y))
@@ -332,14 +333,14 @@ class Measurement:
                     self.measure(trial)
 
     def eligible(self) -> List[Trial]:
-        """Trials without second reflections where there are none."""
+        """Trials without second reflections, if the scene has no second reflections; else all trials."""
         return [trial for trial in self.trials if self.reflects_twice or trial.setting.reflections == 1]
 
     def fastest(self, verdict: int = MET) -> float:
         return min((trial.seconds for trial in self.eligible() if trial.verdict == verdict), default=np.inf)
 
     def wants_more(self) -> bool:
-        """Whether a much faster setting may be good: of its errors the share of wrong echoes alone is undecided."""
+        """Whether a much faster setting may keep all limits: only its share of wrong echoes is undecided."""
         own = self.own()[2]
         return any(FASTER * trial.seconds < self.fastest() and tuple(trial.verdicts) == (MET, MET, UNDECIDED) and
                    trial.errors[2, 0] + own < self.asked[2] for trial in self.eligible())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ParaView's button Advise runs on the server: the proxy of Plugin/Filters/AvianLidarAdvisor.xml makes it."""
+"""The advisor that ParaView's button Advise runs on the server. Plugin/Filters/AvianLidarAdvisor.xml makes the proxy."""
 from __future__ import annotations
 
 from typing import Any, Dict, Optional
@@ -21,10 +21,9 @@ ASKED = {"SetEnergyError": "energy", "SetRangeError": "range", "SetMissedShare":
 
 
 class Advisor(VTKPythonAlgorithmBase):
-    """Inputs and properties are those of the echo filter, and what is asked for. The output is the table of an Advice,
-    with the row that is `advised` and the `advice` in words as field data. Where several ranks work together,
-    each asks for all of its inputs, and the first one measures. After an error the table is empty, and its field data
-    `error` says why."""
+    """Inputs and properties are those of the echo filter, and the limits of the errors. The output is the table of an Advice,
+    with the number of the `advised` row and the `advice` in words as field data. In a job of several ranks, each rank requests
+    all inputs, and the first rank measures. After an error the table is empty, and its field data `error` give the message."""
 
     def __init__(self) -> None:
         self._like = _wrapped.vtkAvianLidarEchoFilter()
@@ -33,7 +32,7 @@ class Advisor(VTKPythonAlgorithmBase):
         super().__init__(nInputPorts=3, nOutputPorts=1, outputType="vtkTable")
 
     def __getattr__(self, name: str) -> Any:
-        """Methods that the server manager calls: of what is asked for and advised, else of the echo filter."""
+        """Methods that the server manager calls: methods for limits and advice, else methods of the echo filter."""
         if not name.startswith(("Get", "Set")):
             raise AttributeError(name)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs VTK algorithms the way Python expects: errors are exceptions, warnings are warnings, Ctrl-C stops."""
+"""Runs VTK algorithms with Python's conventions: errors are exceptions, warnings are Python warnings, Ctrl-C stops a run."""
 from __future__ import annotations
 
 import contextlib
@@ -17,18 +17,18 @@ Progress = Callable[[float, str], Any]
 
 
 class Error(RuntimeError):
-    """What a VTK class reported as an error, in its own words."""
+    """An error that a VTK class has reported, with the words of the class."""
 
 
 def words_of(error: BaseException) -> str:
-    """What an exception says: of files their names, of keys no quotes."""
+    """The message of an exception: with the name of a file, without quotation marks around a key."""
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     return str(error.args[0] if isinstance(error, KeyError) and error.args else error) or type(error).__name__
 
 
 def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
-    """The algorithm and all that it depends on, sources first."""
+    """The algorithm and all algorithms that it depends on, sources first."""
     found = [] if found is None else found
     if algorithm is not None and algorithm not in found:
         for port in range(algorithm.GetNumberOfInputPorts()):
@@ -39,7 +39,7 @@ def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
 
 
 def text_of(value: str) -> str:
-    """A text that VTK takes as it is: ValueError where it would end it (at NUL) or the process (no UTF-8)."""
+    """A text that VTK can take. ValueError for a NUL, which would cut the text, and for text without UTF-8, which would end the process."""
     if not isinstance(value, str):
         raise TypeError(f"{value!r} is not a text")
     value.encode()
@@ -49,7 +49,7 @@ def text_of(value: str) -> str:
 
 
 def file_name(file) -> Any:
-    """A file's name as bytes, whatever they are; ValueError for a NUL, where VTK would end it."""
+    """The name of a file as bytes. ValueError for a name with a NUL, at which VTK would cut the name."""
     name = os.fsencode(file)
     if b"\0" in name:
         raise ValueError(f"the file name {os.fspath(file)!r} holds a NUL")
@@ -57,15 +57,15 @@ def file_name(file) -> Any:
 
 
 def plain(message: str) -> str:
-    """VTK's text of an error or a warning without source line and address."""
+    """The text of VTK's error or warning, without source line and address."""
     message = re.sub(r"^\s*(ERROR|Warning): In .*\n", "", message)
     return re.sub(r"^(\w+) \((?:0x)?[0-9a-fA-F]+\): ", r"\1: ", message).strip()
 
 
 @contextlib.contextmanager
 def signals_kept() -> Iterator[List[BaseException]]:
-    """What handlers of signals raise in the main thread while the block runs is kept in a list, and the first is raised
-    at the end. A handler that raises while they are given back may leave some behind: those pass on what they get."""
+    """Keeps in a list the exceptions that signal handlers raise in the main thread while the block runs, and raises the first at the end.
+    If a handler raises while the old handlers are restored, some handlers of this function may remain; these call the old handlers."""
     kept: List[BaseException] = []
     handlers: Dict[int, Any] = {}
     inside = True
@@ -88,14 +88,14 @@ def signals_kept() -> Iterator[List[BaseException]]:
     finally:
         inside = False
         for number, handler in handlers.items():
-            if signal.getsignal(number) is handle:  # who set another one keeps it
+            if signal.getsignal(number) is handle:  # a handler that was set meanwhile is kept
                 signal.signal(number, handler)
     if kept:
         raise kept[0]
 
 
 def callers_level() -> int:
-    """How many frames above the one that asks the package was entered: where a warning belongs."""
+    """The number of frames between the caller and the call that entered the package, for the position of a warning."""
     level, frame = 1, sys._getframe(1)
     while frame.f_back and (frame.f_globals.get("__package__") or "").partition(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
@@ -103,10 +103,10 @@ def callers_level() -> int:
 
 
 class Updates:
-    """Brings an algorithm up to date again and again, and hears it and all that it depends on from enter to exit.
+    """Brings an algorithm up to date repeatedly, and observes the algorithm and its sources from enter to exit.
 
-    VTK never forgets an observer from Python and looks through all that there ever were whenever one is removed: who
-    updates thousands of times must not add new ones each time.
+    VTK never frees an observer from Python, and searches all observers at each removal. A loop of thousands of updates must
+    therefore not add new observers each time.
     """
 
     def __init__(self, algorithm, progress: Optional[Progress] = None):
@@ -114,9 +114,9 @@ class Updates:
         self._tags: List[Any] = []
         self._errors: List[str] = []
         self._warnings: List[str] = []
-        self._failures: List[str] = []  # of executives
-        self._unfinished: List[Any] = []  # what failed or was stopped
-        self._stops: List[BaseException] = []  # of the caller's progress or a signal's handler
+        self._failures: List[str] = []  # messages of executives
+        self._unfinished: List[Any] = []  # algorithms that failed or were stopped
+        self._stops: List[BaseException] = []  # exceptions of the caller's progress or of a signal's handler
 
     def __enter__(self) -> "Updates":
         try:
@@ -138,9 +138,9 @@ class Updates:
         self._tags.append((caller, caller.AddObserver(event, heard)))
 
     def _heard(self, caller, event, message):
-        # VTK decodes the text, and brings none where that fails.
+        # VTK passes None for a text that cannot be decoded.
         text = f"{caller.GetClassName()}: a message that is not UTF-8" if message is None else plain(message)
-        if caller.IsA("vtkExecutive"):  # mostly of what the algorithm said already
+        if caller.IsA("vtkExecutive"):  # mostly repeats the algorithm's own message
             first = text.partition("\n")[0]
             self._fail(caller.GetAlgorithm(), "" if "returned failure for request" in first else first)
         elif event == "WarningEvent":
@@ -158,7 +158,7 @@ class Updates:
         self._unfinished.append(algorithm)
 
     def _advanced(self, caller, _):
-        # An exception must not leave an observer: VTK would print it, and end the process at a KeyboardInterrupt.
+        # An exception must not leave an observer: VTK would print the exception, and would end the process at a KeyboardInterrupt.
         if self._progress and not self._stops:
             try:
                 self._progress(caller.GetProgress(), caller.GetClassName())
@@ -169,7 +169,7 @@ class Updates:
             self._unfinished.append(caller)
 
     def __call__(self, run: Optional[Callable[[], Any]] = None) -> Any:
-        """As `update`."""
+        """Updates the algorithm; see `update`."""
         for said in (self._errors, self._warnings, self._failures, self._unfinished):
             said.clear()
         algorithm = self._algorithm
@@ -182,7 +182,7 @@ class Updates:
             finally:
                 for one in self._unfinished:
                     one.SetAbortExecute(False)
-                    one.Modified()  # else its empty output would count as up to date
+                    one.Modified()  # otherwise the empty output would count as up to date
         for text in self._warnings:
             warnings.warn(text, RuntimeWarning, stacklevel=callers_level())
         if self._errors or self._failures:
@@ -191,7 +191,7 @@ class Updates:
 
 
 def is_current(algorithm) -> bool:
-    """Whether the algorithm has run since it, or anything that it depends on, was changed."""
+    """Whether the algorithm has run since the last change of the algorithm or of any source."""
     executive = algorithm.GetExecutive()
     executive.UpdatePipelineMTime()
     data = algorithm.GetOutputDataObject(0)
@@ -199,13 +199,13 @@ def is_current(algorithm) -> bool:
 
 
 def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
-    """Bring an algorithm up to date, with all that it depends on; returns what `run` returns.
+    """Brings an algorithm up to date, with all algorithms that it depends on. Returns the result of `run`.
 
-    `run` does it (default: as `algorithm.Update` does). `progress` is called with the share done (0 to 1) and the name
-    of the class at work; an exception that it raises ends the run and is passed on. Errors are raised as `Error`,
-    warnings are passed to `warnings.warn`. What the handler of a signal raises in the main thread, as KeyboardInterrupt
-    at Ctrl-C, ends the run between two blocks of work and is passed on. What failed or was stopped starts afresh the
-    next time.
+    `run` executes the algorithm (default: like `algorithm.Update`). `progress` is called with the completed share (0 to 1) and the name
+    of the running class; an exception of `progress` ends the run and is passed on. Errors are raised as `Error`,
+    and warnings are passed to `warnings.warn`. An exception of a signal's handler in the main thread, such as KeyboardInterrupt
+    at Ctrl-C, ends the run between two blocks of work and is passed on. An algorithm that failed or was stopped starts afresh
+    at the next update.
     """
     with Updates(algorithm, progress) as once:
         return once(run)

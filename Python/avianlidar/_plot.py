@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures with Matplotlib, which is imported here only."""
+"""Pictures with Matplotlib, which only the functions import."""
 from __future__ import annotations
 
 import numpy as np
@@ -8,15 +8,15 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from . import vtkAvianLidar as _wrapped
 
-LABELS = {"distance_m": "distance (m)", "candidates": "triangles looked at",
+LABELS = {"distance_m": "distance (m)", "candidates": "triangles tested",
           "nodes_visited": "nodes visited", "rays_traced": "rays traced", "skipped_bound": "skipped, at most (J)"}
-# What becomes of a beam, by `status`, and the colours of ParaView's preset "Avian lidar status".
+# The statuses of a beam, with the colours of ParaView's preset "Avian lidar status".
 STATUS = {"echo": (0, 0.62, 0.45), "no surface": (0.83, 0.83, 0.83), "below the lower limit": (0, 0.45, 0.7),
           "saturated": (0.84, 0.37, 0), "outside the gate": (0.8, 0.47, 0.65)}
 
 
 def hue_colors():
-    """The colours of energy as a Matplotlib colour map, blue (lower limit) to red (upper limit): paper, Eq. 13."""
+    """The colours of energy as a Matplotlib colour map, from blue (lower limit) to red (upper limit): paper, Eq. 13."""
     from matplotlib.colors import ListedColormap
     table = vtkLookupTable()
     table.SetNumberOfTableValues(256)
@@ -25,14 +25,14 @@ def hue_colors():
 
 
 def _axis(values, name: str, unit: str, count: str):
-    """Positions and label of rows or columns: angles where they increase, else numbers."""
+    """Positions and label of rows or columns: angles if these increase, else numbers."""
     if (np.diff(values) > 0).all():
         return values, f"{name} ({unit})"
     return np.arange(len(values)), count
 
 
 def _status_colours(axes):
-    """Options for pixels of `status`, and their legend."""
+    """Options for pixels of `status`, and the legend of the statuses."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
     axes.legend(handles=[Patch(color=colour, label=name) for name, colour in STATUS.items()], ncol=len(STATUS),
@@ -40,7 +40,7 @@ def _status_colours(axes):
     return {"cmap": ListedColormap(list(STATUS.values())), "vmin": -0.5, "vmax": len(STATUS) - 0.5}
 
 
-DECADES = 100.0  # energies further apart than by this factor have a logarithmic scale
+DECADES = 100.0  # ratio of energies above which the scale is logarithmic
 SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15}
 
 
@@ -49,14 +49,14 @@ def _label(name: str, unit: str) -> str:
 
 
 def _values(cloud, name: str):
-    """An array of a cloud as numbers to draw, options for them, and their label."""
+    """An array of a cloud as numbers to draw, with drawing options and a label."""
     values = np.asarray(cloud[name], dtype=float)
     if values.ndim > 1:
         raise ValueError(f"cannot draw {name!r}, which has {values.shape[1]} components")
     if name == "energy":
         low, high = (cloud.fields.get(key) for key in ("lower_energy_limit", "upper_energy_limit"))
         least, most = values[values > 0.0].min(initial=np.inf), values.max(initial=0.0)
-        decades = (least if low is None else low) * DECADES < (most if high is None else high)  # as a receiver of photons has
+        decades = (least if low is None else low) * DECADES < (most if high is None else high)  # as for a photon receiver
         if low is not None and high is not None:
             limits = {"vmin": low, "vmax": min(high, most) if decades and most > low else high}
             most = limits["vmax"]
@@ -71,13 +71,13 @@ def _values(cloud, name: str):
 
 
 def plot_map(cloud, array: str = "energy", axes=None, **options):
-    """Draw points from above with Matplotlib: east by north (m), coloured by an array.
+    """Draws points from above with Matplotlib: east by north (m), coloured by an array.
 
-    cloud    a Cloud, or a Scan, of which the echoes are drawn
-    array    any point array of one component; energy in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap
-             between the limits of the sensor, by the logarithm where they are decades apart
-    axes     of Matplotlib to draw into; default: new ones
-    options  of Matplotlib's `scatter`
+    cloud    a Cloud, or a Scan, whose echoes are drawn
+    array    any point array of one component. Energy has a unit that fits, such as microjoules, and the colours of
+             vtkAvianLidarHSBColorMap between the limits of the sensor, logarithmic if the limits are decades apart
+    axes     axes of Matplotlib to draw into; default: new axes
+    options  options of Matplotlib's `scatter`
 
     Returns the axes.
     """
@@ -93,15 +93,16 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
 
 
 def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
-    """Draw the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
+    """Draws the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
 
-    array    `distance_m` (m), `energy` (in microjoules or whatever fits, in the colours of vtkAvianLidarHSBColorMap between the
-             limits of the sensor, by the logarithm where they are decades apart), `object_id` (each object a colour), `status` (what became of each beam), what a beam
-             cost and did without (`nodes_visited`, `candidates`, `rays_traced`, `skipped_bound` (J)), or any point array of the echoes: of the strongest one of each beam
-    axes     of Matplotlib to draw into; default: new ones
-    options  of Matplotlib's `pcolormesh`
+    array    `distance_m` (m), `energy` (in a unit that fits, such as microjoules, in the colours of vtkAvianLidarHSBColorMap between the
+             limits of the sensor, logarithmic if the limits are decades apart), `object_id` (one colour for each object),
+             `status` (the status of each beam), costs of each beam (`nodes_visited`, `candidates`, `rays_traced`), its
+             `skipped_bound` (J), or any point array of the echoes, taken from the strongest echo of each beam
+    axes     axes of Matplotlib to draw into; default: new axes
+    options  options of Matplotlib's `pcolormesh`
 
-    Returns the axes. Where there is no echo, nothing is drawn of echoes.
+    Returns the axes. Arrays of echoes leave beams without an echo blank.
     """
     import matplotlib.pyplot as plt
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Properties of wrapped classes by name: `RaysPerBeam` of the C++ class is `rays_per_beam` here, as in newer VTK."""
+"""Properties of wrapped classes by name: `RaysPerBeam` of the C++ class is `rays_per_beam` in Python, as in newer VTK."""
 from __future__ import annotations
 
 import difflib
@@ -13,7 +13,7 @@ from ._pipeline import text_of
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-# Keeps what a function says of a class, which to mypy has no hash.
+# Caches results by class. mypy does not accept a class as hashable here.
 _once: Callable[[F], F] = functools.lru_cache(maxsize=None)  # type: ignore[assignment]
 
 
@@ -24,7 +24,7 @@ def snake(name: str) -> str:
 
 
 def _own_methods(wrapped: type) -> Dict[str, Any]:
-    """Methods of this project's classes among the bases: those of VTK's are no properties of ours."""
+    """Methods of this project's classes among the bases, without the methods of VTK's classes."""
     methods: Dict[str, Any] = {}
     for base in wrapped.__mro__:
         if base.__name__.startswith("vtkAvianLidar"):
@@ -34,22 +34,22 @@ def _own_methods(wrapped: type) -> Dict[str, Any]:
 
 @_once
 def property_names(wrapped: type) -> Mapping[str, str]:
-    """{`rays_per_beam`: `RaysPerBeam`} of a wrapped class, in alphabetical order."""
+    """{`rays_per_beam`: `RaysPerBeam`} for a wrapped class, in alphabetical order."""
     methods = _own_methods(wrapped)
     found = [m[3:] for m in methods if m.startswith("Set") and "Get" + m[3:] in methods]
     # A table is set as a whole.
     tables = {"ChannelElevation", "NumberOfChannelElevations"}
-    # An error is an exception here, never data: that is for ParaView.
+    # In Python an error is an exception; error data are for ParaView.
     names = {snake(name): name for name in sorted(found) if name not in (*tables, "ErrorsAsData")}
     if tables <= set(found):
         names["channel_elevations"] = "ChannelElevations"
     return names
 
 
-@_once  # else every reading of a choice would make an object for each of its values
+@_once  # without the cache, each reading of a choice would make an object for each value
 def choices(wrapped: type, name: str) -> Mapping[str, Any]:
-    """{`RangeUnits`: 4} of a property that is a choice (`SetReturnModeToRangeUnits()`), else empty. Methods that write
-    many properties (`SetPresetToAirport16()` of the beam source) have no value of their own: None."""
+    """{`RangeUnits`: 4} for a property that is a choice (`SetReturnModeToRangeUnits()`), else empty. A method that sets
+    several properties (`SetPresetToAirport16()` of the beam source) has the value None."""
     start = f"Set{name}To"
     found = [method[len(start):] for method in _own_methods(wrapped) if method.startswith(start)]
     values: Dict[str, Any] = {}
@@ -60,25 +60,25 @@ def choices(wrapped: type, name: str) -> Mapping[str, Any]:
     return dict(sorted(values.items(), key=lambda item: (item[1] is not None, item[1] or 0, item[0])))
 
 
-# What users ask for that follows from other properties.
-FOLLOWS = {"maximum_elevation": "it is minimum_elevation + (number_of_channels - 1) * elevation_step: set these"}
+# Names of properties that users expect but that follow from other properties.
+FOLLOWS = {"maximum_elevation": "it follows from minimum_elevation + (number_of_channels - 1) * elevation_step: set these properties"}
 
 
 def unknown(what: str, name: str, known) -> str:
-    """Words about a name that is not known: the one that is nearest to it, or all."""
-    name, known = str(name), list(known)  # NumPy's texts show their type
+    """Message about an unknown name: the nearest known name, or all known names."""
+    name, known = str(name), list(known)  # NumPy's texts would show their type
     if snake(name) in FOLLOWS and "elevation_step" in known:
         return f"{what} {name!r} is not known; {FOLLOWS[snake(name)]}"
     near = difflib.get_close_matches(snake(name), [snake(k) for k in known], n=1)
     if near:
         hint = f"did you mean {next(k for k in known if snake(k) == near[0])!r}?"
     else:
-        hint = f"known are {', '.join(known)}"
+        hint = f"expected one of {', '.join(known)}"
     return f"{what} {name!r} is not known; {hint}"
 
 
 def choose(wrapped: type, name: str, value: str) -> str:
-    """The choice of a property that is meant by a word: case, blanks, `_` and `-` do not count."""
+    """The choice of a property for a word. Case, blanks, `_` and `-` do not matter."""
     known = choices(wrapped, name)
     for choice in known:
         if re.sub(r"[\s_\-]", "", value).lower() == choice.replace("_", "").lower():
@@ -87,7 +87,7 @@ def choose(wrapped: type, name: str, value: str) -> str:
 
 
 def resolve(wrapped: type, name: str, owner: str) -> str:
-    """The name in C++ of a property given as there or in snake case; TypeError names the nearest."""
+    """The C++ name of a property given in C++ or snake case. TypeError names the nearest property."""
     names = property_names(wrapped)
     if name in names:
         return names[name]
@@ -97,7 +97,7 @@ def resolve(wrapped: type, name: str, owner: str) -> str:
 
 
 def in_snake_case(wrapped: type, values: Dict[str, Any], owner: str) -> Dict[str, Any]:
-    """Values of properties, each name as it is here; names that are none stay as they are. TypeError where a property is given
+    """Values of properties with names in snake case; names that are not properties are kept. TypeError if a property is given
     twice."""
     here = {name: key for key, name in property_names(wrapped).items()}
     found: Dict[str, Any] = {}
@@ -110,7 +110,7 @@ def in_snake_case(wrapped: type, values: Dict[str, Any], owner: str) -> Dict[str
 
 
 def documentation(wrapped: type, name: str) -> str:
-    """What the C++ class says of a property: meaning, unit, default, range."""
+    """The description of a property in the C++ class: meaning, unit, default, range."""
     method = getattr(wrapped, "Set" + (name if name != "ChannelElevations" else "NumberOfChannelElevations"))
     paragraphs = [textwrap.fill(" ".join(p.split()), 110) for p in (method.__doc__ or "").split("\n\n")]
     words = [p for p in paragraphs if p and not re.match(r"Set\w+\(|C\+\+:", p)]
@@ -119,7 +119,7 @@ def documentation(wrapped: type, name: str) -> str:
 
 
 def get_property(algorithm, name: str) -> Any:
-    """A property by its name in C++; a choice is the word for it."""
+    """The value of a property with its C++ name; the value of a choice is a word."""
     if name == "ChannelElevations":
         return tuple(algorithm.GetChannelElevation(i) for i in range(algorithm.GetNumberOfChannelElevations()))
     value = getattr(algorithm, "Get" + name)()
@@ -134,18 +134,18 @@ def _kind(value) -> str:
 
 
 def set_property(algorithm, name: str, value: Any) -> None:
-    """Set a property by its name in C++ to a value or the word of a choice."""
+    """Sets a property with its C++ name to a value or to the word of a choice."""
     if hasattr(value, "tolist"):
-        value = value.tolist()  # of NumPy
+        value = value.tolist()  # a NumPy scalar or array
     if name == "ChannelElevations":
         if not hasattr(value, "__len__") or isinstance(value, str):
             raise TypeError(f"channel_elevations are {value!r}, expected a list of numbers in degrees")
-        for table in (type(algorithm)(), algorithm):  # what is no number is refused by the first
+        for table in (type(algorithm)(), algorithm):  # wrong values are refused by the new object, before the algorithm changes
             table.SetNumberOfChannelElevations(len(value))
             for i, elevation in enumerate(value):
                 table.SetChannelElevation(i, elevation)
     elif isinstance(getattr(algorithm, "Get" + name)(), bool):
-        if value not in (False, True):  # 0 and 1 are; VTK takes anything, "off" for on
+        if value not in (False, True):  # 0 and 1 are accepted; VTK would accept anything, and read "off" as on
             raise TypeError(f"{snake(name)} is {value!r}, expected True or False")
         getattr(algorithm, "Set" + name)(bool(value))
     elif isinstance(value, str) and choices(type(algorithm), name):
@@ -158,7 +158,7 @@ def set_property(algorithm, name: str, value: Any) -> None:
 
 
 def set_properties(algorithm, owner: Optional[str] = None, **values: Any) -> None:
-    """Set properties by name; nothing is set if one of the names is unknown."""
+    """Sets properties by name. No property is set if one of the names is unknown."""
     owner = owner or algorithm.GetClassName()
     resolved = {resolve(type(algorithm), name, owner): value for name, value in values.items()}
     for name, value in resolved.items():
@@ -166,14 +166,14 @@ def set_properties(algorithm, owner: Optional[str] = None, **values: Any) -> Non
 
 
 class PropertyOwner:
-    """Base of what has a wrapped algorithm, whose properties are attributes (see `wraps`)."""
+    """Base of classes with a wrapped algorithm whose properties are attributes (see `wraps`)."""
 
     algorithm: Any
 
-    def __getattr__(self, name: str) -> Any:  # of names that are nowhere else
+    def __getattr__(self, name: str) -> Any:  # called for names that were not found elsewhere
         if name.startswith("_") or name == "algorithm":
             raise AttributeError(name)
-        if hasattr(type(self), name):  # one that failed: let it say why
+        if hasattr(type(self), name):  # a property whose getter failed: its own error is raised again
             return object.__getattribute__(self, name)
         raise AttributeError(unknown(f"{type(self).__name__}: property", name, property_names(type(self.algorithm))))
 
@@ -183,8 +183,8 @@ class PropertyOwner:
         object.__setattr__(self, name, value)
 
     def set(self, **properties: Any):
-        """Set several properties by name (`rays_per_beam` or `RaysPerBeam`), each in the unit that its page says
-        (`help()` of the class). An unknown name is a TypeError that says the nearest. Returns self."""
+        """Sets several properties by name (`rays_per_beam` or `RaysPerBeam`), each in the unit that `help()` of the class
+        gives. An unknown name is a TypeError that names the nearest property. Returns self."""
         set_properties(self.algorithm, type(self).__name__, **properties)
         return self
 
@@ -195,7 +195,7 @@ class PropertyOwner:
 
 
 def wraps(wrapped: type):
-    """Class decorator: the properties of a wrapped class become attributes, documented with its words."""
+    """Class decorator that makes the properties of a wrapped class attributes, with the descriptions of the wrapped class."""
 
     def decorate(cls):
         for key, name in property_names(wrapped).items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Jobs of many results on several MPI ranks: who this process is, and what results depend on."""
+"""Jobs that compute many results on several MPI ranks: the rank of this process, and checksums of inputs."""
 from __future__ import annotations
 
 import contextlib
@@ -21,14 +21,14 @@ from ._version import __version__
 
 
 class AnotherFailed(Error):
-    """What ranks without a fault of their own raise."""
+    """The error of ranks that did not fail themselves."""
 
 
 class Ranks:
-    """This process among those of the job. Without MPI it is alone."""
+    """This process among the processes of the job. Without MPI there is one process."""
 
     def __init__(self, ends_job: bool = False) -> None:
-        """@param ends_job whether an exception of one process ends all of them at once, as in the command: then it waits for none"""
+        """@param ends_job whether an exception of one process ends all processes at once, as in the command; then none waits"""
         self.ends_job = ends_job
         self.controller = vtkMultiProcessController.GetGlobalController()
         self.size = self.controller.GetNumberOfProcesses() if self.controller else 1
@@ -39,13 +39,13 @@ class Ranks:
                 sys.exit("Every rank has to run this script: start it with `pvbatch --sym`.")
 
     def wait(self) -> None:
-        """Until all ranks are here. `Error` if one of them failed, see `together`."""
+        """Waits until all ranks have arrived. `Error` if one rank failed, see `together`."""
         if not self._all(True):
             raise AnotherFailed("another rank failed; its own error says why")
 
     @contextlib.contextmanager
     def together(self) -> Iterator[None]:
-        """Work of all ranks, which end it together: what one raises is an `Error` on the others when they wait."""
+        """Work that all ranks end together: an exception of one rank becomes an `Error` on the other ranks when they wait."""
         try:
             yield
             self.wait()
@@ -64,8 +64,8 @@ class Ranks:
         return bool(least.GetValue(0))
 
     def agree(self, folder, known: Callable[[], Any]) -> None:
-        """`Error` on all ranks unless they are to write the same. @param folder where they write @param known all that decides what is written, if
-        its text (`repr`) is the same for equal values; only asked for on several ranks"""
+        """`Error` on all ranks unless all ranks would write the same. @param folder the folder for the files @param known everything
+        that decides what is written, with equal text (`repr`) for equal values; called only in a job of several ranks"""
         if self.size == 1:
             return
         with self.together():
@@ -73,20 +73,21 @@ class Ranks:
         first = numpy_to_vtk(np.frombuffer(mine, np.uint8), deep=True)
         self.controller.Broadcast(first, 0)
         if not self._all(as_numpy(first).tobytes() == mine):
-            raise Error(f"{folder}: the ranks are to write different things there, expected the same files, settings and version on all")
+            raise Error(f"{folder}: the ranks would write different files to this folder, expected the same "
+                        "files, settings and version on all")
 
     def first_says(self, so: bool) -> bool:
-        """On all ranks what the first one says."""
+        """The value on the first rank, on all ranks."""
         return self._all(so or self.rank > 0)
 
 
 def as_json(value: Any) -> bytes:
-    """Text that is the same for equal values."""
+    """JSON text that is equal for equal values."""
     return (json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n").encode()
 
 
 def digest_of(surfaces) -> str:
-    """Of all that a scan depends on in the merged surfaces that a collision tree gives."""
+    """Checksum of everything in a collision tree's merged surfaces that a scan depends on."""
     fields = field_values(surfaces)
     digest = hashlib.sha256(str(fields["tree_checksum"]).encode())
     for name in ("object_id", "material_id", *COEFFICIENTS):
@@ -97,7 +98,7 @@ def digest_of(surfaces) -> str:
 
 
 def digest_of_arrays(data: vtkPolyData) -> str:
-    """Of all points and arrays, whatever their names: of cells none."""
+    """Checksum of all points and point arrays, whatever their names, without arrays of cells."""
     digest = hashlib.sha256(as_numpy(data.GetPoints().GetData()).tobytes())
     for arrays in (data.GetPointData(), data.GetFieldData()):
         for i in range(arrays.GetNumberOfArrays()):

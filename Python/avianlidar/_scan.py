@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Echoes of a scene."""
+"""Scans of a scene and their echoes."""
 from __future__ import annotations
 
 import os
@@ -24,7 +24,7 @@ from ._sight import warnings_of
 
 
 class SceneAndSensor(PropertyOwner):
-    """What looks at a scene from a sensor."""
+    """Base of scans and coverages: a scene observed from a sensor."""
 
     algorithm: Any
     progress: Optional[Progress]
@@ -38,7 +38,7 @@ class SceneAndSensor(PropertyOwner):
 
     @property
     def scene(self) -> Scene:
-        """The scene; another may be set."""
+        """The scene. May be set."""
         return self._scene
 
     @scene.setter
@@ -48,8 +48,8 @@ class SceneAndSensor(PropertyOwner):
 
     @property
     def sensor(self):
-        """The sensor; another may be set: a Sensor; a preset's name or a sensor file, which then stands where the scene
-        puts the lidar; beams as vtkPolyData, as a Cloud (`Sensor.beams`), or the output of a VTK algorithm."""
+        """The sensor. May be set to a Sensor; to a preset's name or a sensor file, which are placed at the scene's lidar position;
+        or to beams: vtkPolyData, a Cloud (`Sensor.beams`), or the output of a VTK algorithm."""
         return self._sensor
 
     @sensor.setter
@@ -67,19 +67,20 @@ class SceneAndSensor(PropertyOwner):
         self._sensor = sensor
 
     def __reduce__(self):
-        raise TypeError(f"a {type(self).__name__} is not copied: copy its scene and its sensor, and make another one with properties()")
+        raise TypeError(f"a {type(self).__name__} cannot be copied: copy its scene and its sensor, and "
+                        "make another object with properties()")
 
     def _refresh(self) -> None:
         self.scene.refresh()
 
     def is_current(self) -> bool:
-        """Whether it has run since anything was changed: what it gives then is there."""
+        """Whether the results are up to date with all inputs and properties."""
         self._refresh()
         return is_current(self.algorithm)
 
     def update(self):
-        """Run what is not up to date. Errors are `Error`, warnings are Python's, also of a sensor that can see nothing;
-        Ctrl-C stops the work."""
+        """Runs everything that is not up to date. Errors are raised as `Error`. Warnings are Python warnings, also for a sensor that can
+        see nothing. Ctrl-C stops the work."""
         if not self.is_current():
             update(self.algorithm, self.progress)
             for text in warnings_of(self):
@@ -88,17 +89,17 @@ class SceneAndSensor(PropertyOwner):
 
     @property
     def number_of_traced_rays(self) -> int:
-        """Rays that the last execution traced; 0 if it only lit what was known."""
+        """Number of rays that the last execution traced; 0 if all hits were kept from before."""
         return int(self.algorithm.GetNumberOfTracedRays())
 
 
 @wraps(_wrapped.vtkAvianLidarEchoFilter)
 class Scan(SceneAndSensor):
-    """A scan of a scene by a sensor. Every property of vtkAvianLidarEchoFilter is an attribute, in the unit that its
-    description says.
+    """A scan of a scene by a sensor. Every property of vtkAvianLidarEchoFilter is an attribute, in the unit of its
+    description.
 
-    Nothing runs before results are asked for, and only what changes ask for runs again: hits are kept, so that another
-    attenuation, other limits, materials or return modes trace only what is not known yet, mostly nothing.
+    A scan runs when results are read, and repeats only the work that a change requires. Hits of rays are kept: after a change of
+    attenuation, limits, materials or return modes, few rays are traced, mostly none.
 
     >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
     >>> scan = Scan(scene, Sensor(azimuth_step=1), rays_per_beam=200)
@@ -112,28 +113,28 @@ class Scan(SceneAndSensor):
                  **settings: Any):
         """A scan, not yet run.
 
-        scene     a Scene, or what a Scene is made of: a mesh or scene file, VTK data, (points, triangles)
-        sensor    a Sensor, a preset's name or any beams, see `sensor`; default: Airport16 where the scene puts the lidar,
+        scene     a Scene, or any source of a Scene: a mesh or scene file, VTK data, (points, triangles)
+        sensor    a Sensor, a preset's name or any beams, see `sensor`; default: Airport16 at the scene's lidar position,
                   else at the origin
-        progress  called with the share done (0 to 1) and the name of the class at work
-        movers    what moves: vtkPolyData of `mover`, a list or a composite of them, or a VTK algorithm such as
+        progress  called with the completed share (0 to 1) and the name of the running class
+        movers    moving surfaces: vtkPolyData of `mover`, a list or a composite of vtkPolyData, or a VTK algorithm such as
                   vtkAvianLidarTracks
         settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
         """
         algorithm = _wrapped.vtkAvianLidarEchoFilter()
-        algorithm.ReportMoversOff()  # until somebody asks
+        algorithm.ReportMoversOff()  # until the mover report is read
         super().__init__(algorithm, scene, sensor, progress, settings)
         self.movers = movers
 
     @property
     def movers(self):
-        """What moves, as it was given; others may be set, None for nothing."""
+        """The movers, as they were given. May be set; None for no movers."""
         return self._movers
 
     @movers.setter
     def movers(self, movers) -> None:
         self._movers = movers
-        self._blocks, self._seen = None, 0  # data, and VTK's time of the last look at them
+        self._blocks, self._seen = None, 0  # data, and VTK's time of their last known change
         if isinstance(movers, vtkAlgorithm):
             self.algorithm.SetMoversConnection(movers.GetOutputPort())
             return
@@ -147,7 +148,7 @@ class Scan(SceneAndSensor):
     def _refresh(self) -> None:
         super()._refresh()
         if self._blocks is not None:
-            modified = time_of(self._blocks)  # a composite does not ask its blocks
+            modified = time_of(self._blocks)  # a composite does not include the times of its blocks
             if self._seen and modified > self._seen:
                 self._blocks.Modified()
             self._seen = time_of(self._blocks)
@@ -155,21 +156,21 @@ class Scan(SceneAndSensor):
     @property
     def echoes(self) -> Cloud:
         """The echoes, one point each (m): `energy` (J), `distance_m` (m), `intensity` (0 to 255), `object_id`, ..., as
-        the page of vtkAvianLidarEchoFilter says. What it gives stays as it is when the scan changes."""
+        described in vtkAvianLidarEchoFilter. A returned Cloud does not change when the scan changes."""
         return Cloud(self.update().algorithm.GetOutput(0))
 
     @property
     def report(self) -> Cloud:
         """One point for every beam: `status` (0 echo, 1 no surface, 2 below the lower limit, 3 saturated, 4 outside
-        the gate), costs, `skipped_bound` (J)."""
+        the gate), costs, and `skipped_bound` (J)."""
         return Cloud(self.update().algorithm.GetOutput(1))
 
     @property
     def mover_report(self) -> Cloud:
-        """One point for every mover that is present, where it is when a beam sees most of it: `object_id`,
+        """One point for every mover that is present, at its place when a beam receives most energy from the mover: `object_id`,
         `effective_area` (m2), `energy_received` (J, without noise), `detection_probability`, `number_of_echoes`, ...
 
-        It is made from the first time on that it is read: `report_movers` is off until then."""
+        The first reading of this report switches `report_movers` on."""
         self.algorithm.ReportMoversOn()
         return Cloud(self.update().algorithm.GetOutput(2))
 
@@ -189,12 +190,12 @@ class Scan(SceneAndSensor):
 
         distance_m  m, NaN where there is no echo      column_azimuths  deg from north, clockwise
         energy      J, NaN where there is no echo      row_elevations   deg, upwards
-        object_id   -1 where there is no echo          echo             number of the echo, -1 where there is none
+        object_id   -1 where there is no echo          echo             number of the echo, -1 without an echo
 
-        And what the report says of each beam: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
+        The arrays of the beam report are also included: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
         `skipped_bound` (J).
 
-        For a tilted sensor, and one with rotating prisms, columns and rows are firings and channels.
+        For a tilted sensor and for a sensor with rotating prisms, columns are firings and rows are channels.
         """
         self.update()
         numbered, echoes = vtkPolyData(), self.algorithm.GetOutput(0)
@@ -214,22 +215,22 @@ class Scan(SceneAndSensor):
         for name in ("column_azimuths", "row_elevations"):
             result[name] = as_numpy(data.GetFieldData().GetArray(name))
         result["echo"] = result["object_id"]
-        objects = np.append(point_array(echoes, "object_id"), -1)  # the last: no echo
+        objects = np.append(point_array(echoes, "object_id"), -1)  # the last element stands for beams without an echo
         result["object_id"] = objects[result["echo"]]
         return result
 
     def advise(self, energy: float = 0.02, range: float = 0.05, missed: float = 0.01, beams: int = 1000,
                progress: Optional[Progress] = None) -> Advice:
-        """Which settings this scan requires, measured on some of its beams: the fastest whose errors are surely below those asked.
+        """The settings that this scan requires, measured on some of its beams: the fastest settings that surely keep the limits.
 
-        energy    error of the energy received that is allowed, rms, relative
-        range     error of ranges that is allowed, rms, m
-        missed    echoes that may be missed or invented, as a share of the true ones
-        beams     beams to measure on; more of them tell smaller errors, and take longer
-        progress  as of the scan, whose own it is by default
+        energy    largest allowed error of the received energy, rms, relative
+        range     largest allowed error of ranges, rms, m
+        missed    largest allowed share of missed or invented echoes, relative to the true echoes
+        beams     number of beams that are measured; more beams decide smaller errors and take longer
+        progress  as in the constructor; default: the scan's own
 
-        Sensor, scene, movers and air are the scan's, and nothing of the scan changes: `scan.set(**advice.settings)` takes the
-        settings over. It takes seconds. How it is measured: Documentation/guide/accuracy.md.
+        Sensor, scene, movers and air are those of the scan, which does not change. `scan.set(**advice.settings)` applies the
+        settings. The measurement takes seconds; see Documentation/guide/accuracy.md.
 
         >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
         >>> Scan(scene, Sensor(azimuth_step=1)).advise(energy=0.05, missed=0.5).settings["number_of_reflections"]
@@ -249,11 +250,11 @@ class Scan(SceneAndSensor):
         return self.echoes.to_pandas()
 
     def plot_range_image(self, array: str = "distance_m", axes=None, **options):
-        """Draw the range image with Matplotlib; see `plot_range_image`."""
+        """Draws the range image with Matplotlib; see `plot_range_image`."""
         return plot_range_image(self, array, axes, **options)
 
     def plot_map(self, array: str = "energy", axes=None, **options):
-        """Draw the echoes from above with Matplotlib; see `plot_map`."""
+        """Draws the echoes from above with Matplotlib; see `plot_map`."""
         return plot_map(self.echoes, array, axes, **options)
 
     def __repr__(self) -> str:
@@ -264,5 +265,5 @@ class Scan(SceneAndSensor):
         return _display.page(self, _display.scan_rows, draw, (8.0, 2.5))
 
     def save(self, file, **properties) -> None:
-        """Write the echoes; see `save`."""
+        """Writes the echoes; see `save`."""
         self.echoes.save(file, **properties)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the lidar sees: surfaces with materials."""
+"""Scenes: surfaces with materials that a lidar observes."""
 from __future__ import annotations
 
 import json
@@ -23,7 +23,7 @@ from ._pipeline import Error, Progress, file_name, is_current, text_of, update
 from ._properties import choices, choose, get_property, property_names, set_properties, set_property
 from ._suffixes import POINTS
 
-# Names of a material's coefficients, which are those of cell arrays; those behind the first three may be left out.
+# Names of the coefficients of a material, also used for cell arrays. Coefficients after the first three are optional.
 COEFFICIENTS = tuple(filter(None, map(_wrapped.vtkAvianLidarMaterial.GetCoefficientName, range(100))))
 _NUMBERS = range(3, len(COEFFICIENTS) + 1)
 _ALL = f"{', '.join(COEFFICIENTS[:_NUMBERS[0]])}, and optionally {', '.join(COEFFICIENTS[_NUMBERS[0]:])}"
@@ -34,8 +34,8 @@ Material = Union[str, Sequence[float], Sequence[str], np.ndarray]
 def mesh(points, triangles) -> vtkPolyData:
     """Triangles as vtkPolyData.
 
-    points     n rows of x, y, z in metres (any numbers; a copy is kept, in double precision)
-    triangles  m rows of three indices into the points; winding does not count
+    points     n rows of x, y, z in metres, which are copied in double precision
+    triangles  m rows of three indices into the points; their winding does not matter
 
     >>> mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]).GetNumberOfCells()
     1
@@ -55,13 +55,13 @@ def mesh(points, triangles) -> vtkPolyData:
 
 
 def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtkPolyData:
-    """A surface that moves, for `Scan(movers=...)`: the same surface with poses.
+    """A moving surface for `Scan(movers=...)`: vtkPolyData with poses.
 
-    surface       vtkPolyData in a frame of its own (m), with materials as surfaces have them
-    positions     n rows of x, y, z in metres: where the origin of its frame is
-    times         n rising times in seconds, on the clock of the beams: absent before the first and after the last;
-                  None with one position: always there
-    orientations  n unit quaternions w, x, y, z from its frame to the scene's; None: not turned
+    surface       vtkPolyData in its own frame (m), with materials
+    positions     n rows of x, y, z in metres: positions of the frame's origin
+    times         n ascending times in seconds, on the clock of the beams. The mover is absent before the first time and after the last.
+                  None with one position: the mover is always present
+    orientations  n unit quaternions w, x, y, z from the frame of the surface to the scene's frame; None: no rotation
 
     >>> pane = mesh([(0, 0, 0), (1, 0, 0), (0, 0, 1)], [(0, 1, 2)])
     >>> mover(pane, [(0, 50, 2), (10, 50, 2)], times=[0, 1]).GetFieldData().GetNumberOfArrays()
@@ -79,11 +79,11 @@ def mover(surface: vtkPolyData, positions, times=None, orientations=None) -> vtk
 
 
 def time_of(data) -> int:
-    """When data or anything in them were last modified: VTK asks a composite, which does not ask its blocks."""
-    times = [data.GetMTime()]  # of its arrays, too, but for those of cells
+    """The time of the last change of data or of anything in the data. VTK's time of a composite leaves out the blocks."""
+    times = [data.GetMTime()]  # includes arrays, except cell arrays
     if isinstance(data, vtkPolyData):
         for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
-            if cells.GetNumberOfCells():  # asking for arrays is slow
+            if cells.GetNumberOfCells():  # reading these arrays is slow
                 times += [array.GetMTime() for array in (cells.GetOffsetsArray(), cells.GetConnectivityArray()) if array]
     elif isinstance(data, vtkCompositeDataSet):
         nodes = data.NewIterator()
@@ -104,7 +104,7 @@ def _painter(surfaces, material: Optional[Material], name: Optional[str]):
     paint.SetInputData(surfaces)
     if isinstance(material, str):
         if material.lower() == "custom":
-            raise ValueError(f"a material of one's own is given by its coefficients ({_ALL})")
+            raise ValueError(f"a new material is given by its coefficients ({_ALL})")
         set_properties(paint, "Scene", material=material)
     elif material is not None:
         try:
@@ -127,8 +127,8 @@ _ONE = ([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
 
 
 def materials() -> Dict[str, Tuple[float, ...]]:
-    """The materials that are known by name, each with its coefficients: diffuse, specular, glossiness, pure numbers (paper,
-    Eq. 6 and 7), and those that `vtkAvianLidarMaterial` has besides, as its `GetCoefficientName` numbers them.
+    """The materials that are known by name, with their coefficients: diffuse, specular, glossiness (pure numbers; paper,
+    Eq. 6 and 7), and further coefficients in the order of `vtkAvianLidarMaterial.GetCoefficientName`.
 
     >>> materials()["Wall"][:3]
     (0.146, 0.054, 112.0)
@@ -139,7 +139,7 @@ def materials() -> Dict[str, Tuple[float, ...]]:
 
 
 def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
-    """A copy of triangles with a material for each: m names, or m rows of coefficients."""
+    """A copy of triangles with one material for each: m names, or m rows of coefficients."""
     try:
         values = np.asarray(material)
         values = values.astype(str if values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat) else float)
@@ -158,9 +158,9 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
     else:
         rows, numbers = np.unique(values, axis=0, return_inverse=True)
         names = [f"Custom {i + 1}" for i in range(len(rows))]
-        sums = np.column_stack([rows, rows[:, 0] + rows[:, 1]])  # the extremes are out of their range first
-        for row in {*sums.argmin(axis=0), *sums.argmax(axis=0)}:  # of NaN these are the NaN
-            _painter(mesh(*_ONE), rows[row], None)  # coefficients out of their range are an error
+        sums = np.column_stack([rows, rows[:, 0] + rows[:, 1]])  # rows with extreme values are checked first
+        for row in {*sums.argmin(axis=0), *sums.argmax(axis=0)}:  # with NaN among the values, argmin and argmax give the rows of NaN
+            _painter(mesh(*_ONE), rows[row], None)  # coefficients outside their range are an error
     painted = vtkPolyData()
     painted.ShallowCopy(_painter(data, "Wall", name).GetOutputDataObject(0))
     cells, ids = painted.GetCellData(), numbers.reshape(-1).astype(np.int32)
@@ -171,11 +171,11 @@ def _paint_triangles(data, material, name: Optional[str]) -> vtkPolyData:
 
 
 SCENE = ".lidarscene.json"
-FOOTPRINTS = (".geojson", ".osm", ".gpkg", ".shp", ".fgb", ".gml", ".kml")  # of these no mesh is read
+FOOTPRINTS = (".geojson", ".osm", ".gpkg", ".shp", ".fgb", ".gml", ".kml")  # formats that contain no mesh
 
 
 def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, Any]:
-    """What a scene file would say of a mesh file alone. @param painted whether another material comes over its own"""
+    """The description of a single mesh file, as in a scene file. @param painted whether a material replaces the file's own materials"""
     folder, name = os.path.split(file)
     if not os.path.exists(file):
         raise FileNotFoundError(f"no such file: {file}")
@@ -201,12 +201,12 @@ def _mesh_scene(file: str, painted: bool, options: Dict[str, Any]) -> Dict[str, 
             raise ValueError(f"scale is {options['scale']!r}, expected a finite number or one for each axis") from None
     stem = os.path.splitext(name[:-3] if suffix == ".gz" else name)[0]
     rules = {known: known for known in choices(_wrapped.vtkAvianLidarMaterial, "Material") if known != "Custom"}
-    unnamed = {"*" if painted else "DefaultMaterial": "Wall"}  # Assimp's word for none
+    unnamed = {"*" if painted else "DefaultMaterial": "Wall"}  # Assimp's name for a missing material
     return {"version": 1, "objects": [{"file": name, "name": stem, "material_map": {**rules, **unnamed}, **options}]}
 
 
 def _read(source, progress: Optional[Progress], painted: bool, **options: Any):
-    """The scene of a scene file; of a mapping with the keys of one; of a mesh file with options of its object."""
+    """The scene from a scene file, from a mapping with the keys of a scene file, or from a mesh file with options of its object."""
     reader, is_map = _wrapped.vtkAvianLidarSceneReader(), isinstance(source, Mapping)
     file = "scene" if is_map else os.fsdecode(source)
     reader.SetFileName(file_name(file))
@@ -215,12 +215,12 @@ def _read(source, progress: Optional[Progress], painted: bool, **options: Any):
         reader.SetText(json.dumps(_mesh_scene(file, painted, options)))
         try:
             update(reader, progress)
-        except Error as error:  # in words of the mesh alone
+        except Error as error:  # the error names only the mesh
             raise Error(re.sub(r"^\w+: ", "", str(error)).replace("objects[0].file: " + os.path.abspath(file) + ": ", "").replace(
                 "objects[0].", "")) from None
         return reader.GetOutput()
     if options:
-        raise TypeError(f"{' and '.join(options)} of a scene: expected a mesh file; a scene file says them of each object")
+        raise TypeError(f"{' and '.join(options)} of a scene: expected a mesh file; a scene file gives these options for each object")
     if is_map:
         reader.SetText(text_of(json.dumps(source)))
     update(reader, progress)
@@ -228,7 +228,7 @@ def _read(source, progress: Optional[Progress], painted: bool, **options: Any):
 
 
 class Scene:
-    """Surfaces with materials, and the collision tree over them, which all scans of the scene share.
+    """Surfaces with materials, and their collision tree, which all scans of the scene share.
 
     >>> scene = Scene()
     >>> scene.add(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass", name="pane")
@@ -236,16 +236,16 @@ class Scene:
     ['pane']
     """
 
-    surfaces: vtkMultiBlockDataSet  # one block for each that was added
+    surfaces: vtkMultiBlockDataSet  # one block for each added surface
     tree: Any  # the vtkAvianLidarCollisionTree
 
     def __init__(self, surfaces=None, faces=None, *, material: Optional[Material] = None, name: Optional[str] = None,
                  scale=None, up_axis: Optional[str] = None, progress: Optional[Progress] = None):
-        """The arguments are those of `add`; without surfaces the scene is empty. Properties of the tree are set on
+        """The arguments are those of `add`; without surfaces the scene is empty. Properties of the collision tree are set on
         `tree`."""
         self.surfaces = vtkMultiBlockDataSet()
-        self._painters: List[Any] = []  # filters that give materials and names to what was added
-        self._seen = 0  # VTK's time of the last look at the surfaces
+        self._painters: List[Any] = []  # filters that set materials and names of the added surfaces
+        self._seen = 0  # VTK's time of the last known change of the surfaces
         self.tree = _wrapped.vtkAvianLidarCollisionTree()
         self.tree.SetInputData(self.surfaces)
         if surfaces is not None:
@@ -253,21 +253,21 @@ class Scene:
 
     def add(self, surfaces, faces=None, *, material: Optional[Material] = None, name: Optional[str] = None, scale=None,
             up_axis: Optional[str] = None, progress: Optional[Progress] = None) -> None:
-        """Add surfaces, coordinates in metres east, north and up of the scene's origin.
+        """Adds surfaces, with coordinates in metres east, north and up of the scene's origin.
 
         surfaces  a mesh file (STL, OBJ, PLY, glTF, VTP, ...: Documentation/reference/scene-files.md), a scene file
-                  (.lidarscene.json) or a mapping with the keys of one; vtkPolyData (also that of PyVista) or a multiblock
-                  of it; a VTK algorithm, which is run; n rows of x, y, z, with `faces`; or a pair of both, as for `mesh`;
-                  a mesh of Open3D or trimesh: `vertices` with `triangles` or `faces`, of which a copy is kept
+                  (.lidarscene.json) or a mapping with the keys of a scene file; vtkPolyData (also from PyVista) or a multiblock
+                  of vtkPolyData; a VTK algorithm, which is run; n rows of x, y, z, with `faces`; a pair (points, faces) as for `mesh`;
+                  a mesh of Open3D or trimesh (`vertices` with `triangles` or `faces`), which is copied
         faces     m rows of three indices into the points
-        material  a name (`materials()`), or the coefficients (kd, ks, kp, ...; those behind kp may be left out); of one
-                  mesh also a sequence of m names or m rows of coefficients, one for each triangle. Default: what the
-                  surfaces have; else `Wall`, of VTK data with a warning
-        name      of the object, or of each block: each is one object then, and its material stays; default: what the
-                  surfaces have, the name of a mesh file
-        scale     of a mesh file: metres of its unit (0.001: millimetres), a number or one for each axis; default 1
-        up_axis   of a mesh file: "y" or "z", the axis that points up; default: y for glTF, FBX and some more, else z
-        progress  called with the share done (0 to 1) and the name of the class at work
+        material  a name (`materials()`), or coefficients (kd, ks, kp, ...; optional after kp). One mesh may also have a sequence of
+                  m names or m rows of coefficients, one for each triangle. Default: the surfaces' own materials; else `Wall`, with a
+                  warning for VTK data
+        name      name of the object, or of each block, which then is one object and keeps its material; default: the name that the
+                  surfaces have, or the name of the mesh file
+        scale     unit of a mesh file in metres (0.001: millimetres), one number or one for each axis; default 1
+        up_axis   axis of a mesh file that points up, "y" or "z"; default: y for glTF, FBX and some other formats, else z
+        progress  called with the completed share (0 to 1) and the name of the running class
         """
         if faces is not None:
             pair = isinstance(surfaces, (tuple, list)) and len(surfaces) == 2 and np.ndim(surfaces[0]) == 2
@@ -275,7 +275,7 @@ class Scene:
                 raise TypeError("Scene(points, faces) takes n rows of x, y, z and m rows of three indices, not "
                                 f"{type(surfaces).__name__} and {type(faces).__name__}; a material is given as material=...")
             surfaces = (surfaces, faces)
-        triangles = getattr(surfaces, "faces", getattr(surfaces, "triangles", None))  # trimesh's triangles are points
+        triangles = getattr(surfaces, "faces", getattr(surfaces, "triangles", None))  # in trimesh, `triangles` are points
         if hasattr(surfaces, "vertices") and triangles is not None and not isinstance(surfaces, vtkDataObject):
             surfaces = (np.asarray(surfaces.vertices), np.asarray(triangles))
         data = self._data_of(surfaces, progress, material is not None, scale=scale, up_axis=up_axis)
@@ -292,7 +292,7 @@ class Scene:
         self.surfaces.SetBlock(number, data)
         if name:
             self.surfaces.GetMetaData(number).Set(vtkCompositeDataSet.NAME(), name)
-        # Where the scene stands is said by its root; the first that says it counts.
+        # The root of a composite gives the scene's place on the Earth; the first root with a place counts.
         for field in ("geodetic_origin", "lidar_position"):
             array = fields.GetAbstractArray(field)
             if array and not self.surfaces.GetFieldData().HasArray(field):
@@ -304,7 +304,7 @@ class Scene:
             return _read(surfaces, progress, painted, **options)
         for key, value in options.items():
             if value is not None:
-                raise TypeError(f"{key} is for mesh files; scale and turn data before they are added")
+                raise TypeError(f"{key} is for mesh files; scale and turn data before you add the data")
         if isinstance(surfaces, vtkAlgorithm):
             surfaces = surfaces.GetOutputPort()
         if isinstance(surfaces, vtkAlgorithmOutput):
@@ -320,8 +320,8 @@ class Scene:
                         f"{type(surfaces).__name__}")
 
     def refresh(self) -> None:
-        """See what was edited in place since, as `Modified()` of anything in the surfaces says. The scene and its scans
-        do so themselves whenever they are asked; `Update()` of their algorithms does not."""
+        """Registers changes in place, after `Modified()` of any part of the surfaces. The scene and its scans call this function
+        themselves whenever results are read. `Update()` of their algorithms does not."""
         for paint in self._painters:
             if time_of(paint.GetInputDataObject(0, 0)) > self._seen:
                 paint.Modified()
@@ -337,7 +337,7 @@ class Scene:
         return _display.page(self, _display.scene_rows, lambda axes: _display.draw_from_above(self, axes))
 
     def __getstate__(self) -> Dict[str, Any]:
-        """For pickle and copy: the surfaces as they are, and the tree's properties."""
+        """The state for pickle and copy: the surfaces, and the tree's properties."""
         self.refresh()
         buffer = vtkCharArray()
         if not vtkCommunicator.MarshalDataObject(self.surfaces, buffer):
@@ -380,12 +380,12 @@ class Scene:
 
     @property
     def geodetic_origin(self):
-        """Latitude and longitude in degrees and height above the ellipsoid in metres of the origin, or None."""
+        """Latitude and longitude (degrees) and height above the ellipsoid (metres) of the origin, or None."""
         return self._root_field("geodetic_origin")
 
     @property
     def lidar_position(self):
-        """Where the scene file puts the lidar, in metres east, north and up, or None."""
+        """The lidar position of the scene file, in metres east, north and up, or None."""
         return self._root_field("lidar_position")
 
     def _root_field(self, name):
@@ -394,8 +394,8 @@ class Scene:
 
 
 def load_scene(file, progress: Optional[Progress] = None) -> Scene:
-    """The scene of a file .lidarscene.json: meshes, footprints, materials, and where they stand on the Earth.
+    """The scene in a .lidarscene.json file: meshes, footprints, materials, and the place on the Earth.
 
-    `progress` is called with the share done (0 to 1) and the name of the class at work.
+    `progress` is called with the completed share (0 to 1) and the name of the running class.
     """
     return Scene(os.fspath(file), progress=progress)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The lidar."""
+"""Lidar sensors."""
 from __future__ import annotations
 
 import json
@@ -18,7 +18,7 @@ from ._properties import PropertyOwner, choices, choose, wraps
 @wraps(_wrapped.vtkAvianLidarBeamSource)
 class Sensor(PropertyOwner):
     """A lidar: its scan pattern, beam, pulse and receiver. Every property of vtkAvianLidarBeamSource is an attribute, in
-    the unit that its description says.
+    the unit of its description.
 
     >>> sensor = Sensor("Airport32", position=(0, 0, 3), orientation=(90, 0, 0))  # metres; degrees
     >>> sensor.pulse_energy = 2e-4  # joules
@@ -29,22 +29,22 @@ class Sensor(PropertyOwner):
     """
 
     algorithm: Any  # the vtkAvianLidarBeamSource
-    _beams: Any  # directions, times and positions of one's own, or None
+    _beams: Any  # directions, times and positions of the user's beams, or None
 
     def __init__(self, preset: Union[str, "os.PathLike[str]"] = "Airport16", *, directions=None, times=None, positions=None,
                  **properties: Any):
-        """`preset`: one of `Sensor.presets()`, or a file (`.lidarsensor.json`); any property by name changes it. The
-        most used:
+        """`preset` is one of `Sensor.presets()`, or a file (`.lidarsensor.json`). Any property by name changes the preset. Frequent
+        properties:
 
         position     metres east, north, up
-        orientation  yaw (clockwise from north), pitch (nose up), roll (to the right) in degrees
+        orientation  yaw (clockwise from north), pitch (nose up), roll (right side down) in degrees
 
-        Any beams in place of the preset's pattern, in the frame of the sensor, which `orientation` turns and `position`
-        moves; beam, pulse and receiver stay those of the preset:
+        Beams may replace the pattern of the preset. They are in the frame of the sensor, which `orientation` turns and `position`
+        moves. Beam shape, pulse and receiver are kept from the preset:
 
         directions   n rows of x, y, z, of any length above 0
-        times        n seconds since the scan began, 0 or more; default: all 0. Without `rotation_rate`, a scan that is
-                     too short for them lasts until the last
+        times        n seconds since the start of the scan, 0 or more; default: all 0. Without `rotation_rate`, a scan that is
+                     too short for the times is extended to the last time
         positions    n rows of x, y, z in metres; default: all 0
         """
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
@@ -58,11 +58,11 @@ class Sensor(PropertyOwner):
             if latest * self.algorithm.GetRotationRate() > 1:
                 properties = {"rotation_rate": 1 / latest, **properties}
         elif times is not None or positions is not None:
-            raise TypeError("Sensor: times and positions are those of directions, which are not given")
+            raise TypeError("Sensor: times and positions need directions, which are not given")
         self.set(**properties)
 
     def _take_beams(self, directions, times, positions) -> float:
-        """Makes them the beams; the time of the last one, s."""
+        """Sets the beams, and returns the time of the last beam, s."""
         count, rows = len(directions) if np.ndim(directions) else 0, {}
         for name, values, shape in (("directions", directions, (count, 3)), ("times", times, (count,)),
                                     ("positions", positions, (count, 3))):
@@ -103,18 +103,18 @@ class Sensor(PropertyOwner):
         return _display.page(self, _display.sensor_rows, lambda axes: _display.draw_pattern(self, axes))
 
     def fit(self, points=None):
-        """Fit the receiver to all points of its maker's sheet: sets `receiver_aperture` and, where points differ in light,
-        `filter_bandwidth`, of a photon receiver; needs SciPy.
+        """Fits the receiver to all points of the maker's data sheet: sets `receiver_aperture` and, if the points differ in light,
+        `filter_bandwidth` of a photon receiver. Needs SciPy.
 
-        points  mappings with `range` (m), `reflectance` (above 0, at most 1), `source` (a text), and, if known, `probability` of
-                being seen (default 0.5, assumed), `light` on the board (klx, default 0) and `board`, its width (m; default:
-                one for all points is fitted). Default: those of the sensor's file (`sheet.points`)
+        points  mappings with `range` (m), `reflectance` (above 0, at most 1), `source` (a text), and optionally `probability` of
+                detection (default 0.5, assumed), `light` on the board (klx, default 0) and `board`, the board's width (m; default:
+                one fitted width for all points). Default: the points of the sensor's file (`sheet.points`)
 
-        What is found: `numbers`, `board` (m), and of each point `predicted` (m), `residuals` and `left_out` (relative errors of
-        its range, with it in the fit and without), and `bar`, the largest of them: what ranges by this receiver are good for (nan:
-        no point can be left out, and nobody knows).
-        A filter is at most 100 nm wide (assumed); `limit` is a sentence where the fit ends there, else empty.
-        ValueError: a point is not as it should be, or the sensor has no aperture.
+        Returns a Fit with `numbers`, `board` (m) and, for each point, `predicted` (m), `residuals` and `left_out`: the relative errors of
+        the range with the point in the fit and without the point. `bar` is the largest of these errors, the expected error of
+        ranges by this receiver (nan: no point can be left out, so the error is unknown).
+        A filter is at most 100 nm wide (assumed); `limit` is a sentence if the fit ends at this bound, else empty.
+        ValueError: a point is invalid, or the sensor has no aperture.
 
         >>> round(Sensor("Search905").fit([{"range": 300, "reflectance": 0.1, "source": "mine"}]).predicted[0])
         300
@@ -126,10 +126,10 @@ class Sensor(PropertyOwner):
 
     @property
     def description(self) -> Dict[str, Any]:
-        """What the file of the preset says: `name`, what it is (`comment`), its documents (`source`), and as far as it
-        has them the maker's numbers that no property has (`data_sheet`) and those of the properties (`values`), each with
-        `value`, `unit` and `source`, which begins with "assumed" where nobody measured it, and what is seen by its `sheet`.
-        Properties that were changed later are not.
+        """The content of the preset's file: `name`, a description (`comment`), documents (`source`), and, if the file has them, the
+        maker's numbers without a property (`data_sheet`) and with a property (`values`), each with `value`, `unit` and `source`.
+        A `source` that begins with "assumed" means that the number was not measured. `sheet` has ranges of the data sheet.
+        Later changes of properties do not appear.
 
         >>> Sensor("VLP-16").description["values"]["wavelength"]
         {'value': 903.0, 'unit': 'nm', 'source': 'user manual'}

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A receiver fitted to all points of its maker's sheet.
+"""Fit of a receiver to all points of the maker's data sheet.
 
-A sheet says at which range a board of a reflectance is seen with which probability, in which light. One number fits none of them:
-by 1/r^2 a board of 80 % is seen 2.83 times as far as one of 10 %, sheets say 1.7 to 2.5. A board at R fills f = min(1, w^2/(Omega R^2))
-of a round beam, w its width, (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian one, k its truncation; it gives n = eta E rho A exp(-2 mu R)/(pi R^2 h nu) electrons for what it fills, mu that of clear air
-(a visibility of 23 km), and, lit by sky and sun, its daylight as
-background, beside the sky past it: the sensor's `background_radiance` in 100 klx, less in less light. It is seen with the probability that n and Gaussian noise exceed the threshold (Documentation/reference/sensor-files.md). Fitted are, as
-far as the points tell them: the aperture A (how much light), the filter's bandwidth (how much daylight, also that of a view wider than the beam; at most BANDWIDTH) and, where no point has it,
-the width of the boards without one, which is not the receiver's but unknown. SciPy's least squares, over logarithms of ranges.
+A data sheet gives the range at which a board of a reflectance is detected with some probability in some light. One fitted number cannot
+reproduce all points: with 1/r^2 a board of 80 % is detected 2.83 times as far as a board of 10 %; data sheets give ratios of 1.7 to 2.5.
+The model: a board of width w at the range R fills f = min(1, w^2/(Omega R^2)) of a round beam, and
+(1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian beam with the truncation k. The filled part returns
+n = eta E rho A exp(-2 mu R)/(pi R^2 h nu) electrons, with mu of clear air (a visibility of 23 km). Sky and sun add background: daylight
+from the board, and the sky beside the board, which is the sensor's `background_radiance` in 100 klx and less in less light. The board is
+detected with the probability that n and Gaussian noise exceed the threshold (Documentation/reference/sensor-files.md).
+Up to three numbers are fitted, as far as the points determine them:
+- the aperture A, which sets how much light is received;
+- the filter's bandwidth (at most BANDWIDTH), which sets how much daylight is received, including daylight of a view wider than the beam;
+- the width of boards without a given width, which belongs to the test and not to the receiver.
+The fit is SciPy's least squares over logarithms of ranges.
 """
 from __future__ import annotations
 
@@ -21,29 +26,29 @@ import numpy as np
 
 from ._disk import write_whole
 
-# Spectral irradiance of the sun over the illuminance, W/(m2 nm) for 100 klx, by wavelength in nm; beyond, that of the nearest. Second-hand: read off the
-# reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
+# Spectral irradiance of the sun divided by illuminance, W/(m2 nm) for 100 klx, by wavelength in nm; the nearest value holds outside.
+# Second-hand: read off the reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
 DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
-APERTURE = 1e-4  # m2, at which fits begin
-BANDWIDTH = 100.0  # nm, of the widest filter that a fit may find: assumed, those of lidars are 1 to some tens of nm wide
-LIMIT = (f"filter_bandwidth ends at the bound of the fit, {BANDWIDTH:g} nm: the sheet's ranges in the light and in the dark differ by more than "
-         "the daylight that the filter of a lidar lets through")
-HALF = 0.5  # probability of a point that says none: assumed
+APERTURE = 1e-4  # start value of fits, m2
+BANDWIDTH = 100.0  # widest filter of a fit, nm: assumed; filters of lidars are 1 to some tens of nm wide
+LIMIT = (f"filter_bandwidth ends at the bound of the fit, {BANDWIDTH:g} nm: the data sheet's ranges in the light "
+         "and in the dark differ by more than the daylight that the filter of a lidar lets through")
+HALF = 0.5  # probability of a point without a given probability: assumed
 UNITS = {"range": " m", "probability": "", "reflectance": "", "light": " klx", "board": " m"}
 MOST = {"range": 1e6, "probability": 0.9999, "reflectance": 1.0, "light": 1000.0, "board": 1e4}
 
 
 @dataclasses.dataclass
 class Fit:
-    """A receiver fitted to a sheet.
+    """A receiver fitted to a data sheet.
 
-    numbers    receiver_aperture (m2; with the assumed energy of the pulse) and, where points differ in light,
+    numbers    receiver_aperture (m2; with the assumed energy of the pulse) and, if the points differ in light,
                filter_bandwidth (nm; with a view as wide as the beam)
-    board      fitted width of the boards of which the points do not tell it, m; nan where nothing tells it: they fill the beam
-    predicted  the range of each point by the fit, m
-    residuals  predicted over the sheet's range, less 1
-    left_out   the same where that point had no part in the fit; nan where the others do not tell all that is fitted
-    bar        what ranges by this receiver are good for, relative: the largest of |residuals| and |left_out|; nan where no point
+    board      fitted width of boards without a given width, m; nan if no point determines it: such boards fill the beam
+    predicted  fitted range of each point, m
+    residuals  fitted range over the data sheet's range, less 1
+    left_out   residual of each point in a fit without the point; nan if the other points do not determine all fitted numbers
+    bar        expected relative error of ranges by this receiver: the largest of |residuals| and |left_out|; nan if no point
                could be left out
     limit      empty, or a sentence: the bandwidth ended at its bound
     """
@@ -57,7 +62,7 @@ class Fit:
 
 
 def check(points: Sequence[Dict[str, Any]]) -> None:
-    """ValueError that names what is wrong with a sheet's points."""
+    """Raises ValueError that names what is wrong with a data sheet's points."""
     if isinstance(points, (str, dict)) or not points:
         raise ValueError("the sheet has no points, expected at least one of range, reflectance, source")
     for i, point in enumerate(points):
@@ -79,7 +84,7 @@ def check(points: Sequence[Dict[str, Any]]) -> None:
 
 
 def irradiance(light: float, wavelength: float) -> float:
-    """Spectral irradiance, W/(m2 nm), of daylight of so many klx at a wavelength, nm."""
+    """Spectral irradiance, W/(m2 nm), of daylight of `light` klx at a wavelength, nm."""
     return 0.01 * light * float(np.interp(wavelength, [row[0] for row in DAYLIGHT], [row[1] for row in DAYLIGHT]))
 
 
@@ -93,9 +98,9 @@ def solid_angle_of(sensor) -> float:
 
 
 def share_on_board(sensor, tangent):
-    """Share of a beam's energy that falls on a square board, upright and centred. @param tangent of the angle at which the board's
-    side appears, one or many. A round one, whose border may cut the board's corners, counts as a disc of
-    its area."""
+    """Share of a beam's energy that falls on a square board, upright and centred. @param tangent tangent of the angle at which a board's
+    side appears, one or many. A round beam, whose border may cut the board's corners, counts as if the board were a disc of
+    the same area."""
     tangent = np.asarray(tangent, dtype=float)
     half, across = float(sensor.half_beamwidth), float(sensor.half_beamwidth_across)
     if sensor.beam_rotation % 180 == 90:
@@ -106,11 +111,11 @@ def share_on_board(sensor, tangent):
         filled = np.minimum(1.0, tangent**2 / solid_angle_of(sensor))
         return np.expm1(-fall * filled) / np.expm1(-fall) if fall else filled
     if sensor.beam_rotation % 90:
-        raise ValueError(f"beam_rotation is {sensor.beam_rotation!r}, expected a multiple of 90 deg to fit boards that stand upright")
+        raise ValueError(f"beam_rotation is {sensor.beam_rotation!r}, expected a multiple of 90 deg to fit upright boards")
     from scipy.special import erf
     nodes, weights = np.polynomial.legendre.leggauss(64)
 
-    def within(u, v):  # of the plane, in half-widths
+    def within(u, v):  # share of the plane within u and v, in half-widths
         x = nodes * u[..., None]
         height = np.minimum(1.0 if rectangle else np.sqrt(1 - x * x), v[..., None])
         root = np.sqrt(fall)
@@ -122,13 +127,13 @@ def share_on_board(sensor, tangent):
 
 
 class Receiver:
-    """What the fit needs of a sensor (Documentation/reference/sensor-files.md has the formulas)."""
+    """The numbers of a sensor that the fit needs (formulas: Documentation/reference/sensor-files.md)."""
 
     def __init__(self, sensor):
         from scipy.special import erfcinv
         self.solid_angle = solid_angle_of(sensor)
         self.wavelength = float(sensor.wavelength)
-        self.tangents = np.geomspace(1e-8, 10, 4000)  # of boards
+        self.tangents = np.geomspace(1e-8, 10, 4000)  # tangents of the angles of boards
         self.shares = share_on_board(sensor, self.tangents)
         self.interval = float(sensor.sampling_interval)
         photon = 6.62607015e-34 * 299792458.0 / (1e-9 * self.wavelength)
@@ -137,7 +142,7 @@ class Receiver:
         self.dark = float(sensor.amplifier_noise) ** 2
         self.background = self.per_joule * self.solid_angle * self.interval
         self.excess = float(sensor.excess_noise_factor)
-        self.sky = 0.01 * float(sensor.background_radiance)  # for each klx
+        self.sky = 0.01 * float(sensor.background_radiance)  # radiance of the sky in 1 klx
         self.attenuation = float(sensor.algorithm.GetClearAirAttenuation())
         self.overlap, self.defocus = float(sensor.overlap_range), float(sensor.defocus_range)
         unit = 0.5 * 299792458.0 * self.interval
@@ -146,7 +151,7 @@ class Receiver:
         self.factor = float(np.sqrt(2) * erfcinv(2 * float(sensor.false_alarms_per_scan) / units))
 
     def excess_of(self, distance, point: Dict[str, Any], aperture: float, bandwidth: float, board: float):
-        """By how many deviations of the noise what a board gives exceeds the threshold. @param distance m, one or many"""
+        """Signal of a board minus the threshold, in standard deviations of the noise. @param distance m, one or many"""
         distance = np.asarray(distance, dtype=float)
         rho, light, board = point["reflectance"], point.get("light", 0.0), point.get("board", board)
         filled = np.interp(board / distance, self.tangents, self.shares) if np.isfinite(board) else np.ones_like(distance)
@@ -157,11 +162,11 @@ class Receiver:
         board_radiance = rho * (sky + irradiance(light, self.wavelength) / np.pi)
         before_sky, dark = (self.dark + self.excess * self.background * bandwidth * aperture * radiance
                             for radiance in (sky, filled * board_radiance + (1 - filled) * sky))
-        threshold = self.factor * np.sqrt(np.maximum(before_sky, dark))  # never below that of the sky
+        threshold = self.factor * np.sqrt(np.maximum(before_sky, dark))  # at least the threshold of the sky
         return (signal - threshold) / np.sqrt(dark + self.excess * signal)
 
     def range(self, point: Dict[str, Any], *numbers: float) -> float:
-        """The largest range, m, at which a point's board is seen with its probability."""
+        """The largest range, m, at which a point's board is detected with the point's probability."""
         from scipy.special import erfcinv
         wanted = -np.sqrt(2) * erfcinv(2 * point.get("probability", HALF))
         x = np.linspace(np.log(point["range"]) - 5, np.log(point["range"]) + 5, 1001)
@@ -174,7 +179,7 @@ class Receiver:
 
 
 def _told(points, spare: int = 1) -> List[str]:
-    """What these points tell, in the order in which it needs points; the boards only where so many more stay to be missed."""
+    """Names of the numbers that these points determine, by their need of points. @param spare surplus points for fitting boards"""
     found = ["aperture"]
     if len({point.get("light", 0.0) for point in points}) > 1 and len(points) > 1:
         found.append("bandwidth")
@@ -185,13 +190,13 @@ def _told(points, spare: int = 1) -> List[str]:
 
 
 def _fitted(receiver: Receiver, points, start: Tuple[float, float], frees: List[str]) -> Tuple[float, float, float]:
-    """Aperture (m2), bandwidth (nm), board (m). @param start the first two before the fit @param frees what is fitted"""
+    """Aperture (m2), bandwidth (nm), board (m). @param start first two numbers before the fit @param frees names of fitted numbers"""
     from scipy.optimize import least_squares
     farthest = max(point["range"] for point in points)
-    size = farthest * np.sqrt(receiver.solid_angle)  # of a board that just fills the beam there
+    size = farthest * np.sqrt(receiver.solid_angle)  # width of a board that just fills the beam at the farthest range
     best: Tuple[float, Tuple[float, float, float]] = (np.inf, (start[0], start[1], np.nan))
     widths = (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (np.nan,)
-    # Starts do not depend on the numbers that are fitted: a fit of a fitted sensor is the same.
+    # Starts do not depend on the fitted numbers, so a fit of a fitted sensor gives the same numbers.
     most = {"bandwidth": np.log(BANDWIDTH)}
     for width, bandwidth in itertools.product(widths, (1.0, 10.0, 0.9 * BANDWIDTH) if "bandwidth" in frees else (start[1],)):
         value = {"aperture": APERTURE, "bandwidth": bandwidth, "board": width}
@@ -200,7 +205,7 @@ def _fitted(receiver: Receiver, points, start: Tuple[float, float], frees: List[
             at = {**value, **dict(zip(names, np.exp(x)))}
             return [np.log(receiver.range(point, *at.values()) / point["range"]) for point in points]
 
-        for names in (frees[:1], frees):  # the aperture first: the others start where it is right
+        for names in (frees[:1], frees):  # the aperture first, so that the other numbers start from a good aperture
             found = least_squares(off, [np.log(value[name]) for name in names], args=(names,), diff_step=1e-4,
                                   bounds=(-np.inf, [most.get(name, np.inf) for name in names]))
             value = {**value, **dict(zip(names, np.exp(found.x)))}
@@ -210,11 +215,11 @@ def _fitted(receiver: Receiver, points, start: Tuple[float, float], frees: List[
 
 
 def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
-    """Fit a sensor's receiver to points of a sheet; the sensor is not changed. See `Sensor.fit`."""
+    """Fits a sensor's receiver to points of a data sheet; the sensor is not changed. See `Sensor.fit`."""
     points = sensor.description.get("sheet", {}).get("points", []) if points is None else list(points)
     check(points)
     if sensor.receiver_aperture <= 0:
-        raise ValueError("receiver_aperture is 0, expected more than 0 m2: without it nothing falls with the range")
+        raise ValueError("receiver_aperture is 0, expected more than 0 m2: without an aperture no signal decreases with the range")
     for i, point in enumerate(points):
         if point["range"] > sensor.range_gate:
             raise ValueError(f"sheet.points[{i}].range is {point['range']!r}, expected at most range_gate, {sensor.range_gate:g} m")
@@ -238,12 +243,12 @@ def fit(sensor, points: Optional[Sequence[Dict[str, Any]]] = None) -> Fit:
 
 
 def write(description: Dict[str, Any], found: Fit, file) -> None:
-    """The sensor file with the fitted numbers, the residuals and the bar; what was there stays until all of it is written."""
+    """Writes the sensor file with the fitted numbers, the residuals and the bar. The old file is kept until the new file is complete."""
     number = len(description["sheet"]["points"])
     for name, value in found.numbers.items():
         unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
         source = f"assumed: {found.limit}" if name == "filter_bandwidth" and found.limit else \
-            f"assumed with the others: fitted to the {number} points of the sheet"
+            f"assumed together: fitted to the {number} points of the sheet"
         description["values"][name] = {"value": float(f"{value:.6g}"), "unit": unit, "source": source}
     description["values"]["receiver_model"] = {"value": 1, "unit": "1", "source": "assumed: photons, by the fit"}
     description["sheet"]["residuals"] = [float(f"{value:.3g}") for value in found.residuals]
@@ -255,7 +260,7 @@ def write(description: Dict[str, Any], found: Fit, file) -> None:
 
 
 def _text(value, indent: int = 0) -> str:
-    """JSON with a line for each mapping of plain values."""
+    """JSON with one line for each mapping of plain values."""
     is_map = isinstance(value, dict)
     parts = [*value.values()] if is_map else value if isinstance(value, list) else []
     deep = any(isinstance(one, dict) or (isinstance(one, list) and one and isinstance(one[0], dict)) for one in parts)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Why a sensor sees nothing, or less than meant: what a user is warned of."""
+"""Warnings that explain why a sensor sees nothing, or less than the user intended."""
 from __future__ import annotations
 
 from typing import Any, Iterator, Tuple
@@ -9,9 +9,9 @@ import numpy as np
 from ._cloud import Cloud, field_values, triangles_of
 from ._plot import STATUS
 
-WIDE, TALL = 50e3, 1e3  # m: what is wider, or taller and without echoes, may be in millimetres
-FAR = 1e5  # m: nothing is seen so far away
-BELOW = 1.0  # m below the lowest point that count as below the scene
+WIDE, TALL = 50e3, 1e3  # m: a scene that is wider, or taller and without echoes, may be in millimetres
+FAR = 1e5  # m: distance at which nothing is seen
+BELOW = 1.0  # distance below the lowest point from which on a sensor counts as below the scene, m
 
 
 def extent(bounds) -> str:
@@ -21,9 +21,9 @@ def extent(bounds) -> str:
 
 
 def above_and_below(surfaces, place) -> Tuple[int, int]:
-    """How many triangles are straight above a place and how many below or at it."""
+    """Numbers of triangles straight above a place, and of triangles below or at the place."""
     points, triangles = triangles_of(surfaces)
-    for axis in range(2):  # those with corners on both sides, by bits: there may be millions
+    for axis in range(2):  # triangles with corners on both sides, found with bits because there may be millions
         beyond = (points[:, axis] > place[axis])[triangles]
         triangles = triangles[beyond.any(axis=1) & ~beyond.all(axis=1)]
     x, y, z = (points[:, axis][triangles] for axis in range(3))
@@ -36,19 +36,19 @@ def above_and_below(surfaces, place) -> Tuple[int, int]:
 
 
 def of_scene(bounds, place=(0, 0, 0), seen: bool = True) -> Iterator[str]:
-    """What its extent says of a scene. @param place of the sensor @param seen whether there are echoes"""
+    """Warnings about the extent of a scene. @param place position of the sensor @param seen whether there are echoes"""
     wide, deep, tall = (high - low for low, high in zip(bounds[::2], bounds[1::2]))
     on_north = abs(bounds[2]) <= 0.1 * deep
     if max(wide, deep) > WIDE or tall > TALL and not seen:
         yield f"the scene extends {extent(bounds)}: if its file is in millimetres, read it with the scale 0.001"
     elif on_north and (deep < tall / 3 and tall > 100 and bounds[4] < -0.25 * tall or
                        not seen and bounds[4] < place[2] - 0.5 * tall and deep < tall):
-        yield (f"the scene's lowest point is {-bounds[4]:.6g} m below the origin, and it stands on north = {bounds[2]:.6g} m "
+        yield (f"the scene's lowest point is {-bounds[4]:.6g} m below the origin, and the scene stands on north = {bounds[2]:.6g} m "
                f"({extent(bounds)}): if y is up in its file, read it with the up axis y")
 
 
 def of_place(surfaces, bounds, place, seen: bool = True) -> Iterator[str]:
-    """What is wrong with a sensor's place. @param seen whether there are echoes"""
+    """Warnings about a sensor's place. @param seen whether there are echoes"""
     where = "({:.6g}, {:.6g}, {:.6g}) m".format(*place)
     within = all(low <= at <= high for at, low, high in zip(place[:2], bounds[:4:2], bounds[1:4:2]))
     if place[2] < bounds[4] - BELOW and (within or not seen):
@@ -60,7 +60,7 @@ def of_place(surfaces, bounds, place, seen: bool = True) -> Iterator[str]:
 
 
 def of_echoes(bounds, place, report, gate: float) -> str:
-    """Why there is no echo. @param report cloud of the beams @param gate range gate, m"""
+    """The reason why there is no echo. @param report cloud of the beams @param gate range gate, m"""
     if not report.number_of_points:
         return "no echoes: the sensor has no beams"
     counts = np.bincount(report["status"], minlength=len(STATUS))
@@ -73,19 +73,19 @@ def of_echoes(bounds, place, report, gate: float) -> str:
             text += "; if its coordinates are those of a map, such as UTM, subtract an offset or put the sensor there"
     elif counts[1] == report.number_of_points:
         angles = report["vertical_angle"]
-        text += f"; the beams look {angles.min():.4g} to {angles.max():.4g} deg up, the scene extends {extent(bounds)}"
+        text += f"; the beams point {angles.min():.4g} to {angles.max():.4g} deg up, the scene extends {extent(bounds)}"
     return text
 
 
 def warnings_of(scan: Any) -> Iterator[str]:
-    """What a user of a scan, or of coverage, that was just executed is warned of: of its scene and its sensor's place once,
-    of beams without any echo each time."""
+    """Warnings about a scan or a coverage that was just executed: about the scene and the sensor's place once,
+    about beams without any echo each time."""
     surfaces = scan.scene.tree.GetOutput()
     beams = scan.algorithm.GetInputDataObject(0, 0)
     echoes = scan.algorithm.IsA("vtkAvianLidarEchoFilter")
     seen = not echoes or scan.algorithm.GetOutput(0).GetNumberOfPoints() > 0
     if not surfaces.GetNumberOfPolys():
-        if not (echoes and seen):  # else something that moves
+        if not (echoes and seen):  # otherwise a mover was seen
             yield "the scene has no triangles"
         return
     bounds, place = surfaces.GetBounds(), beams.GetPoint(0) if beams.GetNumberOfPoints() else (0, 0, 0)

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the command says: lines, tables, and a bar of the work on a terminal."""
+"""Output of the command: lines, tables, and a progress bar on a terminal."""
 from __future__ import annotations
 
 import sys
 from typing import Any, Iterable, List, Tuple
 
-_shown: List[Any] = []  # the bar on the terminal
+_shown: List[Any] = []  # the progress bar on the terminal
 
 
 def bar(what: str, done: float, total: float) -> None:
-    """A bar on a terminal for each work that is named; nothing in a log."""
+    """Shows a progress bar on a terminal for each named work; writes nothing to a log."""
     if not _shown or _shown[0].desc != what:
         close_bar()
         if not sys.stderr.isatty():
@@ -21,7 +21,7 @@ def bar(what: str, done: float, total: float) -> None:
 
 
 def close_bar(leave: bool = True) -> None:
-    """@param leave it on the terminal"""
+    """Closes the progress bar. @param leave whether the bar is left on the terminal"""
     while _shown:
         last = _shown.pop()
         last.leave = leave
@@ -29,26 +29,26 @@ def close_bar(leave: bool = True) -> None:
 
 
 def tell(*lines: Any) -> None:
-    """Lines to the output, below the bar."""
+    """Prints lines to the output, below the progress bar."""
     close_bar()
     print(*lines, sep="\n")
 
 
 def say(text: str) -> None:
-    """One line to the error stream, at the end of the work."""
+    """Prints one line to the error stream, at the end of the work."""
     close_bar(leave=False)
     print(f"avianlidar: {' '.join(text.split())}", file=sys.stderr)
 
 
 def warn(text: str) -> None:
-    """One line to the error stream, above a bar."""
+    """Prints one line to the error stream, above a progress bar."""
     for shown in _shown:
         shown.clear()
     print(f"avianlidar: warning: {' '.join(text.split())}", file=sys.stderr)
 
 
 def table(rows: Iterable[Tuple[Any, ...]]) -> None:
-    """Columns as wide as their words."""
+    """Prints columns as wide as their words."""
     lines = [[str(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*lines)]
     tell(*("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the verbs of the command `avianlidar` do; of `apps` each imports what not all of them need."""
+"""The functions of the verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs need."""
 from __future__ import annotations
 
 import pathlib
@@ -21,11 +21,11 @@ from ._terminal import bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
 from .apps._inputs import read_plan, read_scenario
-from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401  verbs, too
+from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401  these are verbs
 
 
 def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
-    """Errors of names before the work. @param check by suffix"""
+    """Raises errors of output names before the work starts. @param check function that checks the suffix"""
     for number, out in enumerate(options.out):
         check(out)
         if out.suffix.lower() == ".png":
@@ -35,14 +35,14 @@ def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
 
 
 def _alarms(cloud) -> str:
-    """How many echoes no surface has given."""
+    """Words on the number of echoes that come from no surface."""
     ids = list(cloud.get("object_id", ()))
     return "".join(f", {ids.count(number)} of them {words} (object_id {number})" for number, words in
-                   ((-1, "a false alarm of the noise"), (-2, "of the air")) if number in ids)
+                   ((-1, "false alarms of the noise"), (-2, "echoes of the air")) if number in ids)
 
 
 def _scan_of(options) -> Scan:
-    """The scan that options describe."""
+    """The scan that the options describe."""
     def percent_of(what: str):
         return lambda share, _: bar(what, round(100 * share), 100)
 
@@ -87,23 +87,23 @@ def advise(options) -> None:
 
 
 def _of_packets(options, *files) -> Dict[str, Any]:
-    """What options choose of packets."""
+    """The options that choose packets, by name."""
     chosen = {name: getattr(options, name) for name in ("time", "sensor_address") if getattr(options, name) is not None}
     for name, value in chosen.items():
         if not any(file.suffix.lower() in PACKETS for file in files):
-            raise ValueError(f"--{name.replace('_', '-')} {value} chooses packets, expected a file {' or '.join(PACKETS)}: "
-                             f"it is {files[0]}")
+            raise ValueError(f"--{name.replace('_', '-')} {value} chooses packets, expected a file {' or '.join(PACKETS)}, "
+                             f"got {files[0]}")
     return chosen
 
 
 def _cloud(file, chosen: Dict[str, Any]):
-    """A cloud in the scene's frame, where the file says it. @param chosen of packets"""
+    """A cloud, in the scene's frame if the file gives the frame. @param chosen options for packets"""
     suffix = file.suffix.lower()
     return load_cloud(file, **{"local_coordinates": True} if suffix in (".las", ".laz") else chosen if suffix in PACKETS else {})
 
 
 def _has_points_only(file: pathlib.Path) -> bool:
-    """Whether a file holds points without triangles."""
+    """Whether a file holds points and no triangles."""
     suffix = file.suffix.lower()
     if suffix == ".ply":
         with open(file, "rb") as stream:
@@ -113,7 +113,7 @@ def _has_points_only(file: pathlib.Path) -> bool:
 
 
 def _words(value: Any) -> str:
-    """A value of a file or of field data as a user reads it."""
+    """A value of a file or of field data in words for a user."""
     if isinstance(value, dict):
         return ", ".join(f"{key} {_words(part)}" for key, part in value.items())
     parts = value.tolist() if hasattr(value, "tolist") else value
@@ -174,7 +174,7 @@ def info(options) -> None:
 
 
 def _compared(*clouds) -> Any:
-    """The comparison of two clouds of VTK."""
+    """The comparison of two point sets of VTK."""
     measure = _wrapped.vtkAvianLidarCloudComparison()
     for port, cloud in enumerate(clouds):
         measure.SetInputDataObject(port, cloud)
@@ -191,7 +191,7 @@ def compare(options) -> None:
     clouds = [_cloud(file, chosen) for file in files]
     of_sensor = [file.suffix for file in files if file.suffix.lower() in OF_SENSOR]
     if len(of_sensor) == 1:
-        warn(f"a {of_sensor[0]} file is in the frame of its sensor, the other file is not")
+        warn(f"a {of_sensor[0]} file is in the frame of its sensor, but the other file is not")
     ways = "SimulatedToReference", "ReferenceToSimulated"
     measure, (a, b) = _compared(*(cloud.data for cloud in clouds)), (file.name for file in files)
     table([("distance of nearest points (m)", f"{a} to {b}", f"{b} to {a}"),
@@ -203,8 +203,8 @@ def compare(options) -> None:
     alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}" for file, cloud in zip(files, clouds) if _alarms(cloud)]
     if alarms:
         left = [cloud.points[cloud["object_id"] >= 0] if "object_id" in cloud else cloud.points for cloud in clouds]
-        print(f"All numbers here count echoes that no surface has returned: {'; '.join(alarms)}." +
-              (f" Without them the Hausdorff distance is {_compared(*map(vertices, left)).GetHausdorffDistance():.6g} m."
+        print(f"All numbers above count echoes that no surface has returned: {'; '.join(alarms)}." +
+              (f" Without these echoes the Hausdorff distance is {_compared(*map(vertices, left)).GetHausdorffDistance():.6g} m."
                if all(map(len, left)) else ""))
     print(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
           f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
@@ -231,16 +231,16 @@ def convert(options) -> None:
 def sensors(options) -> None:
     if options.fit:
         if options.name:
-            raise ValueError(f"sensors: {options.name} and --fit {options.fit}, expected one of them")
+            raise ValueError(f"sensors: {options.name} and --fit {options.fit}, expected only one of them")
         _fit(options)
         return
     if options.out:
-        raise ValueError(f"sensors: -o {options.out} is where a fitted sensor goes, expected --fit FILE, too")
+        raise ValueError(f"sensors: -o {options.out} is the file of a fitted sensor, expected --fit FILE as well")
     if options.name:
         table(_display.sensor_rows(Sensor(options.name)).items())
         return
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about sensors that nobody has chosen
+        warnings.simplefilter("ignore")  # about sensors that the user has not chosen
         all_rows = {name: _display.sensor_rows(Sensor(name)) for name in Sensor.presets()}
     keys = [key for key in next(iter(all_rows.values())) if key not in ("position", "what")]
     table([("name", *keys), *((name, *(rows.get(key, "") for key in keys)) for name, rows in all_rows.items())])
@@ -253,7 +253,8 @@ def _fit(options) -> None:
     description = sensor.description
     found = sensor.fit()
     points = description["sheet"]["points"]
-    table([("reflectance", "light (klx)", "seen with", "range of the sheet (m)", "fitted (m)", "off", "off if left out", "source"),
+    table([("reflectance", "light (klx)", "probability", "range of the data sheet (m)", "fitted range "
+                                                                                        "(m)", "error", "error if left out", "source"),
             *((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', _sheet.HALF):g}"
                + ("" if "probability" in point else ", assumed"), f"{point['range']:g}", f"{predicted:.1f}", f"{100 * off:+.1f} %",
                "-" if left != left else f"{100 * left:+.1f} %", point["source"])
@@ -262,8 +263,8 @@ def _fit(options) -> None:
           *([f"board of the maker {found.board:.3g} m"] if found.board == found.board else []), sep=", ")
     if found.limit:
         print(found.limit)
-    print(f"ranges by this receiver are good for {100 * found.bar:.0f} %" if found.bar == found.bar else
-          "what ranges by this receiver are good for is not known: no point can be left out of the fit")
+    print(f"ranges by this receiver have an error of about {100 * found.bar:.0f} %" if found.bar == found.bar else
+          "the error of ranges by this receiver is unknown: no point can be left out of the fit")
     if options.out:
         _sheet.write(description, found, options.out)
         print(options.out)

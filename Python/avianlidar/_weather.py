@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Weather by words, as `--weather`, plans and scenarios have it: `fog:800` (visibility, m), `rain:10` (mm/h)."""
+"""Weather in words, as `--weather`, plans and scenarios give it: `fog:800` (visibility, m), `rain:10` (mm/h)."""
 from __future__ import annotations
 
 import math
@@ -7,13 +7,13 @@ from typing import Any, Dict, Iterable, Mapping, Optional
 
 from ._properties import snake
 
-WEATHER = "fog:V or haze:V (visibility, m), rain:R (mm/h); several together; the air sends light back then"
-FAR = 10_000.0  # m, from which on reports of airports say no more
-AIR = ("visibility", "air_backscatter", "rain_rate")  # what the words set
+WEATHER = "fog:V or haze:V (visibility, m), rain:R (mm/h); several may be combined; the air then sends light back"
+FAR = 10_000.0  # visibility, m, that reports of airports do not distinguish from larger ones
+AIR = ("visibility", "air_backscatter", "rain_rate")  # properties that the words set
 
 
 def weather(words: Optional[Iterable[str]]) -> Dict[str, Any]:
-    """Settings of a scan or of coverage by words of `--weather`.
+    """Settings of a scan or a coverage for words of `--weather`.
 
     >>> weather(["fog:800", "rain:10"])
     {'visibility': 800.0, 'air_backscatter': True, 'rain_rate': 10.0}
@@ -37,21 +37,21 @@ def weather(words: Optional[Iterable[str]]) -> Dict[str, Any]:
 
 
 def in_weather(settings: Mapping[str, Any], words: Optional[Iterable[str]]) -> Dict[str, Any]:
-    """Settings in a weather. What they say by name stays; ValueError where both say how far one sees, or how much it rains."""
+    """Settings in a weather. Settings given by name are kept; ValueError where settings and words both give visibility or rain rate."""
     air = weather(words)
     for name in ("visibility", "rain_rate"):
         if name in air and name in settings:
-            raise ValueError(f"is there beside {name} {settings[name]}, expected one of both to say it")
+            raise ValueError(f"is given beside {name} {settings[name]}, expected only one of them")
     return {**air, **settings}
 
 
 def without_air(settings: Mapping[str, Any]) -> Dict[str, Any]:
-    """Settings without those that words of weather set."""
+    """Settings without the properties that words of weather set."""
     return {name: value for name, value in settings.items() if snake(name) not in AIR}
 
 
 def in_words(words: Iterable[str]) -> str:
-    """Words of weather for a reader.
+    """Words of weather as a reader sees them.
 
     >>> in_words(["fog:800", "rain:10"])
     'fog of 800 m, rain of 10 mm/h'

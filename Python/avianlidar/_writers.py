@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Clouds to files, by their suffix."""
+"""Writing of clouds to files, by the suffix of the file."""
 from __future__ import annotations
 
 import csv
@@ -19,13 +19,13 @@ from ._suffixes import WRITERS
 
 
 def suffixes(classes: Dict[str, str]) -> List[str]:
-    """Those that this build knows. @param classes of the wrapped module, by suffix"""
+    """The suffixes whose classes this build has. @param classes names of classes of the wrapped module, by suffix"""
     return [*OWN, *(suffix for suffix, name in classes.items() if hasattr(_wrapped, name))]
 
 
 def refuse(what: str, path: pathlib.Path, known: List[str]) -> ValueError:
-    """Of a file whose suffix is not known."""
-    return ValueError(f"cannot {what} {path.name!r} by its suffix; known are {', '.join(known)}")
+    """The error for a file with an unknown suffix."""
+    return ValueError(f"cannot {what} {path.name!r} by its suffix, expected one of {', '.join(known)}")
 
 
 def _write(writer, file: str) -> None:
@@ -34,19 +34,19 @@ def _write(writer, file: str) -> None:
 
 
 def vtp(surface) -> bytes:
-    """A file of vtkPolyData. VTK makes the text only: its writer ends the process where a disk is full."""
+    """The bytes of a file of vtkPolyData. VTK makes only the text, because VTK's writer ends the process when a disk is full."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
     data = surface.NewInstance()
     data.ShallowCopy(surface)
     if not data.GetPoints():
-        data.SetPoints(vtkPoints())  # without, VTK writes what it does not read
+        data.SetPoints(vtkPoints())  # without points, VTK writes a file that VTK does not read
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
     _write(writer, "the text")
-    text = writer.GetOutputString()  # bytes where a name in the data is not UTF-8
-    del writer  # with its copy of the text
+    text = writer.GetOutputString()  # bytes if a name in the data is not UTF-8
+    del writer  # frees the writer's copy of the text
     return text.encode() if isinstance(text, str) else text
 
 
@@ -55,7 +55,7 @@ def _write_vtp(cloud, name: str) -> None:
 
 
 def columns_of(cloud) -> Iterator[Tuple[str, str, np.ndarray]]:
-    """Name, unit and numbers of the columns of a table: x, y, z, and each component of each array."""
+    """Name, unit and numbers of each column of a table: x, y, z, and each component of each array."""
     units = cloud.units
     yield from ((axis, "m", part) for axis, part in zip("xyz", cloud.points.T))
     for name, values in cloud.items():
@@ -66,14 +66,14 @@ def columns_of(cloud) -> Iterator[Tuple[str, str, np.ndarray]]:
 
 
 def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
-    """Rows as a file of CSV holds them."""
+    """Rows as the bytes of a CSV file."""
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator=end).writerows(rows)
     return text.getvalue().encode()
 
 
 def _write_csv(cloud, name: str) -> None:
-    """One row per point; names and units as vtkAvianLidarUnitNames joins them, quoted where CSV wants it (RFC 4180)."""
+    """Writes one row per point. Names and units are joined as in vtkAvianLidarUnitNames, and quoted according to RFC 4180."""
     columns = list(columns_of(cloud))
     names = [_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns]
     table = np.rec.fromarrays([values for _, __, values in columns])
@@ -86,7 +86,7 @@ OWN = {".vtp": _write_vtp, ".csv": _write_csv}
 
 
 def check_suffix(file, more: Sequence[str] = ()) -> None:
-    """ValueError for a file that `save` would not write, by its suffix. @param more suffixes that are written, too"""
+    """Raises ValueError for a file that `save` would not write, by its suffix. @param more further allowed suffixes"""
     path = pathlib.Path(file)
     known = [*suffixes(WRITERS), *more]
     if path.suffix.lower() not in known:
@@ -94,7 +94,7 @@ def check_suffix(file, more: Sequence[str] = ()) -> None:
 
 
 def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> None:
-    """An error for a file that could not be written, before the work for it is done. @param others files that it must not be"""
+    """Raises an error for a file that could not be written, before the work starts. @param others files that must not be overwritten"""
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
     if path.is_dir():
@@ -107,7 +107,7 @@ def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> Non
 
 
 def write(cloud, file, **properties: Any) -> None:
-    """Write a Cloud; see `save`."""
+    """Writes a Cloud; see `save`."""
     path = pathlib.Path(file)
     file_name(path)
     check_suffix(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far a lidar detects a bird, and how high its band must go for birds at a height.
+"""The ranges at which a lidar detects birds, and the elevation that the beams need for birds at a height.
 
 >>> import avianlidar as al
 >>> from avianlidar import reach
@@ -27,23 +27,23 @@ from .apps._plan import Plan
 from .apps._candidates import table
 
 RANGES = 48
-NEAR = 200  # beams, of a pattern without columns, that say how far it reaches to the sides at an elevation
-BIRDS = 400  # at each range
-FEW = 40  # of them, that say where ranges end
+NEAR = 200  # beams nearest to an elevation from which the azimuths of a pattern without columns are found
+BIRDS = 400  # birds at each range
+FEW = 40  # birds at each range in the search for the end of the ranges
 SEED = 1
-LEAST = 0.005  # share that still counts as detected, to find where ranges end
-RAISES = 8  # of the band, that are tried
-SHARES = (0.9, 0.5, 0.1)  # of birds, whose ranges the report gives
-CLEAR = 23e3  # m, visibility of air of which nothing is said
+LEAST = 0.005  # least share that counts as detected when the end of the ranges is searched
+RAISES = 8  # number of raised bands that are tried
+SHARES = (0.9, 0.5, 0.1)  # shares of birds for which the report gives ranges
+CLEAR = 23e3  # visibility of the air if no weather is given, m
 
 
 @dataclasses.dataclass(frozen=True)
 class Reach:
-    """Shares of birds by range, in free air: without a scene.
+    """Shares of birds by range, in free air without a scene.
 
-    ranges           n, m            one_scan  share of birds that one scan detects, n
-    error            standard error of one_scan, as birds are drawn at random, n
-    several_scans    share that `required_detections` of `number_of_scans` scans detect, n
+    ranges           n, m            one_scan  share of birds detected by one scan, n
+    error            standard error of one_scan, because birds are drawn at random, n
+    several_scans    share detected by `required_detections` of `number_of_scans` scans, n
     """
 
     ranges: np.ndarray
@@ -52,7 +52,7 @@ class Reach:
     several_scans: np.ndarray
 
     def to(self, share: float, several: bool = False) -> float:
-        """The greatest range to which at least a share of birds is detected, m; 0 where there is none."""
+        """The greatest range to which at least a share of birds is detected, m; 0 without such a range."""
         values = self.several_scans if several else self.one_scan
         above = np.flatnonzero(values >= share)
         last = slice(above[-1], above[-1] + 2) if len(above) else slice(0)
@@ -60,13 +60,13 @@ class Reach:
 
 
 def band(sensor: Sensor) -> Tuple[float, float]:
-    """Least and greatest elevation of the beams' middles, deg."""
+    """Lowest and highest elevation of the beam centres, deg."""
     up = np.degrees(np.arcsin(np.clip(sensor.beams["direction"][:, 2], -1.0, 1.0)))
     return float(up.min()), float(up.max())
 
 
 def _azimuths(directions: np.ndarray, elevations: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Evenly between the outermost of the NEAR beams that are nearest to each elevation, rad: of a pattern without columns."""
+    """Azimuths drawn evenly between the outermost of the NEAR beams nearest to each elevation, rad, for a pattern without columns."""
     up = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
     order = np.argsort(up, kind="stable")
     about = np.arctan2(directions[order, 0], directions[order, 1])
@@ -78,12 +78,12 @@ def _azimuths(directions: np.ndarray, elevations: np.ndarray, random: np.random.
 
 def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional[Sequence[float]] = None, birds: int = BIRDS,
                  **settings: Any) -> Reach:
-    """Birds in the band of a sensor, which is taken to stand level: elevations evenly between its lowest and its highest beam,
-    azimuths about its beams (with rotating prisms evenly between the leftmost and the rightmost beam at that elevation, and one
-    scan is the first), drawn with a fixed seed. Without surfaces, so without shadows and clutter.
+    """Birds in the band of a level sensor, drawn with a fixed seed: elevations evenly between the lowest and the highest beam,
+    azimuths about the beams. With rotating prisms, azimuths lie evenly between the leftmost and the rightmost beam at the elevation, and
+    the scan is the first scan. There are no surfaces, and therefore no shadows and no clutter.
 
-    ranges    m; default RANGES of them to where next to nothing is detected
-    birds     at each range
+    ranges    m; default: the part of RANGES in which birds are detected
+    birds     number of birds at each range
     settings  properties of Coverage, for example visibility=10e3 (m), required_detections=2, number_of_scans=3
     """
     if birds < 2:
@@ -103,7 +103,7 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
     def at(distances: np.ndarray, lines: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         cover.places = (distances[:, None, None] * lines).reshape(-1, 3)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # that there are no surfaces
+            warnings.simplefilter("ignore")  # about missing surfaces
             return cover["detection_probability"].reshape(len(distances), -1), cover["track_probability"].reshape(len(distances), -1)
 
     if ranges is None:
@@ -121,31 +121,31 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
 
 
 def air_of(sensor: Sensor, words: Optional[Sequence[str]] = None) -> Dict[str, Any]:
-    """Settings of `within_beams` in a weather, by words as of `--weather`; CLEAR where they say no visibility. Where a receiver has no aperture,
-    air and drops only weaken."""
+    """Settings of `within_beams` for words of `--weather`; the visibility is CLEAR if no word gives a visibility. For a receiver without an
+    aperture, air and drops only weaken light."""
     attenuation = _wrapped.vtkAvianLidarCoverage().GetAttenuationCoefficient()
     return as_received(sensor, {"attenuation_coefficient": attenuation, "visibility": CLEAR, "air_backscatter": False, "rain_rate": 0.0, **weather(words)})
 
 
 def left_open(sensor: Sensor) -> float:
-    """What ranges by a sensor's fitted receiver are good for, relative; nan for one that is not fitted to several points of a sheet."""
+    """Expected relative error of ranges by a sensor's fitted receiver; nan without a fit to several points of a data sheet."""
     return float(sensor.description.get("sheet", {}).get("bar", math.nan))
 
 
 def metres(value: float) -> str:
-    """A range in the two digits that the draw of birds leaves of it."""
+    """A range with the two digits that the random draw of birds allows."""
     return f"{float(f'{value:.2g}'):g} m" if value > 0.0 else "–"
 
 
 def half(sensor: Sensor, found: Reach) -> str:
-    """The range to which half of the birds are detected, with the ranges that the fit of the receiver leaves open."""
+    """The range to which half of the birds are detected, with the interval that the fit of the receiver leaves open."""
     to, bar = found.to(0.5), left_open(sensor)
     between = "" if math.isnan(bar) or to == 0.0 else f" ({metres((1.0 - bar) * to).removesuffix(' m')} to {metres((1.0 + bar) * to)})"
     return metres(to) + between
 
 
 def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
-    """How far half of the birds are seen, beside the width of a runway's strip."""
+    """Sentence on the range to which half of the birds are detected, compared with the width of a runway's strip."""
     to, width = found.to(0.5), 2.0 * table()["precision"]["4"]["strip"]["half_width"]
     if to == 0.0:
         return f"{name} sees half of the {species}s in its beams at no range."
@@ -154,8 +154,8 @@ def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
 
 
 def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) -> List[Dict[str, float]]:
-    """A row for each height (z, m): from which distance on the ground the band of the plan's sensor holds it, and to which one
-    birds are near enough, m; inf and 0 where that is never.
+    """A row for each height (z, m): the ground distance from which the band of the plan's sensor contains the height, and the ground
+    distance to which birds are near enough, m; inf and 0 if no distance fulfils the condition.
 
     detected_to  m along the line of sight, for example Reach.to(0.5)
     """
@@ -163,7 +163,7 @@ def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) ->
     rows = []
     for height in heights:
         above = height - plan.sensor.position[2]
-        limit = high if above >= 0.0 else -low  # deg, to the side of the horizon where the bird is
+        limit = high if above >= 0.0 else -low  # deg, on the side of the horizon where the bird is
         start = abs(above) / math.tan(math.radians(limit)) if 0.0 < limit < 90.0 else 0.0 if limit >= 90.0 or above == 0.0 else math.inf
         rows.append({"height": float(height), "above": above, "from": start,
                      "to": math.sqrt(max(detected_to ** 2 - above ** 2, 0.0))})
@@ -171,11 +171,11 @@ def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) ->
 
 
 def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
-    """How high the band must go, if a height that is asked for is not in it before half of the distance to which birds are detected:
-    so that it is. None where the plan asks for no heights, or nothing is to be mended.
+    """How high the band must reach, if the band contains one of the plan's heights only beyond half of the distance to which birds are
+    detected. None if the plan gives no heights, or if all heights are contained.
 
-    @return `needed` (elevation of the highest beams, deg; None where no elevation helps, as birds there are too far away), `rows`
-    as above, and `ways`: what could be done (words for `changes`), what it costs, and `changes` to try (properties of the sensor)
+    @return `needed` (elevation of the highest beams, deg; None if birds are too far away for any elevation), `rows` as in
+    `heights_in_band`, and `ways`: changes in words (`what`), their costs, and `changes` to try (properties of the sensor)
     """
     if not plan.asked:
         return None

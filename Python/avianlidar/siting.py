@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where on an airport a lidar sees most birds: runways and places around them, candidates, coverage of each, and the best
-one, two, three or more of them.
+"""Siting of lidars at an airport: runways and places around runways, candidates, the coverage of each candidate, and the best
+site or network of sites.
 
 >>> from avianlidar import siting
 >>> runway = siting.Runway("18L/36R", (0.0, 1700.0), (0.0, -1700.0), 57.6)

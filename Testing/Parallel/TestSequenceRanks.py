@@ -69,7 +69,7 @@ for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out), l
         for rank in range(2):
             heard = (home / f"heard{rank}.txt").read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(heard), 6, heard)
-            for k, words in enumerate(4 * ("the ranks are to write different things",) + ("another run writes there", "")):
+            for k, words in enumerate(4 * ("the ranks would write different files",) + ("another run writes there", "")):
                 self.assertIn(words, heard[k])
                 self.assertIn(str(home / f"out{k}"), heard[k])
         self.assertEqual([path for k in range(4) for path in (home / f"out{k}").rglob("*") if path.is_file()], [])

@@ -48,7 +48,7 @@ class Advice(unittest.TestCase):
     def test_a_convex_body_needs_one_reflection(self):
         advice = al.Scan(sphere(), SENSOR, seed=2**31 - 1).advise(**EASY)  # the largest
         self.assertEqual(advice.settings["number_of_reflections"], 1)
-        self.assertIn("One reflection is enough: second reflections carry 0 of the light (measured over 150 beams)", str(advice))
+        self.assertIn("One reflection is enough: second reflections return 0 of the light (measured over 150 beams)", str(advice))
         self.assertIn("a convex body cannot light itself", str(advice))
         self.assertEqual((advice.table["verdict"][advice.row], len(advice.table["verdict"])), (2, 37))
         self.assertNotIn("convex", str(al.Scan(sphere(), al.Sensor("Airport16", azimuth_step=10, position=(0, 60, 0))).advise(**EASY)))  # from inside
@@ -107,14 +107,14 @@ class Advice(unittest.TestCase):
         """Of 100 beams some 65 have an echo: a share below 3/65 cannot be told from 0."""
         scan = al.Scan(sphere(), SENSOR)
         advice = scan.advise(energy=0.05, range=0.2, missed=0.03, beams=100)
-        measured, echoes = map(int, re.search(r"measured on (\d+) of 5120 beams with (\d+) echoes", advice.lines[0]).groups())
+        measured, echoes = map(int, re.search(r"Measured on (\d+) of 5120 beams with (\d+) echoes", advice.lines[0]).groups())
         self.assertTrue(100 < measured <= 400 and echoes > 3 / 0.03, advice.lines[0])
         self.assertEqual(advice.table["verdict"][[0, advice.row]].tolist(), [2, 2])
         self.assertLess(advice.table["seconds_per_beam"][advice.row], 1.5 * advice.table["seconds_per_beam"][0])
         # Not where energies are too bad, whatever the share; and not without end.
-        self.assertIn("measured on 100 of", al.Scan(al.Scene(CORNER), SENSOR).advise(energy=1e-9, range=0.2, missed=0.01, beams=100).lines[0])
+        self.assertIn("Measured on 100 of", al.Scan(al.Scene(CORNER), SENSOR).advise(energy=1e-9, range=0.2, missed=0.01, beams=100).lines[0])
         advice = scan.advise(energy=0.05, range=0.2, missed=1e-4, beams=50)
-        self.assertIn("measured on 200 of", advice.lines[0])
+        self.assertIn("Measured on 200 of", advice.lines[0])
         self.assertEqual(advice.row, -1)
 
     def test_settings_are_not_ranked_within_the_scatter_of_their_times(self):
@@ -143,7 +143,7 @@ class Advice(unittest.TestCase):
         bird, sensor = al.mover(sphere().tree.GetOutput(), [(0, -20, 0)]), al.Sensor("Search905", azimuth_step=5.0)
         advice = al.Scan(al.Scene(CORNER), sensor, movers=bird, visibility=800, air_backscatter=True, rain_rate=10).advise(**EASY)
         weather = next(line for line in advice.lines if line.startswith("Weather"))
-        self.assertRegex(weather, r"takes \d+ % of the light .* of the points are of the air itself; it takes (\d+ % (more|less)|about the same) time")
+        self.assertRegex(weather, r"takes \d+ % of the light .* of the points are echoes of the air; the air takes (\d+ % (more|less)|about the same) time")
         self.assertIn("Weather: none", al.Scan(al.Scene(CORNER), sensor, attenuation_coefficient=0).advise(**EASY).lines)
 
     def test_the_same_each_time(self):
@@ -154,7 +154,7 @@ class Advice(unittest.TestCase):
     def test_what_cannot_be_met(self):
         advice = al.Scan(al.Scene(CORNER), SENSOR).advise(energy=1e-9, beams=50)
         self.assertEqual((advice.settings, advice.row), (None, -1))
-        self.assertRegex(advice.lines[1], "^Advised: none of 37 settings surely meets what is asked; the best, ")
+        self.assertRegex(advice.lines[1], "^Advised: none of 37 settings surely keeps the limits. The best setting, ")
 
     def test_bad_input(self):
         scan = al.Scan(al.Scene(CORNER), SENSOR)

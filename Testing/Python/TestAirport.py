@@ -313,7 +313,7 @@ class Extracts(unittest.TestCase):
         (folder / "README.txt").unlink()
         code, words = run("airport", file, "-o", folder)
         self.assertEqual(code, 0)
-        self.assertEqual(words.count("was edited and stays as it is"), 2)
+        self.assertEqual(words.count("was edited and is kept"), 2)
         self.assertEqual(json.loads((folder / "airport.lidarscene.json").read_text())["comment"], "mine")
         self.assertEqual((folder / "airport.geojson").read_text(), mapped)
         self.assertEqual((folder / "README.txt").read_bytes(), before["README.txt"])
@@ -326,7 +326,7 @@ class Extracts(unittest.TestCase):
         terrain = folder / "terrain.vtp"
         terrain.write_text(terrain.read_text().replace("<VTKFile", "<!-- edited -->\n<VTKFile", 1))
         code, said = run("airport", file, "--heights", heights, "-o", folder)
-        self.assertEqual((code, said.count("was edited and stays as it is")), (0, 1), said)
+        self.assertEqual((code, said.count("was edited and is kept")), (0, 1), said)
         self.assertEqual(json.loads((folder / "airport.lidarscene.json").read_text())["origin"]["height"], 60.0)
         # What others have left is not written over.
         other = fresh("others")
@@ -490,9 +490,9 @@ class Terrains(unittest.TestCase):
             posts, _, here, words = changed(holed, unit, **declared)
             self.assertAlmostEqual(here, 50.0, delta=1.0, msg=(value, unit, declared))
             self.assertTrue(35.0 < posts.min() and posts.max() < 65.0, (value, unit, declared))
-            self.assertIn("have none there", words)
+            self.assertIn("have no height in the file", words)
         for unit, more, said in (("furlong", {}, "'furlong'"), ("", {"kind": gdal.GDT_Byte}, "holds bytes"),
-                                 ("m", {"system": above_geoid("foot", 0.3048)}, "heights in 'm', and its vertical system in 'foot'")):
+                                 ("m", {"system": above_geoid("foot", 0.3048)}, "heights in 'm' and its vertical system in 'foot'")):
             with self.assertRaisesRegex(al.Error, said):
                 changed(smooth, unit, **more)
         state_plane = osr.SpatialReference()
@@ -523,7 +523,7 @@ class Terrains(unittest.TestCase):
         mask[140:160, 140:160] = 0
         masked.GetRasterBand(1).GetMaskBand().WriteArray(mask)
         del masked
-        self.assertIn("have none there", _ground.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
+        self.assertIn("have no height in the file", _ground.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
 
 
 class Wrong(unittest.TestCase):
@@ -545,7 +545,7 @@ class Wrong(unittest.TestCase):
         with open(large, "wb") as stream:
             stream.truncate(500 << 20)  # takes no place on the disk
         self.addCleanup(large.unlink)
-        files.append((large, "holds 500 MiB, expected at most 256: cut it"))
+        files.append((large, "holds 500 MiB, expected at most 256: cut the extract"))
         # Heights beside an extract that is right.
         gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"), gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32))
         far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)

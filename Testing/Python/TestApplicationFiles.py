@@ -259,10 +259,10 @@ class Sequences(Applications):
         (first / "predictions" / "000000.label").write_bytes(b"1234")
         al.Sequence(self.scenario).write(out)
         shutil.rmtree(out / "sequences" / "01")
-        for name, damage, words in (("truth.csv", "gone", "its files are not those"),
-                                    ("labels/000001.label", "changed", "its files are not those"),
-                                    ("velodyne/000000.bin", "changed", "its files are not those"),
-                                    ("velodyne/000000.bin", "short", "1 of 2 scans are whole")):
+        for name, damage, words in (("truth.csv", "gone", "its files differ from the sha256"),
+                                    ("labels/000001.label", "changed", "its files differ from the sha256"),
+                                    ("velodyne/000000.bin", "changed", "its files differ from the sha256"),
+                                    ("velodyne/000000.bin", "short", "1 of 2 scans are complete")):
             with self.subTest(name, damage=damage):
                 file = first / name
                 kept = file.read_bytes()
@@ -273,7 +273,7 @@ class Sequences(Applications):
                 file.write_bytes(kept)
         done = first / "done.json"
         kept = json.loads(done.read_text())
-        for text, words in (("{", "done.json: is not JSON"), ("[]", "00 is of another scenario"), (None, "00: is there without done.json")):
+        for text, words in (("{", "done.json: is not JSON"), ("[]", "00 was made from another scenario"), (None, "00: has no done.json")):
             done.unlink()
             if text:
                 done.write_text(text)
@@ -282,7 +282,7 @@ class Sequences(Applications):
         for name in set(kept) - {"inputs"}:  # for people
             done.write_text(json.dumps({**kept, name: "x"}))
             with self.subTest(name=name):
-                self.refused(out, "00 is of another|00: its files|is missing or no count")
+                self.refused(out, "00 was made from another|00: its files|is missing or is not a count")
         shutil.rmtree(first)
         al.Sequence(self.scenario).write(out)
 
@@ -297,7 +297,7 @@ class Sequences(Applications):
                 (r"scenario\.birds", {}, {"birds": []})):
             with self.subTest(words):
                 self.write("s.lidarscene.json", {**SCENE, **scene})
-                self.refused(out, f"00 is of another scenario, scene or version: .*{words}", **{"number_of_scans": 4, **changes})
+                self.refused(out, f"00 was made from another scenario, scene or version: .*{words}", **{"number_of_scans": 4, **changes})
         # What decides no bit may differ: threads, more scans, the order of keys, a place in the scene that the scenario overrules.
         self.write("s.lidarscene.json", SCENE)
         self.write("q.scenario.json", {**SCENARIO, "birds": [dict(reversed(SCENARIO["birds"][0].items()))]})
@@ -315,13 +315,13 @@ class Sequences(Applications):
         kept = (out / "sequences" / "00" / "truth.csv").stat().st_mtime_ns
         status, said = run("sequence", self.scenario, "-o", out, "--scans", 4, "--threads", 1)
         self.assertEqual((status, len(said.splitlines())), (0, 1), said)
-        self.assertRegex(said, "^avianlidar: warning: .*01: has fewer scans than are wanted now, and is made again")
+        self.assertRegex(said, "^avianlidar: warning: .*01: has fewer scans than requested, and is made again")
         self.assertEqual(tree(out), tree(fresh))
         self.assertEqual((out / "sequences" / "00" / "truth.csv").stat().st_mtime_ns, kept)
-        for scans, words in ((3, "01: has 2 scans, and number_of_scans is 3"), (2, "01: is there, and number_of_scans is 2")):
+        for scans, words in ((3, "01: has 2 scans, but number_of_scans is 3"), (2, "01: exists, but number_of_scans is 2")):
             status, said = run("sequence", self.scenario, "-o", out, "--scans", scans)
             self.assertEqual(status, 2)
-            self.assertRegex(said, f"^avianlidar: .*{words}: ask for as many scans as there are, or choose another folder\n$")
+            self.assertRegex(said, f"^avianlidar: .*{words}: choose at least as many scans as the folder has, or another folder\n$")
             self.assertEqual(tree(out), tree(fresh))
 
     def test_both_spellings_of_a_property_are_one(self):
@@ -342,7 +342,7 @@ class Sequences(Applications):
         self.assertEqual(*written)
         self.assertIn("crow", (self.home / "old" / "sequences" / "00" / "truth.csv").read_text())
         (self.home / "t.csv").write_text(tracks.replace("100", "101"))
-        with self.assertRaisesRegex(al.Error, r"00 is of another scenario.*scenario\.birds"):
+        with self.assertRaisesRegex(al.Error, r"00 was made from another scenario.*scenario\.birds"):
             al.Sequence(self.home / "old.scenario.json").write(self.home / "old")
         bird = {"pattern": "File", "FileName": "t.csv"}
         for changes, words in (({"birds": [{**bird, "file_name": "t.csv"}]}, r"birds\[0\]: file_name is given twice"),

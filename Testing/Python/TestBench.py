@@ -192,7 +192,7 @@ class Files(unittest.TestCase):
                 ("holds no manifest.json", None, OUTPUT / "right", {}),
                 ("has no sequence 07", None, self.home, {"numbers": ["07"]}),
                 ("no scan from number 6 on", None, self.home, {"first": 6}),
-                ("000003.label: is not there", spoilt("000003.label", None), self.home, {}),
+                ("000003.label: is missing", spoilt("000003.label", None), self.home, {}),
                 ("000003.label: has 1 values", spoilt("000003.label", b"abcd"), self.home, {}),
                 ("000002.score: has a score", spoilt("000002.score", nan), self.home, {})):
             shutil.rmtree(wrong, ignore_errors=True)

@@ -247,7 +247,7 @@ class Files(unittest.TestCase):
         (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
         (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
         for inputs, settings, words in (
-                ((empty,), {}, "no manifest.json"), ((cut,), {}, "truth.csv: is not there"), ((changed,), {}, "its files are not those"),
+                ((empty,), {}, "no manifest.json"), ((cut,), {}, "truth.csv: is missing"), ((changed,), {}, "its files differ from the sha256"),
                 ((other,), {}, "another sensor"), ((self.made, self.made), {}, "twice"),
                 ((self.made,), {"learning_scans": self.SCANS}, "more than the"),
                 ((self.made,), {"runways": self.home / "none.geojson"}, "holds no runway"), ((self.made,), {"tracker": {"hits": 3}}, "hits"),

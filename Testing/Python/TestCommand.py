@@ -100,7 +100,7 @@ class Verbs(unittest.TestCase):
         (OUTPUT / "alarm.csv").write_text("\n".join((head, *rows, ",".join(row), "")), encoding="utf-8")
         distance, text, _ = compared(OUTPUT / "alarm.csv", self.files["csv"])
         self.assertGreater(distance, 4900)
-        self.assertRegex(text, r"(?s)alarm.csv has .*Without them the Hausdorff distance is 0 m")
+        self.assertRegex(text, r"(?s)alarm.csv has .*Without these echoes the Hausdorff distance is 0 m")
         _, _, errors = compared(self.files["bin"], self.files["las"])
         self.assertRegex("".join(errors), r"warning: a \.bin file is in the frame of its sensor")
 

@@ -147,7 +147,7 @@ class Pulses(unittest.TestCase):
         for gate, ambiguous in ((1498, False), (1500, True)):
             study = study_of(fresh("gate"), {"ambiguous_ranges": True} if ambiguous else {}, sensor={**NIGHT, "firing_interval": 1e-5, "range_gate": gate})
             self.assertFalse(any(one.refused for one in study.candidates))
-        with self.assertRaisesRegex(Error, "hold no lidar that can be: range_gate is 1500 m, expected at most the 1499 m"):
+        with self.assertRaisesRegex(Error, "contain no possible lidar: range_gate is 1500 m, expected at most 1499 m"):
             study_of(fresh("gate"), sensor={**NIGHT, "firing_interval": 1e-5, "range_gate": 1500})
 
     def test_numbers(self):
@@ -217,7 +217,7 @@ class Work(unittest.TestCase):
         self.assertIn(middle.number, [one.number for one in again.undecided()])
         self.assertGreater(again.chosen.cost, middle.cost)
         self.assertEqual([is_told(share, 0.01, 0.5) for share in (0.53, 0.515, 0.485, 0.47)], [True, None, None, False])
-        self.assertRegex(" ".join(_design_page.answers(again)), "the error does not decide: .* within 2 standard errors")
+        self.assertRegex(" ".join(_design_page.answers(again)), "the error does not decide, because .* within 2 standard errors")
 
     def test_a_killed_run_goes_on(self):
         where = fresh("killed")
@@ -274,7 +274,7 @@ class Wrong(unittest.TestCase):
                 ({"bounds": {"maximum_elevation": [0, 9]}}, {}, "beams begin at up to 0 deg"),
                 ({"bounds": {"number_of_channels": [16]}}, {"sensor": {"preset": "VLP32C"}}, "beams are a table"),
                 ({"bounds": {"receiver_aperture": {"from": 1, "to": 2}}}, {"sensor": {"preset": "Airport16"}}, "receiver_aperture: "),
-                ({"bounds": {"number_of_channels": [5000]}}, {}, "design.bounds: hold no lidar"),
+                ({"bounds": {"number_of_channels": [5000]}}, {}, "design.bounds: contain no possible lidar"),
                 ({"cost": "price"}, {}, "design.cost: price: "),
                 ({"exit_aperture": "0 * mast"}, {}, "design.exit_aperture: "),
                 ({"measure": "tracked"}, {}, "design.scenario: ")):
@@ -283,7 +283,7 @@ class Wrong(unittest.TestCase):
         scenario = json.loads(TestBirdTracks.scenario_file(where).read_text(encoding="utf-8"))
         shutil.copyfile(where / "small.lidarscene.json", where / "other.lidarscene.json")
         (where / "other.scenario.json").write_text(json.dumps({**scenario, "scene": "other.lidarscene.json"}), encoding="utf-8")
-        with self.assertRaisesRegex(Error, "design.scenario: is of the scene .*other.lidarscene.json, expected that of the plan"):
+        with self.assertRaisesRegex(Error, "design.scenario: has the scene .*other.lidarscene.json, expected the scene of the plan"):
             study_of(where, {"measure": "tracked", "scenario": "other.scenario.json"})
         self.assertFalse((where / "out").exists())
 

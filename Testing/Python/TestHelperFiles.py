@@ -95,11 +95,11 @@ class Files(InFolder):
             self.assertEqual(len((self.folder / "none.csv").read_text(encoding="utf-8").splitlines()), 1)
 
     def test_faults(self):
-        cases = ((ValueError, r"'echoes.doc' by its suffix; known are \.vtp, \.csv", lambda: self.scan.save("echoes.doc")),
-                 (ValueError, r"known are \.vtp", lambda: al.load_cloud("echoes.doc")),
+        cases = ((ValueError, r"'echoes.doc' by its suffix, expected one of \.vtp, \.csv", lambda: self.scan.save("echoes.doc")),
+                 (ValueError, r"expected one of \.vtp", lambda: al.load_cloud("echoes.doc")),
                  (FileNotFoundError, "none", lambda: self.scan.save(self.folder / "none" / "echoes.vtp")),
                  (FileNotFoundError, "no such file: none.vtp", lambda: al.load_cloud("none.vtp")),
-                 (ValueError, r"known are \.vtp, \.csv, \.las", lambda: al.load_cloud("echoes.geojson")),
+                 (ValueError, r"expected one of \.vtp, \.csv, \.las", lambda: al.load_cloud("echoes.geojson")),
                  (TypeError, "property 'no_such_thing'", lambda: self.scan.save("echoes.pcd", no_such_thing=1)),
                  (TypeError, "has no properties: precision", lambda: self.scan.save("echoes.csv", precision=3)))
         for kind, words, call in cases:

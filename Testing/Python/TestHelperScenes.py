@@ -236,7 +236,7 @@ class NothingToSee(unittest.TestCase):
                 (airport, {"position": (0, 0, -50)}, "^the sensor at .0, 0, -50. m is below the scene, .* 0 m no echoes of 1152 beams: "),
                 (hill, {"position": (0, 0, 10)}, "has surfaces above it and none below"),
                 (al.Scene(box((-20, 50000, -5), (20, 50002, 15))), {}, "no echoes of .* 50000 m away or more, the range gate ends at 4000 m$"),
-                (walls, {"minimum_elevation": 40}, "^no echoes of 1152 beams: no surface 1152; the beams look 40 to 45.62 deg up, .* north 50 to 52"),
+                (walls, {"minimum_elevation": 40}, "^no echoes of 1152 beams: no surface 1152; the beams point 40 to 45.62 deg up, .* north 50 to 52"),
                 (walls, {"pulse_energy": 1e-12}, r"^no echoes of 1152 beams: .*below the lower limit \d+$"),
                 (al.Scene(box((-900, 9000, 0), (900, 13500, 1500))), {}, millimetres),
                 (al.Scene(y_up(tall), faces), {}, "lowest point is 340 m below the origin.*read it with the up axis y"),

@@ -262,7 +262,7 @@ class MeshFiles(InFolder):
     def test_whatever_the_program_does_is_one_error(self):
         (self.folder / "box.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", encoding="utf-8")
         for text, words in (("kill -SEGV $$", "Assimp cannot read it: it crashes on the file (Segmentation fault)"),
-                            ("exit 3", "Assimp cannot read it: its program ended without a word"), ("printf n", "there is not enough memory for it"),
+                            ("exit 3", "Assimp cannot read it: the program that reads meshes ended early"), ("printf n", "there is not enough memory for it"),
                             ("printf 'e\\003\\0\\0\\0\\0\\0\\0\\0bad'", "box.obj: bad")):
             with self.subTest(text=text):
                 self.program(text)

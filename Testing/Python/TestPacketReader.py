@@ -130,7 +130,7 @@ class TestPacketReader(InFolder):
             self.assertTrue(np.all(np.diff(cloud["azimuth"].reshape(-1, 32)[:, 0]) > 0))
             self.assertAlmostEqual(cloud["timestamp"][0] * 1e-6, start, delta=1e-9)
             self.assertTrue(np.all(np.diff(cloud["timestamp"].reshape(-1, 32)[:, 0]) > 0))
-        with self.assertWarnsRegex(RuntimeWarning, "has 4 revolutions, this is the first"):
+        with self.assertWarnsRegex(RuntimeWarning, "has 4 revolutions, of which the first was read"):
             self.assertEqual(avianlidar.load_cloud(FILE).number_of_points, 37.5 * 384)
         with warnings.catch_warnings():
             warnings.simplefilter("error")

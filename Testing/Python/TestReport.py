@@ -64,7 +64,7 @@ class Page(unittest.TestCase):
         captions = self.browser.run("return [...document.querySelectorAll('figcaption, caption')].map(c => c.textContent)")
         self.assertEqual(len(captions), self.browser.run("return document.querySelectorAll('table').length + document.images.length"))
         for words in captions:
-            self.assertRegex(words, "Search905.*; asked for: .* in strips, 50 to 100 m high")
+            self.assertRegex(words, "Search905.*; question: .* in strips, 50 to 100 m high")
 
     def test_is_read_on_a_phone(self):
         shown = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
@@ -131,7 +131,7 @@ class Page(unittest.TestCase):
         x, y, z = positions[0]
         for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}, {z:g}\u00a0m up",
                       "of a lattice of 1000 m", "<td>strips</td><td class=\"left line\">50 to 100 m</td>",
-                      "How sure the winner is was not looked at"):
+                      "How sure the winner is was not computed"):
             self.assertIn(words, self.text)
         for mast, share in re.findall(r"([0-9]+) m: ([0-9.]+) ± [0-9.]+.% at", self.text):
             best = positions[positions[:, 2] == float(mast)][np.argmax(values[positions[:, 2] == float(mast)])]

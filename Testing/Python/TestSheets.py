@@ -123,7 +123,7 @@ class Sheets(unittest.TestCase):
             run = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "--fit", str(made), "-o", str(fitted)],
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 0, run.stderr)
-            self.assertIn("ranges by this receiver are good for 0 %", run.stdout)
+            self.assertIn("ranges by this receiver have an error of about 0 %", run.stdout)
             # Over itself: a fit of what is fitted is the same.
             before = fitted.read_text(encoding="utf-8")
             again = [sys.executable, "-m", "avianlidar", "sensors", "--fit", str(fitted), "-o", str(fitted)]

@@ -80,7 +80,7 @@ class Candidates(unittest.TestCase):
             np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 
     def test_two_in_one_place_are_one(self):
-        with self.assertWarnsRegex(RuntimeWarning, "^8 of 12 candidates stand where another one stands"):
+        with self.assertWarnsRegex(RuntimeWarning, "^8 of 12 candidates stand at the place of another candidate"):
             found = siting.candidates([(1, 2), (3, 4), (1, 2), (1.00001, 2)], (5.0, 8.0, 5.0))
         np.testing.assert_allclose(found, [(1, 2, 5), (3, 4, 5), (1, 2, 8), (3, 4, 8)], atol=1e-4)
 
@@ -352,7 +352,7 @@ class Airport(unittest.TestCase):
                                "siting": {"spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0, **of}}))
         whole, kept = sites(surfaces=False), sites()
         self.assertEqual(whole.pierced, {})
-        self.assertIn("none is kept", whole.words()["obstacle limits"])
+        self.assertIn("no surface is used", whole.words()["obstacle limits"])
         high = pierced([Surfaces.of(runway, self.scene) for runway in self.runways], whole.positions) > 0
         np.testing.assert_array_equal(kept.positions, whole.positions[~high])
         self.assertEqual(sum(kept.pierced.values()), np.count_nonzero(high))

@@ -107,7 +107,7 @@ class Year(unittest.TestCase):
         told = re.search("At 1\u00a0km visibility one scan of Search905 detects ([0-9.]+) ± ", text)
         self.assertAlmostEqual(float(told[1]), 100 * in_fog, delta=0.51)
         year = sum(part["share"] * rows[name, "map"] for part, name in zip(YEAR, ("visibility of 20,000 m", "fog of 500 m", "rain of 10 mm/h")))
-        told = re.search("Over the year, by the hours of its weather, it is ([0-9.]+ ± [0-9.]+)\u00a0%", text)[1]
+        told = re.search("Over the year, by the hours of its weather, the share is ([0-9.]+ ± [0-9.]+)\u00a0%", text)[1]
         self.assertAlmostEqual(float(told.partition(" ")[0]), 100 * year, delta=0.51)
         self.assertIn(f", {told}\u00a0% over the year", text)
 
@@ -115,10 +115,10 @@ class Year(unittest.TestCase):
         half = [{"weather": ["fog:500"], "share": 0.5}]
         plan("wrong").with_name("empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
         for changes, words in (({"weather": ["snow:3"]}, "weather: "),
-                               ({"weather": ["fog:500"]}, "weather: is there beside visibility"),
+                               ({"weather": ["fog:500"]}, "weather: is given beside visibility"),
                                ({"year": half}, "year: shares sum to 0.5"),
                                ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501"),
-                               ({"year": YEAR, "metar": "year.txt"}, "metar: is there beside 'year'"),
+                               ({"year": YEAR, "metar": "year.txt"}, "metar: is given beside 'year'"),
                                ({"metar": "none.txt"}, "none.txt: cannot be read"),
                                ({"metar": "empty.txt"}, "empty.txt: holds no METAR report")):
             self.assertIn(words, error_of("coverage", plan("wrong", **changes), "-o", HERE / "wrong"))

@@ -96,7 +96,7 @@ class Sequences(unittest.TestCase):
     def test_weather_belongs_to_what_a_folder_is_made_of(self):
         self.assertIn('scenario.weather ["fog:400"], now ["fog:500"]', error_of("sequence", self.file, "-o", self.home / "fog", "--weather", "fog:500"))
         wrong = self.scenario("wrong", weather=["fog:500"], scan={"Visibility": 3000})
-        self.assertIn("weather: is there beside visibility 3000", error_of("sequence", wrong, "-o", self.home / "wrong"))
+        self.assertIn("weather: is given beside visibility 3000", error_of("sequence", wrong, "-o", self.home / "wrong"))
         over = self.scenario("over", weather=["rain:3"], scan={"visibility": 9000})
         self.assertEqual(main(["sequence", str(over), "-o", str(self.home / "over"), "--weather", "fog:400"]), 0)
         np.testing.assert_array_equal(labels_of(self.home / "over"), labels_of(self.home / "fog"))

@@ -64,11 +64,11 @@ double keptInView(const LidarView& view, double slope)
 Medium rainOf(
   double rate, double backscatterRatio, const LidarView& view, double perVolume, double fall)
 {
-  const double lambda = fall * std::pow(rate, -0.21);                  // 1/mm
+  const double lambda = fall * std::pow(rate, -0.21);                  // slope, 1/mm
   const double squares = perVolume * 2.0 / (lambda * lambda * lambda); // sum of D^2, mm^2/m^3
-  const double areas = 0.25 * Pi * squares * 1e-6;                     // 1/m
-  // A drop takes twice its area from the beam. The lidar loses less, as diffracted light stays in
-  // view. The backscatter ratio refers to twice the area.
+  const double areas = 0.25 * Pi * squares * 1e-6;                     // area of the drops, 1/m
+  // A drop removes the light of twice its area from the beam. The lidar loses less, as diffracted
+  // light is kept in the field of view. The backscatter ratio refers to twice the area.
   const double lost = 2.0 - keptInView(view, 1e3 * lambda);
   return { lost * areas, 0.5 * lost * backscatterRatio, perVolume / lambda };
 }

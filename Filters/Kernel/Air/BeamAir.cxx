@@ -16,7 +16,7 @@ namespace
 {
 constexpr std::int64_t NoUnit = std::numeric_limits<std::int64_t>::max();
 
-/// Optical depth of volumes, there and back, behind which media return nothing.
+/// Optical depth, there and back, of volumes that hide all media behind them.
 constexpr double Opaque = 60.0;
 
 /// Share of the lower limit below which the light of all media in a unit does not matter.
@@ -29,28 +29,30 @@ constexpr double Rounding = 1e-9;
 constexpr double PlacesOnAperture[][2] = { { 0.21234054, 0.13965396 }, { 0.59053314, 0.45848221 },
   { 0.91141204, 0.40186383 } };
 
-/// Points across a cell of the grid, each way, over which its share of the pulse is summed.
+/// Points across a cell of the grid, in each direction, for the sum of the cell's share of the
+/// pulse.
 constexpr int PointsOfCell = 16;
 
-/// Axis and eight points of the unit circle. The last four are the corners of a rectangular beam.
+/// Axis and eight points of the unit circle. The last four points are the corners of a rectangular
+/// beam.
 constexpr double H = BeamShape::HalfSide;
 constexpr double Rim[][2] = { { 0.0, 0.0 }, { 1.0, 0.0 }, { -1.0, 0.0 }, { 0.0, 1.0 },
   { 0.0, -1.0 }, { H, H }, { H, -H }, { -H, H }, { -H, -H } };
 
-/// Share of the leaves on one of two ways that miss the other. @param x distance of the ways over a
-/// leaf's diameter
+/// Share of the leaves on one of two ways that do not touch the other way. @param x distance
+/// between the ways, in diameters of a leaf
 double beforeOneWay(double x)
 {
   return x < 1.0 ? x * (2.0 - x) : 1.0;
 }
 
 /// Integral of f over ranges, m. f falls no faster than exp(-(decay + change) r)/r^2, with a kink.
-/// @param reach range of the kink, m, up to which the aperture gathers half of all light
-/// @param decay by extinction, 1/m @param change of densities, 1/m
+/// @param reach range of the kink, m: the range to which the aperture gathers half of all light
+/// @param decay decay by extinction, 1/m @param change change by densities, 1/m
 template <class F>
 double airIntegral(double reach, double from, double to, double decay, double change, F f)
 {
-  // Panels grow by `growth`. None is longer than `longestPanel`/(decay + change).
+  // Panels grow by `growth`. No panel is longer than `longestPanel`/(decay + change).
   constexpr double growth = 1.5;
   constexpr double longestPanel = 2.0;
   constexpr double nothingLeft = 700.0; // exponent at which f has vanished
@@ -58,10 +60,10 @@ double airIntegral(double reach, double from, double to, double decay, double ch
   double sum = 0.0;
   for (double begin = from; begin < to && decay * (begin - from) < nothingLeft;)
   {
-    // The step must change `begin` even where extinction is shorter than the last digit.
+    // The step must change `begin` even where extinction acts within the last digit of `begin`.
     const double step = std::max(longest, 1e-15 * begin);
     const double end = std::min({ begin < reach ? reach : growth * begin, begin + step, to });
-    // On a panel that is short against range and extinction three points suffice, to 1e-8.
+    // Three points suffice, to 1e-8, on a panel that is short against range and extinction length.
     constexpr double isShort = 0.05;
     sum += end - begin < std::min(isShort * begin, 0.25 * longest)
       ? boost::math::quadrature::gauss<double, 3>::integrate(f, begin, end)
@@ -146,14 +148,14 @@ void BeamAir::makeGrid()
     {
       continue;
     }
-    // Directions are staggered between cells, so that no straight border passes many at once. Where
-    // one would miss the beam, the mean of the cell's part in the beam replaces it.
+    // Directions are staggered between cells, so that no straight border passes many directions at
+    // once. The mean of the cell's part in the beam replaces a direction that would miss the beam.
     const double x = -1.0 + width * (i + std::fmod(0.5 + 0.7320508 * i + 0.6180340 * j, 1.0));
     const double y = -1.0 + width * (j + std::fmod(0.5 + 0.4142136 * i + 0.2360680 * j, 1.0));
     const bool isIn = shape.holds(x, y);
     column.x = isIn ? x : column.x / column.weight;
     column.y = isIn ? y : column.y / column.weight;
-    // This sequence fills a square evenly, in whatever order the cells come.
+    // This sequence fills a square evenly for any order of the cells.
     const auto number = static_cast<double>(this->Grid.size());
     const double angle = 2.0 * Pi * 0.5698402910 * number;
     column.towards = { std::cos(angle), std::sin(angle) };
@@ -219,7 +221,7 @@ void BeamAir::beginRay(const Vec3& origin, const Vec3& direction, double seconds
   this->findLooked();
 }
 
-/// Divide a beam into the columns that its volumes require, and find the parts of each.
+/// Divide a beam into the columns that its volumes require, and find the parts of each column.
 void BeamAir::divide(const BeamFrame& frame)
 {
   const Vec3* up = nullptr;
@@ -255,8 +257,8 @@ void BeamAir::divide(const BeamFrame& frame)
   this->findParts(frame);
 }
 
-/// True if the rim crosses all volumes where the axis does, to a quarter of a range unit plus a
-/// hundredth of the way through. Optical depths there and back must agree within 0.02, too.
+/// True if rim and axis cross all volumes at the same ranges, to a quarter of a range unit plus a
+/// hundredth of the way through. Their optical depths, there and back, must agree within 0.02.
 bool BeamAir::rimAgrees() const
 {
   const Column& axis = this->Columns[0];
@@ -346,7 +348,7 @@ void BeamAir::findParts(Column& column, const Vec3& origin, const Vec3& directio
 /// Find the units in which media may be perceived by themselves.
 void BeamAir::findLooked()
 {
-  if (!this->isLocal()) // whatever volumes it passes
+  if (!this->isLocal()) // the beam meets no volume
   {
     this->Seen = this->Filling;
     this->Columns.assign(1, { 0.0, 0.0, 1.0, ~std::uint64_t{ 0 } });
@@ -400,7 +402,7 @@ std::int64_t BeamAir::nextLooked(std::int64_t unit) const
   return next < this->Dark + this->Reach ? next : NoUnit;
 }
 
-/// Sum over the parts of a column. @param of gives the term of a part
+/// Sum over the parts of a column. @param of function that gives the term of a part
 template <class F>
 double BeamAir::sumOver(const Column& column, F of) const
 {
@@ -489,7 +491,7 @@ double BeamAir::transmissionBetween(const Vec3& from, const Vec3& to)
 
 void BeamAir::take(std::vector<MetSurface> surfaces)
 {
-  this->TakenTo = Infinity; // makes takeUpTo() begin anew
+  this->TakenTo = Infinity; // infinity makes takeUpTo() begin anew
   this->Unit = -1;
   this->Surfaces.clear();
   const auto isNearer = [](const MetSurface& a, const MetSurface& b) { return a.range < b.range; };
@@ -542,8 +544,8 @@ void BeamAir::takeUpTo(double range)
   }
 }
 
-/// Reduce the columns that a surface meets by its share of the pulse. No column becomes negative,
-/// and all together keep the share of the pulse that is left.
+/// Reduce the columns that a surface meets by its share of the pulse. No column becomes negative.
+/// The columns together keep the share of the pulse that is left.
 void BeamAir::takeOne(const MetSurface& surface)
 {
   const auto isMet = [&](const Column& column)
@@ -568,7 +570,7 @@ void BeamAir::takeOne(const MetSurface& surface)
   }
 }
 
-/// Solid angle of the aperture seen from a range, m, at most 2 pi, times the near range share, sr.
+/// Solid angle, sr, at most 2 pi, of the aperture seen from a range, m, times the near range share.
 double BeamAir::gathered(double range) const
 {
   return this->Instrument.nearRangeShare(range) * this->collected(range);
@@ -584,7 +586,7 @@ double BeamAir::collected(double range) const
 void BeamAir::addColumn(const Column& column, double from, double to)
 {
   const double before = this->depth(column, from);
-  // What the near range misses does not bound the light from farther ranges.
+  // The near range share does not bound the light from farther ranges.
   const double light =
     this->MostOfUnit * this->collected(from) * std::exp(-2.0 * this->Attenuation * from - before);
   this->Dark = light > Faint * this->Instrument.lowerEnergyLimit ? this->Gate : this->Dark;
@@ -645,7 +647,7 @@ void BeamAir::addPiece(const Column& column, double before, double from, double 
         return this->gathered(r) * density.densityAt(r) * std::exp(-depth);
       });
   };
-  // Media of constant density share one integral, and so do columns of the same decay.
+  // Media of constant density, and columns of the same decay, share one integral.
   const MediumCrossing everywhere{ from, to, 1.0, 0.0 };
   const std::array<double, 3> wanted{ from, to, decay };
   if (change == 0.0 && this->Known != wanted)
@@ -661,7 +663,7 @@ void BeamAir::addPiece(const Column& column, double before, double from, double 
     const Medium& medium = this->mediumAt(this->Seen[number]);
     this->Sums[number].mean += seen * medium.backscatter() *
       (change == 0.0 ? crossing.density * steady : integralOf(crossing));
-    // Drops count if their middle lies in the beam, leaves also if they reach into it.
+    // Drops count if their middle lies in the beam. Leaves also count if they reach into the beam.
     const double met = medium.drops * this->SolidAngle * (to * to * to - from * from * from) / 3.0 +
       (medium.sharesGaps && medium.drops > 0.0 ? medium.extinction * (to - from) : 0.0);
     this->Sums[number].drops += weight * crossing.densityAt(middle) * met;
@@ -688,7 +690,7 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
   const double from = std::max(to - this->UnitLength, this->Instrument.minimumRange);
   if (!(this->Instrument.receiverAperture > 0.0) || !(from < to))
   {
-    return this->Shares; // the aperture is unknown, or the unit before the minimum range
+    return this->Shares; // the aperture is unknown, or the unit lies before the minimum range
   }
   this->takeUpTo(to - 0.5 * this->UnitLength);
   if (!this->isLocal())
@@ -724,7 +726,7 @@ const std::vector<BeamAir::Share>& BeamAir::sharesOf(std::int64_t unit)
 
 double BeamAir::followed(std::int64_t unit)
 {
-  if (!this->isLocal()) // media that fill the scene are followed
+  if (!this->isLocal()) // only media that fill the scene
   {
     this->takeUpTo(this->UnitLength * (static_cast<double>(unit) + 0.5));
     return unit < this->units()

@@ -13,7 +13,7 @@ PulseShares::PulseShares(double width)
   : Width(width)
   , Reach(static_cast<std::int64_t>(std::ceil(0.5 * width)))
 {
-  // The share e of the next unit is such that e (1 - e) is w/6, its mean over all places.
+  // The share e of the next unit makes e (1 - e) equal to its mean over all places, w/6.
   const double part = std::min(1.0, width);
   const double end = 0.5 * part * (1.0 - std::sqrt(1.0 - 2.0 * part / 3.0)) - 0.5 * width;
   this->Place = end - std::floor(end);
@@ -88,7 +88,7 @@ void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::
   {
     const auto [size, at] = draw(k);
     const double d = std::log(size);
-    // Square of the diameter, or of the leaf's cosine, over its mean.
+    // Square of the drop's diameter, or of the leaf's cosine, over the mean of such squares.
     const double light = square == SquareOfLeaves ? 3.0 * size * size : 0.5 * d * d;
     pulse.add(mean * light / drops, at, units);
   }
@@ -104,7 +104,7 @@ void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t num
     addDrops(
       seed, beam, number, scan, share * mean, share * drops, medium.squareOfDrops, pulse, units);
   };
-  // Drops that stay are the same in every scan.
+  // Drops that are not renewed are the same in every scan.
   constexpr std::int32_t always = -1;
   add(revolution, medium.renewed);
   add(always, 1.0 - medium.renewed);

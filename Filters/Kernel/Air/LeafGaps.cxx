@@ -13,7 +13,7 @@ namespace
 {
 constexpr double Never = std::numeric_limits<double>::infinity();
 
-/// Scan of the leaves that stay, which are the same in every scan.
+/// Number of the scan for leaves that are the same in every scan.
 constexpr std::int32_t Always = -1;
 
 constexpr std::uint64_t DrawsOfLeaf = 3;
@@ -32,7 +32,8 @@ void LeafGaps::begin(
   { return uniformPair(seed, beam, of.number + number, RandomPurpose::Leaves, of.scan); };
   const auto advance = [&](Stream& of)
   {
-    // The volume up to the next leaf is exponential. It is the integral of 4 (rim + growth r)^2.
+    // The volume up to the next leaf has an exponential distribution. The volume is the integral of
+    // 4 (rim + growth r)^2.
     of.number += DrawsOfLeaf;
     const double side = halfSide(of);
     const double volume = -std::log(draw(of, 0)[0]) / of.perVolume;
@@ -72,7 +73,8 @@ void LeafGaps::begin(
   }
 }
 
-/// Make two streams for each medium of leaves that the beam meets, or none if the beam is too wide.
+/// Make two streams for each medium of leaves that the beam meets. Make no streams if the beam is
+/// too wide.
 void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolution)
 {
   this->Streams.clear();
@@ -84,7 +86,7 @@ void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolu
     const double radius = std::sqrt(2.0 * seenArea / Pi);
     const double rim = radius + this->Along->apertureRadius();
     const double across = 2.0 * (rim + growth * leaves.begin);
-    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // in leaves
+    const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // section in leaves
     const bool isFirst = this->Streams.empty();
     if (section > (isFirst ? MostLeaves : MostLeavesBehind) ||
       (isFirst && across * across > MostLeavesAcross * seenArea))
@@ -101,8 +103,9 @@ void LeafGaps::makeStreams(double growth, double solidAngle, std::int32_t revolu
   }
 }
 
-/// Make rays that no leaf has stopped yet. @param turn of their points on the aperture about its
-/// middle, in whole turns @param shift of the share of its area that is nearer to the middle
+/// Make rays that no leaf has stopped yet. @param turn turn of the rays' points about the middle of
+/// the aperture, in whole turns @param shift shift of the share of the aperture's area that is
+/// nearer to the middle
 void LeafGaps::makeRays(double turn, double shift)
 {
   this->Shadows.clear();
@@ -123,13 +126,14 @@ void LeafGaps::makeRays(double turn, double shift)
   }
 }
 
-/// Place a leaf. End the rays that meet it, and note the rays whose light it stops on the way back.
-/// @param centre across the beam, m @param draw gives a pair of the leaf's random numbers, 1 or 2
+/// Place a leaf. End the rays that meet the leaf, and note the rays whose light the leaf stops on
+/// the way back. @param centre position across the beam, m @param draw gives pair 1 or 2 of the
+/// leaf's random numbers
 template <class F>
 void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F draw)
 {
   bool isDrawn = false;
-  double least = 0.0; // the leaf exists where the medium's density is larger
+  double least = 0.0; // density of the medium above which the leaf exists
   double cosine = 1.0;
   double along = 0.0;
   double beside = 0.0;
@@ -155,7 +159,7 @@ void LeafGaps::place(const std::array<double, 2>& centre, const Stream& of, F dr
       cosine = draw(2)[0];
       isDrawn = true;
     }
-    // The way back from a range R passes p + s q, s = 1 - r/R. Inside, a s^2 + 2 b s + c < 0.
+    // The way back from a range R passes p + s q, s = 1 - r/R. In the leaf, a s^2 + 2 b s + c < 0.
     const auto p = toLeaf(x, y);
     const auto q = toLeaf(ray.aperture[0], ray.aperture[1]);
     const double a = q[0] * q[0] + q[1] * q[1];

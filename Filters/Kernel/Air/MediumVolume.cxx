@@ -84,7 +84,7 @@ std::pair<double, double> insideBox(const Vec3& p, const Vec3& d)
 /// Ranges between which a ray lies in an ellipsoid. @param p, d as for a box
 std::pair<double, double> insideEllipsoid(const Vec3& p, const Vec3& d)
 {
-  // A start at the point nearest to the centre loses no digits to a far origin.
+  // Ranges are counted from the point nearest to the centre, so that a far origin costs no digits.
   const double square = glm::dot(d, d);
   const double middle = -glm::dot(p, d) / square;
   const Vec3 nearest = p + middle * d;
@@ -99,7 +99,7 @@ bool isAmid(const Corners& corners, const Vec3& direction)
   const double a = glm::dot(direction, glm::cross(corners.b, corners.c));
   const double b = glm::dot(direction, glm::cross(corners.c, corners.a));
   const double c = glm::dot(direction, glm::cross(corners.a, corners.b));
-  constexpr double margin = 1e-9; // share of the triangle; above rounding, too small to matter
+  constexpr double margin = 1e-9; // share of the triangle, above rounding and too small to matter
   const double least = margin * std::fabs(a + b + c);
   return std::fabs(a) > least && std::fabs(b) > least && std::fabs(c) > least;
 }
@@ -204,7 +204,7 @@ void MediumCrosser::findInSurface(const MediumVolume& volume, const Vec3& origin
   std::sort(this->Hits.begin(), this->Hits.end(),
     [](const Hit& a, const Hit& b)
     { return std::tie(a.range, a.entered) < std::tie(b.range, b.entered); });
-  // Hits on a side that two triangles share count once. Hits amid two triangles count each.
+  // Two hits on a side that two triangles share count once. Two hits amid triangles count twice.
   const auto isSame = [](const Hit& a, const Hit& b)
   {
     return a.entered == b.entered && b.range - a.range <= 1e-9 * b.range && !(a.isAmid && b.isAmid);
@@ -298,7 +298,8 @@ bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double fa
   }
   const double height = glm::dot(frame.origin - volume.centre, volume.up);
   const double climb = glm::dot(frame.axis, volume.up);
-  // The tangent, as the sine alone would be short by an eighth of the half-beamwidth cubed.
+  // The tangent is used because the sine would be too small by an eighth of the half-beamwidth
+  // cubed.
   const double low = height + far * std::min(0.0, climb - frame.tanHalf);
   const double high = height + far * std::max(0.0, climb + frame.tanHalf);
   const bool isInside = low > volume.bottom && high < volume.top;

@@ -9,9 +9,9 @@ namespace avianlidar
 {
 namespace
 {
-/// Number of cells inside the next smaller circle if `cells` lie inside this one and all are about
-/// as wide as high (Beckers and Beckers, "A general rule for disk and hemisphere partition into
-/// equal-area cells", Computational Geometry 45(7), 2012, Eq. 5).
+/// Number of cells inside the next smaller circle if `cells` cells lie inside this circle and all
+/// cells are about as wide as high (Beckers and Beckers, "A general rule for disk and hemisphere
+/// partition into equal-area cells", Computational Geometry 45(7), 2012, Eq. 5).
 std::size_t cellsInsideRing(std::size_t cells)
 {
   const double root = std::sqrt(static_cast<double>(cells)) - std::sqrt(Pi);
@@ -35,8 +35,8 @@ public:
   }
 
   /// Returns tan theta / tan theta0.5, where sin^2(theta/2) = u sin^2(theta0.5/2). For a uniform
-  /// profile u = (1 - cos theta)/(1 - cos theta0.5) is the share v itself, for a Gaussian one -ln(1
-  /// - v (1 - e^(-2 k^2)))/(2 k^2).
+  /// profile u = (1 - cos theta)/(1 - cos theta0.5) is the share v itself. For a Gaussian profile u
+  /// is -ln(1 - v (1 - e^(-2 k^2)))/(2 k^2).
   template <BeamProfile Profile>
   AVIANLIDAR_ALWAYS_INLINE double of(double v) const
   {
@@ -49,7 +49,7 @@ public:
     const double s = std::sqrt(u) * this->SinQuarter;
     const double tangent = 2.0 * s * std::sqrt((1.0 - s) * (1.0 + s)) / (1.0 - 2.0 * s * s);
     const double radius = tangent * this->InverseTangent;
-    // The limit is some units of round-off inside, so that x^2 + y^2 <= 1 after rounding.
+    // The limit lies some units of round-off inside, so that x^2 + y^2 <= 1 after rounding.
     constexpr double rim = 1.0 - 0x1p-50;
     return radius < rim ? radius : rim;
   }
@@ -61,7 +61,7 @@ private:
   double Within;
 };
 
-/// What all rays of a beam have in common. `cells` is null for Monte Carlo rays.
+/// Values that all rays of a beam share. `cells` is null for Monte Carlo rays.
 struct Draw
 {
   std::int32_t seed;

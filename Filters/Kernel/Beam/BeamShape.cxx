@@ -9,7 +9,7 @@ namespace avianlidar
 namespace
 {
 /// Half-beamwidth at which a profile uniform in solid angle is uniform over the plane, to rounding.
-constexpr double Flat = 1e-9; // rad
+constexpr double Flat = 1e-9; // half-beamwidth, rad
 
 /// Diagonal of the unit square.
 constexpr double Diagonal = 1.4142135623730951;
@@ -65,7 +65,7 @@ BeamShape::BeamShape(const Sensor& sensor)
   if (isRectangle && sensor.beamProfile == BeamProfile::Gaussian)
   {
     const double perMean = 2.0 * Diagonal * k / (std::sqrt(Pi) * std::erf(Diagonal * k));
-    this->Profile.profile = BeamProfile::Uniform; // before fit()
+    this->Profile.profile = BeamProfile::Uniform; // profile of the rays before fit()
     this->Truncation = k;
     this->Fall = 4.0 * k * k;
     this->PerMean = perMean * perMean;

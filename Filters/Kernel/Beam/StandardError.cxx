@@ -11,7 +11,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Least number of rays; fewer say too little of how much energies differ.
+/// Least number of rays. Fewer rays do not show how much energies differ.
 constexpr std::size_t FewestRays = 8;
 
 /// Student's t over the normal 1.96, for 95 % intervals from FewestRays to 15 values.

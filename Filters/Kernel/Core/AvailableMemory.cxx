@@ -17,10 +17,11 @@ namespace
 {
 constexpr double Kilobyte = 1024.0;
 constexpr double Unlimited = std::numeric_limits<double>::infinity();
-// Smaller requests are not worth a check, bytes.
+// Least request that is checked, bytes.
 constexpr double LeastToLookAt = 64e6;
 
-/// Number after a word of a file ("MemAvailable:"), in the file's unit; else `otherwise`.
+/// Number after a word of a file ("MemAvailable:"), in the file's unit; `otherwise` if the word is
+/// missing.
 double numberBehind(const std::string& file, const std::string& word, double otherwise)
 {
   std::ifstream stream(file);
@@ -46,7 +47,7 @@ double numberIn(const std::string& file, double otherwise)
   return stream >> number ? number : otherwise;
 }
 
-/// Bytes that one control group leaves.
+/// Bytes that one control group leaves free.
 double leftByGroup(const std::string& folder, const char* limit, const char* usage)
 {
   const double cached = numberBehind(folder + "/memory.stat", "inactive_file", 0.0) +
@@ -55,7 +56,7 @@ double leftByGroup(const std::string& folder, const char* limit, const char* usa
   return numberIn(folder + "/" + limit, Unlimited) - std::max(0.0, used - cached);
 }
 
-/// Least number of bytes that the group at `path` or a group above it leaves.
+/// Least number of bytes that the group at `path` or a group above it leaves free.
 double leftByGroups(
   const std::string& mount, std::string path, const char* limit, const char* usage)
 {
@@ -71,7 +72,7 @@ double leftByGroups(
   }
 }
 
-/// Bytes that control groups leave. Lines of /proc/self/cgroup are "0::/path" (version 2) and
+/// Bytes that control groups leave free. Lines of /proc/self/cgroup are "0::/path" (version 2) and
 /// "4:memory:/path" (version 1).
 double leftByControlGroups(const std::string& root)
 {

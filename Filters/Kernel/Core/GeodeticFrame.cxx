@@ -35,7 +35,7 @@ struct GeodeticFrame::Implementation
 {
   const GeographicLib::Geocentric& Earth = GeographicLib::Geocentric::WGS84();
   const GeographicLib::TransverseMercator& Mercator = GeographicLib::TransverseMercator::UTM();
-  Point Origin{ { 0.0, 0.0, 0.0 } }; // ECEF
+  Point Origin{ { 0.0, 0.0, 0.0 } }; // origin in ECEF, m
   // Columns are east, north, up in ECEF, stored row by row.
   std::vector<double> Axes = std::vector<double>(9);
   double CentralMeridian = 3.0;
@@ -157,8 +157,8 @@ std::array<double, 3> GeodeticFrame::convert(Frame from, Frame to, const Point& 
   {
     return point;
   }
-  // A rotation converts between ENU and ECEF, a projection between geodetic and UTM, and the
-  // ellipsoid between the two pairs.
+  // A rotation converts between ENU and ECEF. A projection converts between geodetic and UTM. The
+  // ellipsoid converts between these pairs.
   Point p = point;
   if (isOnEllipsoid(from))
   {

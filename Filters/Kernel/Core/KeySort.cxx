@@ -9,7 +9,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Fewer keys are sorted faster without SIMD lanes.
+/// Least number of keys for which SIMD lanes sort faster.
 constexpr std::size_t FewKeys = 64;
 }
 

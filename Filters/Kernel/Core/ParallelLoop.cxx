@@ -16,8 +16,9 @@ namespace avianlidar
 {
 namespace
 {
-/// This process is the child of a fork. GNU OpenMP keeps the threads of its last region for the
-/// next one. A fork does not copy them, and a region of the child would wait for them without end.
+/// True in the child of a fork. GNU OpenMP keeps the threads of its last region for the next
+/// region. A fork does not copy these threads. A region of the child would wait for them without
+/// end.
 bool Forked = false;
 [[maybe_unused]] const int Noticing = pthread_atfork(nullptr, nullptr, []() { Forked = true; });
 }
@@ -28,16 +29,16 @@ KeepGoing partOf(const KeepGoing& keepGoing, double from, double to)
   {
     return {};
   }
-  // Rounding must not lead beyond what the next part begins with.
+  // Rounding must not exceed the value with which the next part begins.
   return [&keepGoing, from, to](double done)
   { return keepGoing(std::min(to, from + (to - from) * done)); };
 }
 
 int loopThreads(int threads)
 {
-  // OpenMP ends the process when it cannot have a thread, and so does a thread whose first data
-  // find no memory. It needs a stack, an arena of malloc, and as much again for its work. Looked at
-  // once: callers have room for so many threads.
+  // OpenMP ends the process when a thread cannot be started, or when a thread finds no memory for
+  // its first data. A thread needs a stack, an arena of malloc, and as much again for its work. The
+  // memory is checked once, because callers have room for so many threads.
   constexpr double bytesOfThread = 160e6;
   static const double room = availableAddresses() / bytesOfThread;
   const double enough = std::max(64, 4 * omp_get_num_procs());
@@ -100,7 +101,7 @@ bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBo
         others.emplace_back(work, thread);
       }
     }
-    catch (const std::exception&) // no more threads, or no memory for them: those that run suffice
+    catch (const std::exception&) // without a thread or memory: the threads that run suffice
     {
     }
     work(0);

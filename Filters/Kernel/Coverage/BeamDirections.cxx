@@ -50,8 +50,8 @@ template <class F>
 void forEachCell(std::size_t side, const Vec3& axis, double halfBeamwidth, F f)
 {
   const double size = 2.0 / static_cast<double>(side);
-  // Largest angle between a cell's middle and its points, or more: on a face, angles are smaller
-  // than distances.
+  // Bound of the angle between a cell's middle and its points: on a face, angles are smaller than
+  // distances.
   const double cell = 0.5 * size * std::sqrt(2.0);
   for (int face = 0; face < 6; ++face)
   {
@@ -63,7 +63,7 @@ void forEachCell(std::size_t side, const Vec3& axis, double halfBeamwidth, F f)
     {
       continue;
     }
-    // The cone meets the face within a square about the axis, unless it is too oblique.
+    // The cone meets the face within a square about the axis, unless the face is too oblique.
     std::size_t range[4] = { 0, side - 1, 0, side - 1 };
     const double reach = angle + halfBeamwidth;
     if (reach < 1.4)

@@ -14,12 +14,14 @@ namespace avianlidar
 namespace
 {
 constexpr std::size_t PlacesOfBlock = 4096;
-/// Angles outside a beam up to which it is found, rad: for far, near and very near targets.
+/// Largest angles outside a beam at which the beam is found, rad: for far, near and very near
+/// targets.
 constexpr double Margins[] = { 4e-3, 4e-2, 0.4 };
-/// Error of a probability below which it is not refined.
+/// Error of a probability below which the probability is not refined.
 constexpr double Negligible = 0.004;
 
-/// Half the angle that a target subtends, rad. @param reach m, from its middle @param range m
+/// Half the angle that a target subtends, rad. @param reach reach from the target's middle, m
+/// @param range range of the target, m
 double angleOf(double reach, double range)
 {
   return std::asin(std::min(1.0, reach / range));
@@ -203,16 +205,16 @@ CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea
   }
 }
 
-/// A target at a place, and the energies that beams receive of it.
+/// A target at a place, and the energies that beams receive from the target.
 struct Coverage::PlacedTarget
 {
   const CoverageTarget& target;
-  double range;   ///< m
-  Vec3 direction; ///< unit vector
+  double range;   ///< range of the target, m
+  Vec3 direction; ///< unit vector towards the target
   Vec3 right, up; ///< unit vectors across the direction, as in Silhouette.h
   double filling; ///< energy of a target that fills the beam, J
   double energy;  ///< energy if the beam contains the whole target, J
-  double growth;  ///< factor of the threshold in air; the energies are divided by it
+  double growth;  ///< factor of the threshold in air, by which the energies are divided
   DetectionLaw::Between elevation;
 
   double probability(double step, int beams) const
@@ -236,7 +238,8 @@ struct Coverage::PlacedTarget
   }
 };
 
-/// Beams that may light a target and are not in clutter there; if they are too many, the nearest.
+/// Beams that may light a target and are not in clutter there. The nearest beams are kept if there
+/// are too many.
 struct Coverage::NearBeams
 {
   struct Beam
@@ -245,10 +248,10 @@ struct Coverage::NearBeams
     double nearness; ///< larger for beams that are nearer
     bool isHeld;     ///< true if the beam contains the place
   };
-  Beam beams[DetectionLaw::MostBeams]; ///< not initialised, since it is made for each place
+  Beam beams[DetectionLaw::MostBeams]; ///< not initialised, as a NearBeams is made for each place
   std::size_t count = 0;
-  int clear = 0; ///< beams that contain the place
-  int whole = 0; ///< beams that contain the whole target
+  int clear = 0; ///< number of beams that contain the place
+  int whole = 0; ///< number of beams that contain the whole target
 
   void add(const Beam& beam)
   {
@@ -342,7 +345,7 @@ bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& n
         at.probability(step, all) - at.probability(step, near.whole) < Negligible));
 }
 
-/// Returns a beam in the plane across the line of sight to a target, see Silhouette.h.
+/// Returns a beam in the plane across the line of sight to a target (see Silhouette.h).
 BeamAtTarget Coverage::beamAt(const PlacedTarget& at, std::uint32_t beam) const
 {
   const Sensor& sensor = this->Setup.sensor;
@@ -392,7 +395,7 @@ void Coverage::share(
 }
 
 /// Detection at a place that is near a beam and not hidden.
-/// @param ofPoses filled with 0, one for each pose; or null
+/// @param ofPoses results, one for each pose, filled with 0 by the caller; or null
 CoverageValue Coverage::valueOf(
   const PlacedTarget& at, const CoverageSight& sight, double* ofPoses) const
 {
@@ -454,7 +457,8 @@ CoverageValue Coverage::valueAt(
   {
     return this->valueOf(at, sight, nullptr);
   }
-  // The law's headings count from the line of sight. Those from north are interpolated linearly.
+  // The law's headings count from the line of sight. Values for headings from north are
+  // interpolated linearly.
   std::vector<double> found(poses, 0.0);
   const CoverageValue value = this->valueOf(at, sight, found.data());
   const std::size_t headings = target.headings;

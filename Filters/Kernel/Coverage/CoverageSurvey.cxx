@@ -84,7 +84,7 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
   return true;
 }
 
-/// Returns a kept target if its inputs are equal: they often are from site to site.
+/// Returns a kept target if its inputs are equal, as they often are from site to site.
 const CoverageTarget& CoverageSurvey::targetOf(const SurveyTarget& wanted)
 {
   const Sensor& sensor = this->Covered->setup().sensor;

@@ -17,10 +17,11 @@ namespace
 {
 /// Positions in half a range unit over which the mean is taken.
 constexpr int PlacesInHalfUnit = 20;
-/// Positions in a whole range unit where beams light parts: every fifth of those above.
+/// Positions in a whole range unit where beams light parts: every fifth of the positions in a unit.
 constexpr int PlacesOfParts = 8;
-/// A pose represents similar poses. The logarithm of their energy is normally distributed with this
-/// standard deviation, sampled at one quantile (k + 0.5)/PlacesOfParts for each position.
+/// A pose represents similar poses. The logarithm of the energies of similar poses is normally
+/// distributed with this standard deviation. One quantile (k + 0.5)/PlacesOfParts is sampled for
+/// each position.
 constexpr double SpreadOfEnergies = 0.15;
 constexpr double Quantiles[PlacesOfParts] = { 1.5341, -0.4888, -0.8871, -0.1570, 0.1570, 0.8871,
   0.4888, -1.5341 };
@@ -28,12 +29,14 @@ constexpr double Quantiles[PlacesOfParts] = { 1.5341, -0.4888, -0.8871, -0.1570,
 constexpr double NegligiblePart = 0.004;
 /// Standard deviations at which a normal distribution is cut.
 constexpr double Deviations = 3.0;
-/// Classes of the standard deviation of depth, and the last one over the target's reach.
+/// Number of classes of the standard deviation of depth, and deviation of the last class over the
+/// target's reach.
 constexpr std::size_t DepthClasses = 9;
 constexpr double DeepestOfReach = 0.6;
-/// Largest number of range units that are evaluated; if there are more, each stands for neighbours.
+/// Largest number of range units that are evaluated. If there are more, each evaluated unit
+/// represents its neighbours.
 constexpr double MostUnits = 64.0;
-/// Replaces a lower limit of 0, J.
+/// Lower limit, J, in place of a lower limit of 0.
 constexpr double LeastLimit = 1e-280;
 
 /// Linear interpolation, constant beyond both ends. @param at in steps of the table
@@ -71,16 +74,16 @@ double shareBefore(double t, double width, double deviation)
     deviation / width;
 }
 
-/// Shares of an echo in range units; each value stands for `units` of them.
+/// Shares of an echo in range units. Each value represents `units` range units.
 struct Shares
 {
   std::vector<double> values;
   double units = 1.0;
 };
 
-/// Shares of an echo in the range units that it overlaps.
-/// @param place of its middle in a unit, 0 to 1 @param width of the pulse
-/// @param deviation of the target's depth, both in range units
+/// Shares of an echo in the range units that the echo overlaps.
+/// @param place place of the echo's middle in a unit, 0 to 1 @param width width of the pulse, range
+/// units @param deviation standard deviation of the target's depth, range units
 Shares sharesOf(double place, double width, double deviation)
 {
   const double half = 0.5 * width + Deviations * deviation;
@@ -294,7 +297,7 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
   std::size_t count, const Between& at, double* ofPoses) const
 {
   const std::size_t used = std::min<std::size_t>(count, MostBeams);
-  std::array<double, MostBeams> away; // of the target's middle beyond the border, m
+  std::array<double, MostBeams> away; // distance of the target's middle beyond the border, m
   for (std::size_t b = 0; b < used; ++b)
   {
     away[b] = beams[b].beyond();

@@ -15,7 +15,7 @@ namespace
 /// Pixels along the longer side of the finest image, and samples along a pixel.
 constexpr int LongerSide = 96;
 constexpr int SamplesOfPixel = 3;
-/// Number of images, each half as fine as the one before.
+/// Number of images, each half as fine as the image before.
 constexpr int MostImages = 5;
 /// Least radius of a beam in the image that it uses, in pixels.
 constexpr double RadiusInPixels = 3.5;
@@ -33,7 +33,7 @@ struct Sample
 /// Depth buffer: samples of the nearest surface on a rectangle.
 struct Canvas
 {
-  double left, below, step; ///< m
+  double left, below, step; ///< left and lower border, and distance between samples, m
   int columns, rows;
   std::vector<Sample> samples;
 
@@ -327,8 +327,8 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
   }
   const Image* const image = &this->imageFor(beam);
   const double radius = std::max(beam.radius, LeastRadiusInPixels * image->pixel);
-  // The share of a pixel is linear in its squared distance, from 1 half a pixel inside the border
-  // to 0 half a pixel outside, so that the disc keeps its area.
+  // The share of a pixel is linear in its squared distance. The share is 1 half a pixel inside the
+  // border and 0 half a pixel outside, so that the disc keeps its area.
   const double radius2 = radius * radius;
   const double edge = radius * image->pixel;
   const double reach = std::sqrt(radius2 + edge);
@@ -343,7 +343,7 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
   for (int row = below; row < above; ++row)
   {
     const auto y = static_cast<float>(image->below + row * image->pixel - beam.y);
-    // This points past the last pixel if the beam lies beside the image.
+    // The pointer lies past the last pixel if the beam lies beside the image.
     const Sums* pixel =
       image->pixels.data() + static_cast<std::size_t>(row) * image->columns + left;
     auto x = static_cast<float>(image->left + left * image->pixel - beam.x);

@@ -15,9 +15,9 @@ namespace
 constexpr std::size_t MostPrisms = 3;
 constexpr int CheckedPhases = 12;
 
-using PrismAngles = std::array<double, MostPrisms>; // deg
+using PrismAngles = std::array<double, MostPrisms>; // angles of the prisms, deg
 
-/// Turns of a rate since time 0 within a turn, deg.
+/// Angle of a rotation at a time, deg, without whole turns.
 double degreesAt(double rate, double start, double time)
 {
   return 360.0 * (std::fmod(rate * start, 1.0) + std::fmod(rate * time, 1.0));
@@ -34,7 +34,7 @@ bool refract(Vec3& direction, const Vec3& normal, double ratio)
   return meets && length > 0.0;
 }
 
-/// Light through all prisms. @return false where none passes
+/// Refract a direction at all prisms. @return false where no light passes
 bool passPrisms(const PrismTrain& train, const PrismAngles& angles, Vec3& direction)
 {
   for (std::size_t prism = 0; prism < train.wedgeAngles.size(); ++prism)
@@ -43,7 +43,7 @@ bool passPrisms(const PrismTrain& train, const PrismAngles& angles, Vec3& direct
     const auto [sine, cosine] = sinCosDegrees(train.wedgeAngles[prism]);
     const auto [right, up] = sinCosDegrees(angles[prism]);
     const Vec3 plane(0.0, 1.0, 0.0);
-    // Its thick end lies at the angle, so that light is deflected to there.
+    // The thick end of a prism lies at its angle, so that light is deflected to this angle.
     const Vec3 inclined(-sine * right, cosine, -sine * up);
     const bool leavesInclined = sine >= 0.0;
     if (!refract(direction, leavesInclined ? plane : inclined, 1.0 / index) ||

@@ -12,9 +12,9 @@ namespace avianlidar
 {
 namespace
 {
-constexpr double StepTolerance = 1e-9;        // of a step
-constexpr double RoundingTolerance = 8.9e-16; // of the number of a step: 4 units of round-off
-constexpr double MostTolerance = 0.25;        // of a step
+constexpr double StepTolerance = 1e-9;        // share of a step
+constexpr double RoundingTolerance = 8.9e-16; // share of a step's number: 4 units of round-off
+constexpr double MostTolerance = 0.25;        // share of a step
 
 bool isGood(const ScanClock& clock)
 {
@@ -88,7 +88,7 @@ std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& pa
   const std::int64_t columns = numberOfColumns(pattern);
   const int channels = numberOfChannels(pattern);
   const std::int64_t shown = part.step + std::int64_t{ 1 };
-  const double share = static_cast<double>(shown) / part.steps; // of the scan
+  const double share = static_cast<double>(shown) / part.steps; // share of the scan
   const bool isRotor = !pattern.table && pattern.prisms.none();
   const auto hasFired = [&](std::int64_t column, int channel)
   {
@@ -100,8 +100,8 @@ std::vector<std::int64_t> beamsOf(const ScanPattern& pattern, const ScanPart& pa
     {
       return beamTime(pattern, column, channel) * pattern.rotationRate < share;
     }
-    // Column c begins when c/columns of the revolution is over; whole numbers, so that none is
-    // early.
+    // Column c begins when c/columns of the revolution is over. Whole numbers are compared, so that
+    // no column is early.
     return column * part.steps < shown * columns &&
       ((column + 1) * part.steps <= shown * columns ||
         firingTime(pattern, channel) * pattern.rotationRate <

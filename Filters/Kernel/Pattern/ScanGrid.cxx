@@ -9,7 +9,8 @@ namespace avianlidar
 {
 namespace
 {
-/// The distinct values, ascending; each stands for all that lie less than the tolerance above it.
+/// The distinct values, ascending. Each distinct value stands for all values that lie less than the
+/// tolerance above it.
 std::vector<double> distinct(std::vector<double> values)
 {
   std::sort(values.begin(), values.end());
@@ -30,7 +31,7 @@ int indexOf(const std::vector<double>& kept, double value)
   return static_cast<int>(std::upper_bound(kept.begin(), kept.end(), value) - kept.begin()) - 1;
 }
 
-/// In [0, 360), with what is all but a full turn at 0.
+/// Angle in [0, 360), deg. An angle that is all but a full turn becomes 0.
 double wrapped(double degrees)
 {
   double turned = std::fmod(degrees, 360.0);
@@ -38,8 +39,8 @@ double wrapped(double degrees)
   return turned > 360.0 - GridTolerance ? 0.0 : turned;
 }
 
-/// Where the columns of a sector start: behind the widest gap, if that is not the one across north
-/// already.
+/// Index of the first column of a sector: the column behind the widest gap, or column 0 if no gap
+/// is clearly wider than the others.
 std::size_t firstColumn(const std::vector<double>& azimuths)
 {
   std::vector<double> gaps(azimuths.size()); // gap before each column

@@ -12,7 +12,7 @@ namespace avianlidar
 {
 namespace
 {
-/// From the sensor's frame to the scene's. Each matrix is given by its columns.
+/// Rotation from the sensor's frame to the scene's frame. Each matrix is given by its columns.
 glm::dmat3 orientation(double yawDegrees, double pitchDegrees, double rollDegrees)
 {
   const auto [sy, cy] = sinCosDegrees(yawDegrees);
@@ -31,7 +31,7 @@ Vec3 directionOf(double azimuthDegrees, double elevationDegrees)
   return { ce * sa, ce * ca, se };
 }
 
-/// An angle turned into [0, 360).
+/// An angle turned into [0, 360), deg.
 double wrapDegrees(double degrees)
 {
   double wrapped = std::fmod(degrees, 360.0);
@@ -61,10 +61,10 @@ double columnCount(const ScanPattern& pattern)
   {
     const double columns =
       1.0 / (pattern.rotationRate * (numberOfChannels(pattern) * pattern.firingInterval));
-    return std::floor(columns * (1.0 + 1e-12) + 1e-9); // in spite of rounding
+    return std::floor(columns * (1.0 + 1e-12) + 1e-9); // the margins cover rounding
   }
   const double steps = (pattern.azimuthEnd - pattern.azimuthStart) / pattern.azimuthStep;
-  return std::max(1.0, std::ceil(steps - 1e-9)); // the start is in, however short the range
+  return std::max(1.0, std::ceil(steps - 1e-9)); // the start is included, however short the range
 }
 
 /// Time that a column lasts, s.
@@ -74,7 +74,7 @@ double columnLength(const ScanPattern& pattern)
                                : numberOfChannels(pattern) * pattern.firingInterval;
 }
 
-/// Error of a sector of azimuths, deg; empty if it is good.
+/// Error of a sector of azimuths, deg; empty if the sector is valid.
 std::string checkSector(const std::string& name, double from, double to)
 {
   return firstError({ rangeError("the start of " + name, from, -360.0, 360.0,
@@ -89,7 +89,7 @@ std::string checkElevations(const ScanPattern& pattern)
   const int channels = numberOfChannels(pattern);
   if (pattern.elevations.empty())
   {
-    // They grow, so the last one speaks for all of them.
+    // The elevations increase, so that the checks of the first and the last elevation suffice.
     return firstError({
       rangeError("NumberOfChannels", channels, 1.0, LargestFinite, "at least 1"),
       rangeError("MinimumElevation", pattern.minimumElevation, -90.0, LargestFinite, expected),
@@ -148,7 +148,7 @@ std::string checkTables(const ScanPattern& pattern)
   return error;
 }
 
-/// Error of the prisms of a pattern whose tables are good; empty if they are good, too.
+/// Error of the prisms of a pattern with valid tables; empty if the prisms are valid.
 std::string checkTrain(const ScanPattern& pattern)
 {
   const PrismTrain& train = pattern.prisms;
@@ -376,7 +376,7 @@ ScanBeam ScanGenerator::beam(std::int64_t index) const
   }
   else
   {
-    // No detour through the arctangent: the angles come out as they were put in.
+    // The arctangent is not used here, so that the angles equal the input angles.
     beam.azimuth = wrapDegrees(azimuth + pattern.yaw);
     beam.elevation = channelElevation(pattern, beam.channel);
     beam.direction = directionOf(azimuth + pattern.yaw, beam.elevation);

@@ -21,8 +21,8 @@ namespace
 {
 namespace bm = boost::math;
 
-/// No promotion to long double (the same bits where that type differs), and no exceptions: overflow
-/// is infinity.
+/// Policy without promotion to long double, so that systems with another long double give the same
+/// bits. Without exceptions, overflow is infinity.
 using DoublePolicy = bm::policies::policy<bm::policies::promote_double<false>,
   bm::policies::domain_error<bm::policies::ignore_error>,
   bm::policies::pole_error<bm::policies::ignore_error>,
@@ -30,16 +30,16 @@ using DoublePolicy = bm::policies::policy<bm::policies::promote_double<false>,
   bm::policies::underflow_error<bm::policies::ignore_error>,
   bm::policies::evaluation_error<bm::policies::ignore_error>>;
 
-/// From here on the uniform expansion is exact to round-off; Boost's fractions take ever more
-/// terms.
+/// Parameter above which the uniform expansion is exact to round-off. Boost's fractions take ever
+/// more terms there.
 constexpr double LargeParameter = 1e5;
 
-/// The probability that any unit exceeds the reported bound, and the units that a scan can have.
+/// Probability that any unit exceeds the reported bound, and largest number of units of a scan.
 constexpr double BoundProbability = 1e-30;
 constexpr double BoundUnits = 1e15;
 
-/// Share of the units without a false alarm that have no rare deviate; theirs are below
-/// CommonDeviate: P(z < 3) = 0.99865, among all units.
+/// Share of units with a common deviate, below CommonDeviate, among the units without a false
+/// alarm. Among all units, P(z < 3) = 0.99865.
 constexpr double CommonShare = 0.9986;
 
 /// P(a, x), or Q(a, x) with `isTail`, by Temme's uniform expansion (DLMF 8.12.3-8.12.10), a >= 1e5:
@@ -91,18 +91,18 @@ double smallestCount(double mean, const Predicate& good)
   return high;
 }
 
-/// A standard normal deviate. @param below @param above its tails, which sum to 1: the smaller has
-/// the digits
+/// A standard normal deviate. @param below, above tails of the deviate, which sum to 1: the smaller
+/// tail has the digits
 double deviate(double below, double above)
 {
   return above < 0.5 ? Root2 * bm::erfc_inv(2.0 * above, DoublePolicy())
                      : -Root2 * bm::erfc_inv(2.0 * below, DoublePolicy());
 }
 
-/// The most photons whose energy is not above the limit.
+/// Largest number of photons whose energy is not above the limit.
 double countWithin(double limit, double photon)
 {
-  // The product decides, as it does when noise meets the limit.
+  // The product decides, as in the comparison of noise with the limit.
   const double count = std::floor(limit / photon);
   return (count + 1.0) * photon <= limit ? count + 1.0
     : count * photon <= limit            ? count
@@ -175,7 +175,7 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
   }
   else if (plan.meanPhotons > MaximumMeanPhotons)
   {
-    plan.active = true; // an error: see checkNoise()
+    plan.active = true; // checkNoise() reports the error
   }
   else if (plan.meanPhotons > 0.0)
   {
@@ -198,7 +198,7 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams)
   const char* const cause =
     plan.gaussian ? "the noise of the photon receiver" : "noise_photon_rate";
   const double perScan = plan.falseAlarmsPerBeam * static_cast<double>(beams);
-  // A photon receiver's limit follows from the false alarms asked for, and is rounded.
+  // A photon receiver's limit follows from the requested false alarms, and is rounded.
   constexpr double rounding = 1.0 + 1e-9;
   if (plan.meanPhotons > MaximumMeanPhotons)
   {
@@ -231,21 +231,22 @@ void BeamNoise::begin(
   {
     return;
   }
-  // ln(1 - p) from the smaller of the two.
+  // ln(1 - p) from the smaller of the two probabilities.
   const double logQuiet = plan.alarmProbability > 0.5 ? std::log(plan.quietProbability)
                                                       : std::log1p(-plan.alarmProbability);
   this->forEachInGaps(logQuiet, plan.firstUnit, plan.gateUnits, RandomPurpose::FalseAlarms,
     [&](std::int64_t unit) { this->Alarms.push_back(unit); });
 }
 
-/// Uniform numbers of a unit, or of another number.
+/// Uniform random numbers that belong to a unit or to another index.
 std::array<double, 2> BeamNoise::draw(std::int64_t unit, RandomPurpose purpose) const
 {
   return uniformPair(
     this->Seed, this->Beam, static_cast<std::uint64_t>(unit), purpose, this->Revolution);
 }
 
-/// f(unit) for units drawn independently: those between two are geometric, floor(ln u/ln(1 - p)).
+/// Calls f(unit) for units drawn independently. The number of units between two of them is
+/// geometric, floor(ln u/ln(1 - p)).
 template <class F>
 void BeamNoise::forEachInGaps(
   double logOthers, std::int64_t begin, std::int64_t end, RandomPurpose purpose, F f) const
@@ -277,7 +278,7 @@ bool BeamNoise::isRare(std::int64_t unit)
   return this->Rare.test(static_cast<std::size_t>(unit - begin)) && !this->isAlarm(unit);
 }
 
-/// Photons of a unit. @param u uniform in (0, 1) @param alarm they exceed Qlow alone
+/// Photons of a unit. @param u uniform in (0, 1) @param alarm true if the photons alone exceed Qlow
 double BeamNoise::photons(double u, bool alarm) const
 {
   const NoisePlan& plan = this->Plan;
@@ -300,7 +301,7 @@ double BeamNoise::rangeDeviate(std::int64_t unit) const
 
 double BeamNoise::place(std::int64_t unit) const
 {
-  // The first number of the pair is that of energy().
+  // energy() uses the first number of the pair.
   return this->draw(unit, RandomPurpose::Noise)[1];
 }
 

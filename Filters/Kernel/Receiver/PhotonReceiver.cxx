@@ -15,7 +15,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Times as many false alarms as were asked for: more are warned of.
+/// Ratio of false alarms to requested false alarms above which a warning is given.
 constexpr double MostFalseAlarmsUnsaid = 10.0;
 
 std::string checkDynamicRange(double dynamicRange)
@@ -91,7 +91,7 @@ double falseAlarmsOfElectrons(const Sensor& sensor)
   const double skewness =
     receiver.excess / deviation * receiver.excess / deviation * receiver.background / deviation;
   const double shape = 4.0 / (skewness * skewness);
-  constexpr double gaussian = 1e12; // shapes above differ from it by less than 1e-4
+  constexpr double gaussian = 1e12; // shape from which the ratio differs from 1 by less than 1e-4
   return shape < gaussian
     ? gammaTail(shape, shape + k * std::sqrt(shape)) / (0.5 * std::erfc(k / Root2))
     : 1.0;

@@ -12,7 +12,7 @@ RangeErrors::RangeErrors(const Sensor& sensor, bool noise)
 {
   if (sensor.receiverModel != ReceiverModel::Photons)
   {
-    this->Instrument.rangeNoise = 0.0; // no ratio of signal to noise is known
+    this->Instrument.rangeNoise = 0.0; // the ratio of signal to noise is unknown
   }
   this->Noise = noise && (this->Instrument.rangeNoise > 0.0 || sensor.rangeNoiseFloor > 0.0);
 }
@@ -47,7 +47,8 @@ double RangeErrors::measured(double range, double energy, double normal) const
   {
     range += this->deviation(energy) * normal;
   }
-  // Nothing is recorded before or beyond the gate; what lay at either would pile up there.
+  // Nothing is recorded outside the gate. Ranges outside are mirrored at its ends, so that they do
+  // not pile up there.
   const double begin = sensor.minimumRange;
   range = begin + std::abs(range - begin);
   range = range > sensor.rangeGate ? std::max(begin, 2.0 * sensor.rangeGate - range) : range;

@@ -13,23 +13,25 @@ namespace avianlidar
 {
 namespace
 {
-/// Units of the table.
+/// Number of units of the table.
 constexpr double TableUnits = 16384.0;
 
 /// Number of requests for shares after which the contributions of a beam are sorted by their first
-/// units, so that a request costs what it returns. Without that, a scan of ground in ReturnMode
+/// units, so that a request costs what it returns. Without sorting, a scan of ground in ReturnMode
 /// RangeUnits, where a beam reaches hundreds of units, takes twenty times as long.
 constexpr int RequestsBeforeSorting = 8;
 
-/// First and last unit that pulses with energy meet; the last is below the first if there are none.
+/// First and last unit that pulses with energy meet. The last is below the first if no pulse has
+/// energy.
 struct PulseExtent
 {
   double lowest;
   double highest;
 };
 
-/// Place `count` pulses by the lengths of their paths. @param unitPathLength m @param relativeWidth
-/// of a pulse, in units @param heads gets the share of each in its first unit
+/// Place `count` pulses by the lengths of their paths. @param unitPathLength length of path of a
+/// unit, m @param relativeWidth width of a pulse, units @param heads gets the share of each pulse
+/// in its first unit
 AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const double* energies,
   double unitPathLength, double relativeWidth, double* begins, double* widths, double* firsts,
   double* lasts, double* heads, std::size_t count)
@@ -42,7 +44,7 @@ AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const dou
     const double delay = lengths[c] / unitPathLength;
     const double begin = delay - 0.5 * relativeWidth;
     const double end = delay + 0.5 * relativeWidth;
-    // The width after rounding, so that the shares still add up to 1.
+    // The width is taken after rounding, so that the shares still add up to 1.
     const double width = end - begin;
     const bool wide = width > 0.0;
     const double first = std::floor(wide ? begin : delay);
@@ -156,7 +158,7 @@ void RangeUnitAccumulator::accumulate()
   this->EnergyBeyondGate = 0.0;
   this->Requests = 0;
   const std::size_t count = this->Lengths.size();
-  // Portions are free until shares are requested.
+  // Portions are not used until shares are requested.
   for (std::vector<double>* v :
     { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts, &this->Portions })
   {
@@ -213,7 +215,7 @@ double RangeUnitAccumulator::addWindow(double from, double to)
     {
       const double after = !(unit < last) ? 1.0
         : unit > first                    ? shareUpTo(unit + 1.0)
-                                          : this->Portions[c]; // of the first unit
+                                          : this->Portions[c]; // portion of the first unit
       const bool hasShare = after > before;
       this->Table[place].energy += hasShare ? this->Energies[c] * (after - before) : 0.0;
       this->Table[place].paths += hasShare;

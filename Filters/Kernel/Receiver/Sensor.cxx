@@ -63,7 +63,7 @@ const std::vector<SensorField>& sensorFields()
     { "range_walk", "m", &Sensor::rangeWalk, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
   };
-  constexpr std::size_t others = 5; // profile, outline, receiver model, threshold law, what is up
+  constexpr std::size_t others = 5; // profile, outline, receiver model, threshold law, up axis
   static_assert(memberCount<Sensor>() == 29 + others, "is the new member a row of the table?");
   return all;
 }

@@ -183,9 +183,9 @@ bool BeamEchoes::receiveAgain(
 }
 
 /// Make echoes of the returns. @param echoOf gives the part of an echo that follows from light
-/// @param outsideGate see BeamLighting::isOutsideGate(): it follows from direct echoes alone, as
-/// the cache may change which paths over two reflections are traced @param meets true if the beam
-/// meets a surface
+/// @param outsideGate see BeamLighting::isOutsideGate(). The value follows from direct echoes
+/// alone, as the cache may change which paths over two reflections are traced. @param meets true if
+/// the beam meets a surface
 template <class F>
 void BeamEchoes::finish(
   F echoOf, bool outsideGate, bool meets, std::vector<Echo>& echoes, BeamReport& report)
@@ -255,7 +255,7 @@ void BeamEchoes::addLeaves(const Return& ret, Echo& echo) const
   }
 }
 
-/// The known values of a return; null if there are none.
+/// The known values of a return; null if there are no known values.
 const LitBeam::KnownReturn* BeamEchoes::find(const LitBeam& known, const Return& ret) const
 {
   const LitBeam::KnownReturn wanted = this->unitsOf(ret);

@@ -70,8 +70,8 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   return true;
 }
 
-/// Set the samples of the beam (rays, nodes or strips) and the surfaces that it sees. @return false
-/// if a bound shows that nothing of it can be perceived
+/// Set the samples of the beam (rays, nodes or strips) and the surfaces that the beam sees. @return
+/// false if a bound shows that nothing of the beam can be perceived
 bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
 {
   this->Starts = this->Lit = trace.hits.get();
@@ -87,7 +87,7 @@ bool BeamLighting::placeSamples(std::size_t beam, BeamTrace& trace)
   return !trace.polygons() || this->placeNodes(beam);
 }
 
-/// Set the nodes of an integrated beam. @return as placeSamples()
+/// Set the nodes of an integrated beam. @return see placeSamples()
 bool BeamLighting::placeNodes(std::size_t beam)
 {
   this->Starts = this->Lit = nullptr;
@@ -143,8 +143,8 @@ void BeamLighting::fillUnits()
   this->Units.accumulate();
 }
 
-/// Add paths over two reflections, unless none in the scan can matter. @param most bound of their
-/// energy, J @return false if nothing of the beam can be perceived
+/// Add paths over two reflections, unless no such path in the scan can matter. @param most bound of
+/// their energy, J @return false if nothing of the beam can be perceived
 bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
   const double lostBefore = this->Lost;
@@ -223,7 +223,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 
 /// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J
 /// @param ofPaths bound of the energy of all paths over two reflections, J @return false if bounds
-/// show that nothing of the beam can be perceived; energies may not be set then
+/// show that nothing of the beam can be perceived. In that case energies may not be set.
 bool BeamLighting::mayBePerceived(double most, double ofPaths)
 {
   const BeamSamples& samples = *this->Lit;
@@ -256,8 +256,9 @@ bool BeamLighting::mayBeLeftOut(double farthest, double nearest) const
     this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
 }
 
-/// True if nothing of the beam can be perceived; its report then says so. @param most bound of the
-/// strongest range unit, J @param farthest, nearest ranges of its surfaces, m
+/// True if nothing of the beam can be perceived. In that case Skipped and Lost are set for the
+/// report. @param most bound of the strongest range unit, J @param farthest, nearest ranges of the
+/// beam's surfaces, m
 bool BeamLighting::isSkipped(double most, double farthest, double nearest)
 {
   if (!(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||

@@ -18,7 +18,7 @@ constexpr int SidesOfDisc = 64;
 
 using SurfaceSums = std::map<std::uint32_t, SeenSurface>;
 
-/// The sums of a triangle, begun if it is new.
+/// The sums of a triangle, begun if the triangle is new.
 SeenSurface& surfaceOf(const ScanSetup& setup, std::uint32_t triangle, SurfaceSums& sums)
 {
   const auto [place, isNew] = sums.try_emplace(triangle);
@@ -32,8 +32,8 @@ SeenSurface& surfaceOf(const ScanSetup& setup, std::uint32_t triangle, SurfaceSu
   return surface;
 }
 
-/// Corners of a triangle or, if the next or the previous triangle belongs to the same surface and
-/// is not in `sums` itself, of their quadrilateral.
+/// Corners of a triangle, or of its quadrilateral if the next or the previous triangle belongs to
+/// the same surface and is not in `sums` itself.
 std::vector<Vec3> cornersOf(const ScanSetup& setup, const SceneTriangles& scene,
   std::uint32_t triangle, const SurfaceSums& sums)
 {
@@ -186,7 +186,7 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
   }
   for (auto& [triangle, surface] : sums)
   {
-    surface.share /= std::max(1.0, all); // they exceed 1 by rounding alone
+    surface.share /= std::max(1.0, all); // shares exceed 1 by rounding alone
     if (surface.weight > 0.0)
     {
       surface.range /= surface.weight;
@@ -229,13 +229,13 @@ std::vector<Vec3> partWithin(
   {
     part.push_back(corner - frame.origin);
   }
-  // The planes of the outline cut off one after the other what lies outside (Sutherland, Hodgman).
+  // Each plane of the outline in turn cuts off the part outside (Sutherland and Hodgman).
   for (std::size_t k = 0; k < outline.size() && !part.empty(); ++k)
   {
     const Vec3 inward = glm::cross(outline[k], outline[(k + 1) % outline.size()]);
     cut(glm::dot(inward, frame.axis) < 0.0 ? -inward : inward, 0.0, part);
   }
-  // A margin of 1e-6 keeps surfaces that stand square to the beam in spite of rounding.
+  // Because of rounding, a margin of 1e-6 keeps surfaces that are square to the beam.
   cut(frame.axis, frame.cosHalf * surface.nearest * (1.0 - 1e-6), part);
   cut(-frame.axis, -surface.farthest * (1.0 + 1e-6), part);
   return part.size() < 3 ? std::vector<Vec3>() : part;

@@ -60,9 +60,9 @@ double EnergyErrors::ofSamples(const RangeShares& shares, std::uint32_t paths) c
   return ofPaths + this->Lighting.quadrature().boundOf(shares, this->Lighting.energies());
 }
 
-/// Standard error of the energy that mirror paths by regions put into a unit, J. Two neighbouring
-/// samples are a stratum; one of them may not arrive. Many regions have one stratum alone, whose
-/// difference says little, so twice its square is taken.
+/// Standard error of the energy that mirror paths by regions put into a unit, J. A stratum is two
+/// neighbouring samples, one of which may not arrive. Many regions have a single stratum. As the
+/// difference within a single stratum is unreliable, twice its square is taken.
 double EnergyErrors::ofMirrors(const RangeShares& shares) const
 {
   const std::size_t direct = this->Lighting.samples()->size();
@@ -104,8 +104,8 @@ double EnergyErrors::ofMirrors(const RangeShares& shares) const
 }
 
 /// Standard error of the energy that rays put into a unit, J: on paths over two reflections and, if
-/// the rays are the samples, as direct echoes. @param filled true if every ray put energy here and
-/// one plane fills the beam, so that no ray puts less
+/// the rays are the samples, as direct echoes. @param filled true if every ray put energy into the
+/// unit and one plane fills the beam, so that no ray puts less
 double EnergyErrors::ofRays(const RangeShares& shares, bool filled) const
 {
   const std::size_t direct = this->Lighting.samples()->size();

@@ -10,9 +10,9 @@ namespace avianlidar
 {
 bool updateKey(LightKey& key, const ScanSetup& setup)
 {
-  // The key leaves out what cannot differ: a lit beam belongs to a trace, and so to a tree
-  // (traceKey()); the largest gain and the noise plan act through the needs; beams that movers
-  // touch are not kept; revolutions differ in noise alone, which is not kept either.
+  // The key leaves out values that cannot differ. A lit beam belongs to a trace, and thus to a tree
+  // (traceKey()). The largest gain and the noise plan act through the needs. Beams that movers
+  // touch are not kept. Revolutions differ in noise alone, and noise is not kept.
   static_assert(memberCount<ScanSetup>() == 14 && memberCount<ModelNeeds>() == 7,
     "does a lit beam depend on the new member?");
   const Sensor& sensor = setup.sensor;
@@ -30,7 +30,7 @@ bool updateKey(LightKey& key, const ScanSetup& setup)
   {
     numbers.push_back(setting.get(setup.settings));
   }
-  for (const PlacedMedium& one : setup.media) // surfaces shadow its light
+  for (const PlacedMedium& one : setup.media) // surfaces shadow the light of a medium
   {
     numbers.push_back(one.medium.extinction);
     numbers.push_back(one.medium.backscatterRatio);

@@ -12,7 +12,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Beams for which movers are found first: some columns of the scan.
+/// Number of beams, some columns of the scan, for which movers are found together at first.
 constexpr std::size_t BeamsTogether = 512;
 
 /// Margin for the rounding of distances (relative) and angles (rad).
@@ -41,7 +41,7 @@ struct BlockCone
   double apart = 0.0; ///< distance of the farthest origin from `apex`, m
   Vec3 axis{ 0.0 };
   double angle = Pi; ///< largest angle between axis and a ray, rad
-  double begin = std::numeric_limits<double>::infinity(); ///< s
+  double begin = std::numeric_limits<double>::infinity(); ///< time of the first firing, s
   double end = -std::numeric_limits<double>::infinity();
 
   BlockCone(const ScanBeams& beams, std::size_t first, std::size_t last, double halfBeamwidth)
@@ -101,7 +101,7 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampl
   std::iota(this->All.begin(), this->All.end(), 0u);
   if (sights)
   {
-    this->Simulator.lightAll(); // the mover report includes what is not perceived
+    this->Simulator.lightAll(); // the mover report includes light that is not perceived
   }
 }
 
@@ -158,7 +158,7 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
   }
 }
 
-/// Add the energies of the samples of the beam lit last that lie on triangles [begin, end).
+/// Add the energies of the samples on triangles [begin, end) for the beam lit last.
 void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLighting& lighting)
 {
   const std::vector<double>& energies = lighting.energies();

@@ -12,7 +12,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Drops are drawn where their variance exceeds this share of the variance of a unit's noise.
+/// Drops are drawn where their variance exceeds this share of the variance of the unit's noise.
 constexpr double DropsCount = 0.01;
 
 /// Variance of the light that a medium returns in a unit, by the number and size of its drops, J^2.
@@ -53,7 +53,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
 }
 
 /// Find up to which unit the air alone may be perceived, or its drops matter. A background brighter
-/// than the sensor's raises the limit, so these units suffice.
+/// than the sensor's background raises the limit, so these units suffice.
 void BeamReceiver::planAir()
 {
   std::int64_t looked = 0;
@@ -76,7 +76,7 @@ void BeamReceiver::planAir()
   this->Air->beginOutside();
 }
 
-/// Lower limit of a unit, J. @param air mean energy that the air returns there, J
+/// Lower limit of a unit, J. @param air mean energy that the air returns in the unit, J
 double BeamReceiver::lowerIn(double air) const
 {
   return this->FollowsAir
@@ -272,7 +272,7 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
 
 double BeamReceiver::noiseOf(std::int64_t unit, double light)
 {
-  constexpr std::uint64_t interval = 512; // with 1e5 photons each they take 0.1 s
+  constexpr std::uint64_t interval = 512; // number of units, which take 0.1 s with 1e5 photons each
   if (++this->Drawn % interval == 0 && this->Wanted && !this->Wanted())
   {
     throw WorkStopped();
@@ -297,8 +297,8 @@ double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulato
   {
     return run.range;
   }
-  // Lengths are taken from the beginning of the first unit, which is near and below all of them. So
-  // the sums carry no round-off of the range, nor of a unit that is as long as the scene.
+  // Lengths are taken from the beginning of the first unit, which is near and below all lengths.
+  // The sums then have no round-off of the range, nor of a unit that is as long as the scene.
   const RangeShares shares =
     accumulator.sharesOf(this->Units[run.firstUnit].index, this->Units[run.lastUnit - 1].index + 1);
   const double reference =
@@ -316,7 +316,7 @@ double BeamReceiver::measured(const Return& run, double range) const
     return range;
   }
   const ReceivedUnit& unit = this->Units[run.strongestUnit];
-  // Where the air raises the limit, an echo has the errors of a weaker one in clear air.
+  // Where the air raises the limit, an echo has the errors of a weaker echo in clear air.
   const double share = unit.lower > this->Lower ? this->Lower / unit.lower : 1.0;
   return this->Errors.measured(range, run.energyReceived * share,
     this->Errors.hasNoise() ? this->Noise.rangeDeviate(unit.index) : 0.0);

@@ -8,7 +8,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Rays with hits between two checks for an abort. They take milliseconds.
+/// Number of rays with hits between two checks for an abort. These rays take milliseconds.
 constexpr std::size_t RaysBetweenChecks = 1600;
 
 /// Cost of one beam integrated over polygons, measured in rays.
@@ -16,7 +16,7 @@ constexpr std::size_t CostOfPolygonsInRays = 100;
 /// Rays of a beam's cells that cost as much as one traced ray.
 constexpr double CellRaysPerTracedRay = 32.0;
 
-/// Samplers of more rays per beam are not kept between runs.
+/// Largest number of rays per beam of a sampler that is kept between runs.
 constexpr int MostRaysOfKeptSampler = 10000;
 
 /// Results of one block of beams.
@@ -66,7 +66,7 @@ public:
 
   void beamDone() { ++this->Done; }
 
-  /// Report the progress, which never falls, on the calling thread. @return false to stop
+  /// Report the progress, which never decreases, on the calling thread. @return false to stop
   bool report(double fraction)
   {
     this->Last = std::max(this->Last, fraction);
@@ -148,7 +148,7 @@ public:
     }
     if (this->Setup.settings.raysPerBeam > MostRaysOfKeptSampler)
     {
-      this->Cache.samplers.clear(); // they are large, and fast to make again
+      this->Cache.samplers.clear(); // samplers are large, and fast to make again
     }
     if (finished)
     {
@@ -265,7 +265,7 @@ private:
   const std::size_t Maximum; ///< most memory for kept beams, bytes
   ScanResult& Result;
   const bool Sights;
-  const std::size_t Size;              ///< beams of a block
+  const std::size_t Size;              ///< number of beams of a block
   const std::size_t CostOfCellsInRays; ///< cost of a beam in cells, in rays
   ScanProgress Progress;
   std::vector<Block> Blocks;

@@ -49,7 +49,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   {
     if (this->needsPathStarts(traces[beam]) && this->Block.triangles(beam).empty())
     {
-      traces[beam].hits = std::make_unique<BeamSamples>(); // none of its rays hits anything
+      traces[beam].hits = std::make_unique<BeamSamples>(); // no ray of the beam hits anything
       traces[beam].hits->rays = tracedRaysOf(this->Setup.settings);
     }
   }

@@ -145,7 +145,7 @@ std::uint64_t checksumOf(const ScanBeams& beams)
 
 std::uint64_t traceKey(const ScanSetup& setup)
 {
-  // Other members are energies, times and limits, or decide what is traced on from hits.
+  // Other members are energies, times and limits, or affect only paths that start at hits.
   static_assert(memberCount<Sensor>() == 34,
     "do a beam's rays depend on the new member? Then it belongs to the key");
   const Sensor& sensor = setup.sensor;

@@ -38,7 +38,8 @@ BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
   return cells ? BeamView(std::move(cells)) : BeamView(RayView{});
 }
 
-/// Cells of a beam that too many triangles enter for lists. @return null: too many strips
+/// Cells of a beam that meets too many triangles for lists. @return null if there are too many
+/// strips
 std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   std::uint64_t beam, const BeamFrame& frame, TraceCounters& cost)
 {
@@ -59,8 +60,8 @@ std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   return cells;
 }
 
-/// True if the border of a medium may lie in a beam, which then cannot be integrated: samples of
-/// polygons do not say in which part of the beam they lie. A moving medium may be anywhere.
+/// True if the border of a medium may lie in a beam. Such a beam cannot be integrated, because
+/// samples of polygons have no place in the beam. A moving medium may be anywhere.
 bool ViewFinder::meetsBorders(const BeamFrame& frame) const
 {
   const std::vector<PlacedMedium>& media = this->Setup.media;

@@ -19,7 +19,7 @@ Triangle turnedOver(const Triangle& t)
   return { t[0], t[2], t[1] };
 }
 
-/// Disjoint sets, with the turn of each member against the first of its set.
+/// Disjoint sets, with the turn of each member against the first member of its set.
 class JoinedSets
 {
 public:
@@ -42,8 +42,8 @@ public:
     }
     return { i, turned };
   }
-  /// Join the sets of two members. @param turned true if one is turned against the other
-  /// @return false if they are already joined with the other turn
+  /// Join the sets of two members. @param turned true if one member is turned against the other
+  /// @return false if the members are already joined with the other turn
   bool join(std::uint32_t a, std::uint32_t b, bool turned)
   {
     const auto [one, oneTurned] = this->find(a);
@@ -60,14 +60,14 @@ public:
 
 private:
   std::vector<std::uint32_t> Parent;
-  std::vector<bool> Turned; ///< against the parent; false for the first of a set
+  std::vector<bool> Turned; ///< turn against the parent; false for the first member of a set
 };
 
 /// Side of a triangle, from the lower to the higher of its two merged points.
 struct Side
 {
   std::uint32_t low, high, triangle;
-  bool forth;                                    ///< the triangle runs from low to high
+  bool forth;                                    ///< true if the triangle runs from low to high
   std::pair<std::uint32_t, std::uint32_t> given; ///< the points as given, lower first
   std::uint32_t apex;
 };
@@ -96,7 +96,7 @@ std::vector<Side> sidesOf(
   return sides;
 }
 
-/// Pair sides by their angle about the edge, and coincident triangles only if unavoidable.
+/// Pair sides by their angle about the edge. Pair coincident triangles only if unavoidable.
 void pairByAngle(const std::vector<Vec3>& points, std::vector<Side>& sides)
 {
   const Vec3 from = points[sides[0].low];
@@ -131,7 +131,7 @@ void pairByAngle(const std::vector<Vec3>& points, std::vector<Side>& sides)
   sides = std::move(ordered);
 }
 
-/// Order the sides of one edge so that each two in turn belong to one shell.
+/// Order the sides of one edge in pairs, so that the two sides of each pair belong to one shell.
 void pairSides(const std::vector<Vec3>& points, std::vector<Side>& sides)
 {
   if (sides.size() == 2)
@@ -187,7 +187,7 @@ double windingOf(
 
 struct Shell
 {
-  std::vector<Triangle> triangles; ///< facing outward
+  std::vector<Triangle> triangles; ///< triangles facing outward
   Vec3 low{ Infinity };
   Vec3 high{ -Infinity };
   double volume = 0.0; ///< volume, m3
@@ -201,7 +201,8 @@ struct Shell
   }
 };
 
-/// True if no part of a shell lies outside another one, and most of it is not in its faces.
+/// True if no part of a shell lies outside another shell, and most of the first shell is not in the
+/// faces of the second shell.
 bool isInside(const std::vector<Vec3>& points, const Shell& one, const Shell& other)
 {
   if (glm::any(glm::lessThan(one.low, other.low)) ||

@@ -52,7 +52,7 @@ std::string checkFlap(const Flap& flap, std::size_t number)
     : which + valueError("length of flap_axis", length, "1");
 }
 
-/// Bound for every position of the parts: a point of a part stays on a sphere about its hinge.
+/// Bound for every position of the parts: a point of a part remains on a sphere about its hinge.
 MoverSphere boundOf(const Mover& mover)
 {
   Vec3 lower(std::numeric_limits<double>::infinity());
@@ -105,7 +105,7 @@ std::uint64_t hashOfMover(const Mover& mover)
 
 Vec3 between(const Vec3& a, const Vec3& b, double share)
 {
-  return a + share * (b - a); // a, bit for bit, if both are equal
+  return a + share * (b - a); // a, bit for bit, if a and b are equal
 }
 
 /// The first pose after a time.

@@ -78,7 +78,8 @@ ReflectionGeometry reflectionGeometry(
   ReflectionGeometry g;
   g.cosIncidence = -glm::dot(incident, normal);
   g.cosOutgoing = glm::dot(outgoing, normal);
-  // Cross products: 1 - cos^2 loses half the digits of small angles, and kp multiplies the error.
+  // Cross products are used because 1 - cos^2 loses half the digits of small angles, and kp
+  // multiplies the error.
   const Vec3 mirror = mirrorDirection(incident, normal);
   const Vec3 off = glm::cross(mirror, outgoing);
   g.cosLobe = glm::dot(mirror, outgoing);
@@ -93,7 +94,7 @@ ReflectionGeometry reflectionGeometry(
   }
   else
   {
-    // Straight through, any half vector will do, and the difference angle is 90 degrees.
+    // Straight through, any half vector is valid, and the difference angle is 90 degrees.
     g.sin2Half = 0.0;
     g.cosDifference = 0.0;
   }
@@ -135,7 +136,7 @@ double apertureGain(const Material& material)
 
 double lobeWidth2(const Material& material)
 {
-  // cos^kp(2 b) is about exp(-2 kp b^2); a^2 of Microfacet is 1/(2 kp + 1).
+  // cos^kp(2 b) is about exp(-2 kp b^2). a^2 of Microfacet is 1/(2 kp + 1).
   return material.ks > 0.0 ? 1.0 / (2.0 * material.kp + 1.0) : 0.0;
 }
 }

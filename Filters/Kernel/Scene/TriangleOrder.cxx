@@ -13,7 +13,7 @@ namespace
 {
 constexpr double Steps = 2097152.0; // 2^21
 
-/// The lowest 21 bits, two zeros before each.
+/// The lowest 21 bits, with two zeros before each bit.
 std::uint64_t spread(std::uint64_t bits)
 {
   bits = (bits | bits << 32) & 0x1f00000000ffff;
@@ -23,7 +23,8 @@ std::uint64_t spread(std::uint64_t bits)
   return (bits | bits << 2) & 0x1249249249249249;
 }
 
-/// The middle of the longest side. Both halves of a quadrilateral have it on their diagonal.
+/// The middle of the longest side. Both halves of a quadrilateral have this point on their
+/// diagonal.
 Vec3 middleOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
   Vec3 middle(0.0);
@@ -105,7 +106,7 @@ private:
   const TriangleMesh& Mesh;
   const std::vector<int>&Objects, &Materials;
   std::vector<Vec3> Middles;
-  std::vector<std::uint64_t> Places; ///< on the curve
+  std::vector<std::uint64_t> Places; ///< places on the curve
 };
 }
 

@@ -19,7 +19,8 @@ constexpr double Gliding = 5.0 * Pi / 180.0;
 constexpr double Attack = 6.0 * Pi / 180.0;
 constexpr double Thickness = 0.001;
 
-// Sides around the body's axis and steps along it: few, so that a beam on a bird is integrated.
+// Sides around the body's axis and steps along the axis. There are few of them, so that a beam on a
+// bird is integrated.
 constexpr std::uint32_t Around = 8;
 constexpr std::uint32_t Along = 4;
 
@@ -56,7 +57,8 @@ TriangleMesh roundBody(double radius, double half)
 }
 
 /// The effective area of a convex body with a centre is half a quadratic form of the direction: the
-/// integral of n n^T over its surface. These are its values along the axis and across it.
+/// integral of n n^T over its surface. The members are values of the form along the axis and across
+/// it.
 struct Shown
 {
   double along;
@@ -78,7 +80,7 @@ Shown shownBy(const TriangleMesh& mesh)
 }
 
 /// The values for an ellipsoid of revolution, by the midpoint rule. @param b radius
-/// @param a half its length
+/// @param a half the ellipsoid's length
 Shown shownByEllipsoid(double b, double a)
 {
   constexpr int steps = 2000;
@@ -107,7 +109,8 @@ TriangleMesh body(const BirdShape& shape)
   double half = a;
   for (int step = 0; step < 40; ++step)
   {
-    // The value along the axis grows with the squared radius, across it with radius times length.
+    // The value along the axis grows with the squared radius. The value across the axis grows with
+    // radius times length.
     const Shown now = shownBy(roundBody(radius, half));
     const double wider = std::sqrt(wanted.along / now.along);
     half *= wanted.across / now.across / wider;
@@ -131,7 +134,7 @@ TriangleMesh wing(const BirdShape& shape, double side, double angle)
       side * (0.5 * shape.bodyDiameter + along * std::cos(angle) - z * std::sin(angle)), y,
       along * std::sin(angle) + z * std::cos(angle));
   }
-  // Corners of the six sides of a box; bits 1, 2, 4 of a corner's number are its x, y, z.
+  // Corners of the six sides of a box. Bits 1, 2 and 4 of a corner's number are its x, y and z.
   const std::array<std::array<std::uint32_t, 4>, 6> sides = { { { 0, 4, 6, 2 }, { 1, 3, 7, 5 },
     { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } } };
   for (const auto& s : sides)
@@ -209,7 +212,7 @@ double wingAngle(double phase, bool gliding)
 double wingbeatFrequency(const BirdSpecies& s)
 {
   constexpr double gravity = 9.81;
-  constexpr double air = 1.225; // kg/m^3, at sea level
+  constexpr double air = 1.225; // density of air at sea level, kg/m^3
   return std::pow(s.mass, 3.0 / 8.0) * std::sqrt(gravity) * std::pow(s.span, -23.0 / 24.0) *
     std::pow(s.wingArea, -1.0 / 3.0) * std::pow(air, -3.0 / 8.0);
 }

@@ -21,13 +21,13 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
   std::vector<TriangleMesh> birds;
   for (std::size_t phase = 0; phase < phases; ++phase)
   {
-    // The wings pass the same angles up and down, so half a beat is enough.
+    // The wings pass the same angles up and down. Half a beat is therefore enough.
     const double beat = 0.5 * (static_cast<double>(phase) + 0.5) / static_cast<double>(phases);
     birds.push_back(wholeBird(shape, wingAngle(beat - 0.25, gliding)));
   }
   const double wide = 0.5 * shape.bodyDiameter + shape.wingLength;
   TargetViews views;
-  // The body's polyhedron is longer than the ellipsoid by some per cent.
+  // The body's polyhedron is longer than the ellipsoid by a few per cent.
   views.reach = std::hypot(std::max(wide, 0.6 * shape.bodyLength), shape.wingChord);
   views.step = ElevationStep;
   views.poses = phases * headings;
@@ -40,7 +40,7 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
     {
       for (std::size_t k = 0; k < headings; ++k)
       {
-        // The mesh heads north. A bird of heading h to the north looks like the mesh along -h.
+        // The mesh heads north. A bird of heading h to the north appears as the mesh does along -h.
         const double shift = (static_cast<double>(phase) + 0.5) / static_cast<double>(phases);
         const double heading =
           2.0 * Pi * (static_cast<double>(k) + shift) / static_cast<double>(headings);

@@ -23,32 +23,32 @@ constexpr double Degree = Pi / 180.0;
 constexpr double Largest = LargestOfFlight;
 constexpr int MostBirds = 100000;
 
-// These values are assumed.
+// The values in this block are assumed.
 constexpr double SpeedSpread = 0.1;
 constexpr double MostSpread = 0.3;
 constexpr double LeastCircleBank = 20.0 * Degree;
 constexpr double MostCircleBank = 40.0 * Degree;
 constexpr double MostTrackBank = 60.0 * Degree;
 constexpr double GlideAngle = 3.0 * Degree;
-constexpr double ApproachHalfWidth = 75.0; // m, at the threshold
+constexpr double ApproachHalfWidth = 75.0; // half width at the threshold, m
 constexpr double ApproachSplay = 0.15;
 constexpr double SpansPerBird = 4.0;
-constexpr double BorderExcess = 1.0; // density at the border over that in the middle, less 1
+constexpr double BorderExcess = 1.0; // density at the border over density in the middle, less 1
 
 // Ballerini et al. 2008.
-constexpr double FlockWidth = 2.8; // times its thickness
+constexpr double FlockWidth = 2.8; // width of a flock, in thicknesses
 constexpr double FlockLength = 5.6;
 
-constexpr double PathError = 0.01; // m
+constexpr double PathError = 0.01; // largest error of a path by straight pieces, m
 
 /// Purposes of a bird's random numbers.
 enum Draw : std::uint64_t
 {
   DrawSpeed = 0,
-  DrawCourse = 1,  ///< heading; offset
-  DrawPassage = 2, ///< time; height
-  DrawWings = 3,   ///< phase
-  DrawCircle = 4   ///< bank; sense
+  DrawCourse = 1,  ///< heading and offset
+  DrawPassage = 2, ///< time and height
+  DrawWings = 3,   ///< phase of the wings
+  DrawCircle = 4   ///< bank and sense of rotation
 };
 
 class BirdNumbers
@@ -91,7 +91,8 @@ Vec3 right(double heading)
   return { std::cos(heading), -std::sin(heading), 0.0 };
 }
 
-/// @param heading clockwise from north, rad @param pitch up, rad @param bank to the right, rad
+/// @param heading heading clockwise from north, rad @param pitch pitch up, rad @param bank bank to
+/// the right, rad
 glm::dquat orientationOf(double heading, double pitch, double bank)
 {
   return glm::angleAxis(-heading, Vec3(0.0, 0.0, 1.0)) *
@@ -130,7 +131,7 @@ struct Course
   Vec3 velocity;
 };
 
-/// A level course past the center. @param room kept free below and above, m
+/// A level course past the centre. @param room room kept free below and above, m
 Course crossing(
   const FlightSettings& settings, const BirdSpecies& species, std::uint64_t bird, double room)
 {
@@ -173,10 +174,10 @@ void fly(Flight& flight, const Course& course, const std::array<double, 2>& time
 struct Circle
 {
   Vec3 center;
-  double radius;    ///< m
-  double bank;      ///< to the right, rad
+  double radius;    ///< radius of the circle, m
+  double bank;      ///< bank to the right, rad
   double turn;      ///< rate of the heading, rad/s
-  double heading;   ///< at the beginning of the time range, rad
+  double heading;   ///< heading at the beginning of the time range, rad
   double intervals; ///< number of intervals between poses
 };
 
@@ -196,7 +197,8 @@ Circle circleOf(const FlightSettings& settings, const BirdSpecies& species, int 
     settings.radius * std::sqrt(numbers(DrawCourse)[1]) *
       forward(2.0 * Pi * numbers(DrawPassage)[0]) +
     Vec3(0, 0, between(settings.heights[0], settings.heights[1], numbers(DrawPassage)[1]));
-  // The chord of an angle a is up to r (1 - cos(a / 2)) from its arc; a is at most 45 degrees.
+  // The chord of an angle a is up to r (1 - cos(a / 2)) from its arc. The angle a is at most 45
+  // degrees.
   const double half = std::acos(std::max(1.0 - PathError / circle.radius, std::cos(Pi / 8.0)));
   circle.intervals = std::ceil(
     (settings.timeRange[1] - settings.timeRange[0]) * std::fabs(circle.turn) / (2.0 * half));
@@ -212,7 +214,7 @@ void fly(Flight& flight, const Circle& circle, const std::array<double, 2>& time
   {
     const double passed = (timeRange[1] - timeRange[0]) * i / intervals;
     const double heading = circle.heading + circle.turn * passed;
-    // The center is on the inner side.
+    // The centre is on the inner side.
     const double outwards = circle.turn > 0.0 ? -circle.radius : circle.radius;
     flight.poses.push_back({ i < intervals ? timeRange[0] + passed : timeRange[1],
       circle.center + outwards * right(heading), orientationOf(heading, 0.0, circle.bank) });
@@ -293,7 +295,7 @@ public:
   }
 
 private:
-  /// Unique for cells within 2^20 of the origin.
+  /// Key that is unique for cells within 2^20 of the origin.
   static std::uint64_t keyOf(const Vec3& cell)
   {
     const auto part = [](double value)
@@ -537,7 +539,7 @@ void orientAlongPath(Flight& flight)
     {
       const Vec3 before = velocity(i - 1, i);
       const Vec3 after = velocity(i, i + 1);
-      // The angle between two horizontal directions; 0 if one of them is a zero vector.
+      // The angle between two horizontal directions; 0 if one direction is a zero vector.
       const double turned = std::atan2(
         before.y * after.x - before.x * after.y, before.x * after.x + before.y * after.y);
       const double seconds = 0.5 * (poses[i + 1].time - poses[i - 1].time);
@@ -552,7 +554,7 @@ void orientAlongPath(Flight& flight)
   }
   for (std::size_t i = 0; i <= last; ++i)
   {
-    // q and -q are the same rotation; the one nearer to the orientation before is taken.
+    // q and -q are the same rotation. The quaternion nearer to the previous orientation is taken.
     const glm::dquat q = orientationOf(headings[i], pitches[i], banks[i]);
     poses[i].orientation = i > 0 && glm::dot(q, poses[i - 1].orientation) < 0.0 ? -q : q;
   }

@@ -18,7 +18,7 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
   std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
   std::vector<const MoverSight*> best(reports.size(), nullptr);
   constexpr double never = std::numeric_limits<double>::infinity();
-  std::vector<std::array<double, 2>> met(reports.size(), { never, -never }); // first, last time
+  std::vector<std::array<double, 2>> met(reports.size(), { never, -never }); // first and last time
   for (const MoverSight& sight : sights)
   {
     MoverReport& report = reports[sight.mover];

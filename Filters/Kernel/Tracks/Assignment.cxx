@@ -46,7 +46,7 @@ public:
       this->forEach(at,
         [&](std::size_t column, double cost)
         {
-          // Rounding must not make a path shorter than those scanned before.
+          // Rounding must not make a path shorter than the paths scanned before.
           const double distance =
             walked + std::max(0.0, cost - this->RowPrice[at] - this->ColumnPrice[column]);
           if (distance < this->Distance[column])

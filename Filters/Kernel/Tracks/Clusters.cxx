@@ -129,12 +129,12 @@ private:
 
   double Distance;
   double Angle;
-  std::vector<Vec3> Places; ///< relative to the sensor, m
+  std::vector<Vec3> Places; ///< places relative to the sensor, m
   std::vector<double> Ranges;
   std::unordered_map<Cell, std::vector<std::size_t>, CellHash> Cells;
 };
 
-/// Mean of a cluster. The order of members depends on their content only, so rounding does, too.
+/// Mean of a cluster. The order of members, and with it rounding, depends only on their content.
 Cluster meanOf(const std::vector<CloudPoint>& points, const std::vector<std::size_t>& members)
 {
   const CloudPoint& first = points[members[0]];

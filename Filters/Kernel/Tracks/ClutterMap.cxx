@@ -31,7 +31,7 @@ std::vector<ClutterMap::Key> distinct(std::vector<ClutterMap::Key> keys)
   return keys;
 }
 
-/// First index from `from` on whose key is not less than `key`. Near ones take few steps.
+/// First index from `from` on whose key is not less than `key`. A near key takes few steps.
 std::size_t gallop(const std::vector<ClutterMap::Key>& keys, std::size_t from, ClutterMap::Key key)
 {
   std::size_t step = 1;
@@ -203,7 +203,7 @@ ClutterMap ClutterMap::restored(
   {
     if (!result.Keys.empty() && result.Keys.back() == key)
     {
-      result.Sums.back() = sum; // pairs are sorted: this is the largest
+      result.Sums.back() = sum; // pairs are sorted: this sum is the largest
       continue;
     }
     result.Keys.push_back(key);

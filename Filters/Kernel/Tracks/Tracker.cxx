@@ -14,7 +14,7 @@ using Row = std::vector<AllowedPair>;
 
 struct Measured
 {
-  const std::vector<Cluster>& clusters; ///< by x
+  const std::vector<Cluster>& clusters; ///< clusters, sorted by x
   std::vector<glm::dmat3> errors;
   double largestError = 0.0; ///< square root of the largest trace, m
   double lastTime = -Infinity;
@@ -144,7 +144,7 @@ std::vector<int> Tracker::update(const std::vector<Cluster>& clusters, const Vec
     this->Tracks.erase(
       std::remove_if(this->Tracks.begin(), this->Tracks.end(), isOver), this->Tracks.end());
   };
-  // An echo after a pause is of another bird, and no state is predicted that far.
+  // An echo after a pause belongs to another bird. No state is predicted that far.
   for (Track& track : this->Tracks)
   {
     if (!track.ended && time - track.positions.back().time > s.maximumPause)
@@ -158,7 +158,7 @@ std::vector<int> Tracker::update(const std::vector<Cluster>& clusters, const Vec
   const Measured measured = measure(clusters, sensor, s);
   std::vector<Row> rows(this->Tracks.size());
   double largest = -Infinity;
-  constexpr std::size_t interval = 64; // tracks, each compared with up to all clusters
+  constexpr std::size_t interval = 64; // tracks between checks, each compared with many clusters
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
     if (goOn && i % interval == 0 &&

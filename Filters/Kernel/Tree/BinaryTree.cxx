@@ -73,7 +73,7 @@ bool BinaryTree::divide(const TriangleMesh& mesh, const TreeOptions& options, in
         divideNode(begin + i);
       }
     };
-    // The number of layers is not known: each is taken to do a tenth of the rest.
+    // The number of layers is unknown. Each layer is taken to do a tenth of the remaining work.
     const double done = std::max(measured,
       1.0 - (1.0 - measured) * std::pow(0.9, static_cast<double>(this->nodes[begin].depth)));
     constexpr std::size_t blocksOfLayer = 64;

@@ -13,21 +13,21 @@ namespace avianlidar
 {
 namespace
 {
-/// Least overlap, as a share of the smaller triangle: rounding makes neighbours overlap by less.
+/// Least overlap, as a share of the smaller triangle. Rounding makes neighbours overlap by less.
 constexpr double LeastOverlap = 1e-6;
 
 /// Angle, rad, that single precision may add between two normals.
 constexpr float TiltOfRounding = 1e-6f;
 
-/// Factor by which an altitude must be larger to change the owner of a plane: among copies, the
-/// first one stays the owner.
+/// Factor by which an altitude must be larger to change the owner of a plane. Among copies, the
+/// first triangle then remains the owner.
 constexpr double ClearlyLarger = 1.001;
 
 /// Plane of a triangle in single precision.
 struct Face
 {
   glm::vec3 normal{ 0.0f };
-  float tilt = 0.0f;      ///< angle by which rounding may turn it, rad
+  float tilt = 0.0f;      ///< angle by which rounding may turn the plane, rad
   float tolerance = 0.0f; ///< toleranceOf(), rounded up, m
 };
 
@@ -50,7 +50,7 @@ double leastAltitudeOf(const Corners& t)
   return glm::length(areaOf(t)) / longestSideOf(t);
 }
 
-/// Corners relative to the first one.
+/// Corners relative to the first corner.
 Corners cornersOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
   return cornersFrom(mesh, triangle, mesh.corner(triangle, 0));
@@ -66,6 +66,7 @@ bool isSingle(double x)
 }
 
 /// Most by which rounding moves a corner of the triangle off its plane, m. @param normal unit
+/// normal
 double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& normal)
 {
   constexpr double ofDouble = 32.0 * RoundOffDouble;
@@ -101,7 +102,8 @@ Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
     up * static_cast<float>(tolerance) };
 }
 
-/// True if, seen along the normal of the first triangle, one of its sides separates the two.
+/// True if, seen along the normal of the first triangle, one of its sides separates the two
+/// triangles.
 bool isBeside(const Corners& one, const Corners& two)
 {
   const Vec3 n = areaOf(one);
@@ -120,9 +122,9 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
   const Vec3 area = areaOf(one);
   const double size = glm::length(area);
   const Vec3 n = area / size;
-  // Part of the second triangle within the sides of the first. It has six corners at most, but a
-  // side that rounding bends may cross each line more than twice: a ring of 3, 4 and 6 corners then
-  // gets 4, 6 and 9, half of them kept and one for each crossing.
+  // Part of the second triangle within the sides of the first. The part has six corners at most. If
+  // rounding bends a side, a ring may cross each line more than twice. Rings of 3, 4 and 6 corners
+  // then get 4, 6 and 9 corners: half of the corners are kept, and each crossing adds a corner.
   using Ring = boost::container::static_vector<Vec3, 9>;
   Ring ring{ two.a, two.b, two.c };
   const Vec3 corners[] = { one.a, one.b, one.c };
@@ -299,7 +301,8 @@ private:
     }
   }
 
-  /// Compare the triangles of a child with the triangles of some children of a node, one bit each.
+  /// Compare the triangles of a child with the triangles of some children of a node. @param some
+  /// bits of these children
   void compareNear(const Child& one, const WideNode& node, std::uint32_t some)
   {
     some &= childrenNear(node, *one.node, one.lane, this->Slack);
@@ -339,7 +342,7 @@ private:
     {
       return;
     }
-    // The order of their numbers makes the result independent of the tree.
+    // The order of triangle numbers makes the result independent of the tree.
     const auto [lower, higher] =
       std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
     const Vec3& apex = this->Mesh.corner(lower, 0);
@@ -360,7 +363,7 @@ private:
     }
   }
 
-  /// True if rounding explains the distance of a triangle from the plane of another.
+  /// True if rounding explains the distance of a triangle from the plane of another triangle.
   bool fits(std::uint32_t triangle, std::uint32_t owner) const
   {
     const Corners plane = cornersOf(this->Mesh, owner);
@@ -382,7 +385,7 @@ private:
   {
     bool found = false;
     const auto size = static_cast<std::uint32_t>(this->Faces.size());
-    std::vector<std::uint32_t> owners(size, NoTriangle); // by root of a set of several
+    std::vector<std::uint32_t> owners(size, NoTriangle); // owners by root of a set
     for (std::uint32_t t = 0; t < size; ++t)
     {
       const std::uint32_t root = this->Sets.rootOf(t);
@@ -407,7 +410,7 @@ private:
 
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
-  std::vector<Face> Faces; ///< in the tree's order
+  std::vector<Face> Faces; ///< faces in the tree's order
   float Slack = 0.0f;      ///< largest distance between the boxes of coincident triangles, m
   Forest Sets;
 };

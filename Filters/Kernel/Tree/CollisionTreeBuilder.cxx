@@ -24,7 +24,7 @@ using Costs = std::array<float, Width>;
 std::vector<Costs> costsOf(const BinaryTree& tree)
 {
   std::vector<Costs> costs(tree.nodes.size(), Costs{});
-  // Areas in this unit stay within the range of floats.
+  // Areas in this unit remain within the range of floats.
   const double unit = tree.extent > 0.0 ? 1.0 / (tree.extent * tree.extent) : 0.0;
   for (std::size_t i = tree.nodes.size(); i-- > 0;)
   {
@@ -57,7 +57,7 @@ std::vector<Costs> costsOf(const BinaryTree& tree)
 void setLane(WideNode& node, int lane, const LaneBox& box)
 {
   const Lanes center = 0.5f * box.twiceCenter();
-  // Each is a sum of two floats with one rounding, which roundedUp() covers.
+  // Each half length is a sum of two floats with one rounding. roundedUp() covers this rounding.
   const Lanes half = roundedUp(larger(box.above - center, box.below + center));
   node.x[lane] = center[0];
   node.y[lane] = center[1];
@@ -83,8 +83,9 @@ public:
   }
 
 private:
-  /// List the binary nodes, at or below one, that take up to `lanes` lanes of a wide node.
-  /// @return their number
+  /// List the binary nodes, at or below a binary node, that take up to `lanes` lanes of a wide
+  /// node.
+  /// @return number of these nodes
   int lanesOf(std::uint32_t number, int lanes, std::uint32_t* list) const
   {
     const std::uint32_t children = this->From.nodes[number].children;
@@ -109,7 +110,7 @@ private:
   }
 
   /// Add the wide node below a node of the binary tree, and all wide nodes below it, depth first.
-  /// @return its number
+  /// @return number of the wide node
   std::uint32_t addNode(std::uint32_t whole, std::uint32_t level)
   {
     const auto number = static_cast<std::uint32_t>(this->To.nodes.size());

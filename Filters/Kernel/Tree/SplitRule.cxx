@@ -70,12 +70,12 @@ struct BinMapping
   using Numbers = std::int32_t __attribute__((vector_size(16)));
 
   Lanes lower;
-  Lanes scale{}; ///< bins per metre; 0: all centres are equal on this axis
+  Lanes scale{}; ///< bins per metre; 0 if all centres are equal on this axis
   Lanes last;    ///< number of the last bin
   /// Scale of lengths, 1/m, by which areas fit in floats even in a tiny scene. Where a box is 1e18
-  /// times the spread of the centres they do not fit, and no division is found.
+  /// times the spread of the centres, areas do not fit and no division is found.
   float unit = 0.0f;
-  int bins; ///< number of bins; a small node gains less by more bins than they cost
+  int bins; ///< number of bins, fewer in a small node, where more bins cost more than they gain
 
   AVIANLIDAR_ALWAYS_INLINE BinMapping(const LaneBox& centers, std::size_t count)
     : lower(-centers.below)
@@ -110,7 +110,7 @@ struct BinMapping
   }
 };
 
-/// Bins of one axis, merged from one of its ends on.
+/// Bins of one axis, merged from one end of the axis on.
 struct BinSweep
 {
   LaneBox box;
@@ -127,8 +127,8 @@ struct BinSweep
   }
 };
 
-/// Boxes in the lower bins of the best axis go to the first child. Axis and bin make the sum of
-/// area times number of triangles over both children least.
+/// Boxes in the lower bins of the best axis go to the first child. Axis and bin minimise the sum
+/// over both children of area times number of triangles.
 AVIANLIDAR_MULTIVERSION std::size_t splitBySurfaceArea(
   const LaneBox* from, LaneBox* to, std::size_t count, const LaneBox& centers)
 {
@@ -186,7 +186,7 @@ AVIANLIDAR_MULTIVERSION std::size_t splitBySurfaceArea(
   std::size_t second = toFirst;
   for (std::size_t i = 0; toFirst > 0 && i < count; ++i)
   {
-    // No branch: the side of a box cannot be predicted.
+    // The choice has no branch, because the side of a box cannot be predicted.
     const std::size_t goesFirst = mapping.binsOf(from[i])[bestAxis] < bestBin ? 1 : 0;
     to[second ^ ((first ^ second) & (0 - goesFirst))] = from[i];
     first += goesFirst;

@@ -99,7 +99,8 @@ double largest(const Vec3& v)
 }
 }
 
-// Neither the edge functions nor the plane alone give reliably where along a sliver the ray passes.
+// The range at the place where the ray passes a sliver. The edge functions alone and the plane
+// alone do not give this place reliably.
 double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double angularMargin)
 {
   const Vec3 corner[3] = { t.a, t.b, t.c };
@@ -142,7 +143,7 @@ double rangeOnSliver(const Corners& t, const Vec3& d, double planeRange, double 
   return range > 0.0 ? range : NoRange;
 }
 
-// In several versions: where the processor has fused multiply-add, std::fma() needs no call.
+// Versions for several processors: where there is a fused multiply-add, std::fma() needs no call.
 AVIANLIDAR_MULTIVERSION TrianglePlane planeOf(const Corners& t)
 {
   const Vec3 ab = t.b - t.a;

@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stands on top of scans and coverage: sequences, plans and maps, sites, reports. Nothing of the package imports it but public
-names and, within functions, the command's verbs."""
+"""Applications of scans and coverage: sequences, plans and maps, sites, reports. In the package, only modules with public
+names and the functions of the command's verbs import this subpackage."""

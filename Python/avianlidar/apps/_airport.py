@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`. The scene reader raises
-footprints, lays areas on the terrain and places crowns."""
+"""Makes a scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`. The scene reader makes
+buildings of footprints, lays areas on the terrain and places crowns."""
 from __future__ import annotations
 
 import collections
@@ -29,36 +29,36 @@ from ._json import load_json
 
 WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
         "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
-RECORD = "made.json"  # checksums of these as they were made
+RECORD = "made.json"  # checksums of the files when they were made
 PARTS = {"grass": ("#cfe3b8", 1), "water": ("#7fb2d6", 2), "parking": ("#a5a5a5", 2), "road": ("#8c8c8c", 3), "apron": ("#b0aca4", 4),
          "taxiway": ("#666666", 5), "runway": ("#333333", 6), "vegetation": ("#4c8c4a", 7), "tree": ("#4c8c4a", 8), "terminal": ("#c0392b", 8),
          "hangar": ("#8e44ad", 8), "tower": ("#e67e22", 8), "mast": ("#e67e22", 8), "pole": ("#e67e22", 8), "fence": ("#000000", 8),
-         "structure": ("#8e6d4f", 8)}  # of the picture by class: colour, and order from below
+         "structure": ("#8e6d4f", 8)}  # classes in the picture: colour, and drawing order from below
 BUILDING = ("#a0522d", 8)
 
 
 class Kept:
-    """Files of a folder that are made again as long as nobody has edited them."""
+    """Files of a folder that are made again unless a user has edited them."""
 
     def __init__(self, folder: pathlib.Path):
         self.folder, self.record = folder, folder / RECORD
         self.edited: List[str] = []
         self.made = load_json(self.record) if self.record.exists() else {}
         if not isinstance(self.made, dict) or not all(isinstance(sums, (str, list)) for sums in self.made.values()):
-            raise Error(f"{self.record}: expected checksums by the names of files; remove it to have all files made again as new ones")
+            raise Error(f"{self.record}: expected checksums by the names of files; remove this file to have all files made again")
         strange = [name for name in WHAT if (folder / name).exists() and name not in self.made]
         if strange:
-            raise Error(f"{folder}: {strange[0]} is there and was not made by this command; choose another folder")
+            raise Error(f"{folder}: {strange[0]} exists and was not made by this command; choose another folder")
 
     def put(self, name: str, make: Callable[[], bytes]) -> pathlib.Path:
-        """The file, made unless it was edited."""
+        """Makes a file unless a user has edited the file, and returns its path."""
         path = self.folder / name
         found = hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
         if found and found not in self.made[name]:
             self.edited = [*dict.fromkeys([*self.edited, name])]
             return path
         content = make()
-        # A run that is stopped between the record and the file leaves the one before: both are as they were made.
+        # After a stop between record and file, the old file is kept; the record holds both checksums.
         self.made[name] = sorted({hashlib.sha256(content).hexdigest(), found} - {""})
         write_whole(self.record, (json.dumps(self.made, indent=2) + "\n").encode())
         write_whole(path, content)
@@ -70,17 +70,17 @@ def _json(value: Any) -> bytes:
 
 
 def _geojson(features: Sequence[Tuple[Dict[str, Any], Any]]) -> bytes:
-    """A feature a line. @param features properties and geometries (ogr, degrees)"""
+    """GeoJSON with one feature in each line. @param features properties and geometries (ogr, degrees)"""
     rows = [json.dumps({"type": "Feature", "properties": properties, "geometry": json.loads(shape.ExportToJson(["COORDINATE_PRECISION=9"]))},
                        ensure_ascii=False) for properties, shape in features]
     return ('{"type": "FeatureCollection", "features": [\n' + ",\n".join(rows) + "\n]}\n").encode()
 
 
 class Airport(AirportMap):
-    """What is made of an extract."""
+    """The files that are made from an extract."""
 
     def write(self, folder) -> Kept:
-        """Leave all files in a folder, which is there; those that were edited stay."""
+        """Writes all files to an existing folder; files that a user has edited are kept."""
         out = pathlib.Path(folder)
         kept = Kept(out)
         self.progress("files", 0, len(WHAT))
@@ -90,7 +90,7 @@ class Airport(AirportMap):
             mapped = kept.put("airport.geojson", lambda: _geojson(self.mapped(chosen)))
         kept.put("terrain.vtp", lambda: vtp(terrain(*posts, self.origin, self.error)))
         if "terrain.vtp" in kept.edited:
-            self.terrain_words = "heights: terrain.vtp as it was edited"
+            self.terrain_words = "heights: from the edited terrain.vtp"
         self.rows = [feature["properties"] for feature in features_of(mapped)]
         unknown = {row.get("kind") for row in self.rows} - set(self.known["kinds"])
         if unknown:
@@ -119,9 +119,9 @@ class Airport(AirportMap):
         return kept
 
     def _picture(self) -> bytes:
-        """The scene from above, in colours of what it is."""
+        """The scene from above, with one colour for each class."""
         west, east, south, north = self.rectangle
-        longer = max(east - west, north - south) / 9.0  # m of an inch
+        longer = max(east - west, north - south) / 9.0  # metres in an inch
         return _pictures.drawn((max((east - west) / longer, 3.0) + 2.0, max((north - south) / longer, 3.0) + 0.5), self._draw)
 
     def _draw(self, axes) -> None:
@@ -150,7 +150,7 @@ class Airport(AirportMap):
 
 
 def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:
-    """Of each object of a scene file its name, class and triangles (n x 3 x 3, m)."""
+    """Name, class and triangles (n x 3 x 3, m) of each object of a scene file."""
     for block in leaves_of(scene.surfaces):
         fields, (points, cells) = field_values(block), triangles_of(block)
         yield fields["object_names"][0], fields["object_classes"][0], points[cells]
@@ -172,7 +172,7 @@ def assumed(airport: AirportMap) -> bytes:
 
 
 def _reasons(airport: AirportMap) -> Dict[str, Counter[str]]:
-    """How many features of each kind are left out for which reason."""
+    """For each kind, the number of left out features by reason."""
     found: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
     for one in airport.left:
         found[one.kind][one.reason] += one.count
@@ -180,7 +180,7 @@ def _reasons(airport: AirportMap) -> Dict[str, Counter[str]]:
 
 
 def counts(airport: AirportMap) -> str:
-    """What was read, what is in the scene and what is not, by reason, in one line."""
+    """The numbers of features that were read, that are in the scene, and that were left out by reason, in one line."""
     reasons = sum(_reasons(airport).values(), collections.Counter({UNKNOWN: sum(airport.unknown.values())}))
     there, left = sum(airport.there.values()), sum(reasons.values())
 
@@ -194,7 +194,7 @@ def counts(airport: AirportMap) -> str:
 
 
 def _counts_by_kind(airport: AirportMap) -> str:
-    """The same by kind."""
+    """The numbers of features by kind."""
     lines, outside, away, found = [f"  {counts(airport)}"], "outside the scene", [], _reasons(airport)
     for kind in dict.fromkeys([*airport.there, *(one.kind for one in airport.left)]):
         out, there = +found[kind], airport.there[kind]
@@ -208,7 +208,7 @@ def _counts_by_kind(airport: AirportMap) -> str:
     lines += [f"  {words}: {', '.join(some)}" for words, some in (
         (f"all {outside}", away), ("among those of unknown kind", named[:6]), (f"{CUT}, and shorter than they are", cut)) if some]
     if airport.cut or any(one.reason == CUT for one in airport.left):
-        lines.append("  what is cut by the border is whole in an extract that is cut by `osmium extract --strategy smart`")
+        lines.append("  `osmium extract --strategy smart` makes an extract whose features are whole at the border")
     return "\n".join(lines)
 
 
@@ -222,46 +222,46 @@ def readme(airport: AirportMap) -> bytes:
     quoted = "".join(f"  heights are from {words}\n" for words in said)
     heights = ground_of(airport.scene, [end for runway in airport.sides for end in (runway.start, runway.end)])
     x, y, z = airport.position
-    without = "; without clutter, as behind leaves it takes long" if airport.leaves else ""
+    without = "; without clutter, because clutter behind leaves takes long to compute" if airport.leaves else ""
     return f"""{airport.name}
 
-Made by `avianlidar airport` from {airport.extract.name}. All files are to be edited: a further run makes only those again that nobody
-has edited, so remove a file to have it made anew.
+Made by `avianlidar airport` from {airport.extract.name}. You may edit all files. A further run makes only files again that nobody has
+edited. Remove a file to have the file made again.
 
-  airport.geojson          what was taken from the extract: kind, height (of plants, fences and masts: top), width, and what each is from
+  airport.geojson          features of the extract: kind, height (of plants, fences and masts: top), width, and sources
   terrain.vtp              the ground
   airport.lidarscene.json  the scene
   airport.coverage.json    a plan: avianlidar coverage airport.coverage.json -o maps
-  siting.coverage.json     the same with sites: avianlidar report siting.coverage.json -o report.html{without}
+  siting.coverage.json     the same plan with sites: avianlidar report siting.coverage.json -o report.html{without}
   exclusions.geojson       where no lidar may stand, beside buildings
   airport.scenario.json    labelled scans: avianlidar sequence airport.scenario.json -o sequences
-                           tracks of them: avianlidar track sequences --runways airport.geojson -o tracks
-  assumed.csv              each number that the extract does not say, and what was left out
+                           tracks of the birds: avianlidar track sequences --runways airport.geojson -o tracks
+  assumed.csv              each number that is missing in the extract, and each feature that was left out
   airport.png              the scene from above
 
 Runways
 {lengths}
 
-What there is, and of how much of it a number is assumed
+Features in the scene, and how many have an assumed number
 {table}
 {quoted}
-What was read, and what became of it
+Features that were read, and what became of them
 {_counts_by_kind(airport)}
 
 {airport.terrain_words}
-  heights are above the sea or the ellipsoid as the file has them
-  the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin; heights of plans are above the origin
+  heights are above the sea or above the ellipsoid, as in the file
+  the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin; plans give heights above the origin
 
-Assumed besides: materials, leaves (m2/m3) of woods and trees, which are full of leaves to the ground, what is not mapped is grass.
-Roofs are level, solids stand on the lowest ground below them. Fences are walls here: wire lets most light through.
+Also assumed: materials, leaf area density (m2/m3) of woods and trees, leaves down to the ground, and grass where nothing is mapped.
+Roofs are level. Solids stand on the lowest ground below them. Fences are walls in the scene, but real wire lets most light through.
 
 Check on site
   the runways' widths and ends, against the aeronautical chart
-  heights of terminals, hangars, towers and masts near the lidar: they shadow
-  what is new, gone, or was never mapped: buildings, masts, fences, trees; cranes and parked aircraft
+  heights of terminals, hangars, towers and masts near the lidar, which shadow birds
+  new, removed and unmapped objects: buildings, masts, fences, trees, cranes and parked aircraft
   woods and trees: height, and leaves by season
   the lidar's place ({x:.0f} m east, {y:.0f} m north, {z:.1f} m up): the free place nearest to the middle of the longest runway
-  {"that pierces an obstacle limitation surface of ICAO Annex 14, as every free place does" if airport.pierces else
-   "below the strip, approach and transitional surfaces of ICAO Annex 14"}; whether a mast may stand there is for the airport to decide
-  exclusions: simplified; the report of siting.coverage.json also keeps masts below these surfaces
+  {"this place pierces an obstacle limitation surface of ICAO Annex 14, as every free place does" if airport.pierces else
+   "this place is below the strip, approach and transitional surfaces of ICAO Annex 14"}; the airport decides whether a mast may stand there
+  exclusions, which are simplified; the report of siting.coverage.json also keeps masts below these surfaces
 """.encode()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What maps have of an airport, what of that its scene holds, and the plans and the scenario that follow."""
+"""Features of an airport from maps, the features in its scene, and the plans and the scenario that follow."""
 from __future__ import annotations
 
 import collections
@@ -29,18 +29,18 @@ from ._osm import read_extract
 from ._regions import Runway, runway_outline
 from ._runways import choose_runways
 
-FLAT_SPACING = 100.0  # m, of a ground without a terrain, which follows the Earth
-AROUND = 600.0  # m beside runways where lidars may stand
-SPACINGS, CHOICE = (200, 150, 100, 50), 30  # m between candidates of the siting plan: the widest that leaves about so many
+FLAT_SPACING = 100.0  # spacing of a ground without a terrain, which follows the curvature of the Earth, m
+AROUND = 600.0  # distance from runways within which lidars may stand, m
+SPACINGS, CHOICE = (200, 150, 100, 50), 30  # spacings of candidates, m; the widest that leaves CHOICE candidates is used
 
 
 class AirportMap:
-    """An airport as extracts, a raster of heights and surveyed obstacles have it, and what files say of it.
+    """An airport as given by extracts, a raster of heights and surveyed obstacles, and then by the written files.
 
     rows   properties of the features of airport.geojson    scene  as loaded
     sides  runways of the scene
 
-    These three are set as files are written and read again.
+    `rows`, `scene` and `sides` are set when files have been written and read again.
     """
 
     rows: List[Dict[str, Any]]
@@ -79,13 +79,13 @@ class AirportMap:
             self.used[COAST] = near
         elif near:
             self.left.append(Feature(COAST, {}, count=near, reason="a coast that does not part the scene"))
-            warnings.warn(f"{self.extract}: its coastlines do not part the scene: the sea is land there; draw it as natural=water, or cut the extract "
-                          "wider", RuntimeWarning, stacklevel=2)
+            warnings.warn(f"{self.extract}: its coastlines do not part the scene: the scene has land in place of the sea; draw the sea "
+                          "as natural=water, or cut the extract wider", RuntimeWarning, stacklevel=2)
         ground = valid(aerodrome.shape) if aerodrome and form_of(aerodrome.shape) == "area" else None
         self.ground = ground if ground is not None and all(ground.Contains(one.shape.Centroid()) for one in self.runways) else None
 
     def _place(self, bounds: Optional[Sequence[float]]) -> None:
-        """Origin, and the rectangle that the scene holds."""
+        """Sets the origin and the rectangle of the scene."""
         ends = np.array([one.shape.GetPoints() for one in self.runways])[:, :, :2]
         low, high = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
         if high[0] - low[0] > 180.0:
@@ -104,7 +104,7 @@ class AirportMap:
         self.box = box_of([around[i] for i in (0, 2, 1, 3)])
 
     def chosen(self, posts: np.ndarray, corner: Sequence[float], spacing: float) -> List[Feature]:
-        """What becomes part of the scene; `self.left` gets all else, with its reason. The ground is that of `posts`."""
+        """The features of the scene on the ground of `posts`. All other features are added to `self.left`, with a reason."""
         found: List[Feature] = []
         outside: Dict[str, int] = collections.Counter()
         lines = [one for one in self.features if one.kind == "runway" and form_of(one.shape) == "line"]
@@ -130,7 +130,7 @@ class AirportMap:
         return found
 
     def mapped(self, chosen: Sequence[Feature]) -> List[Tuple[Dict[str, Any], Any]]:
-        """What the scene file reads of each feature in the scene, and its shape: flat areas, woods and lines end at the box."""
+        """For each feature of the scene, the properties for the scene file and the shape. Flat areas, woods and lines end at the box."""
         rows = []
         for one in chosen:
             shape, rule = one.shape, self.known["kinds"][one.kind]
@@ -142,7 +142,7 @@ class AirportMap:
         return sorted(rows, key=lambda row: order.index(row[0]["kind"]))
 
     def posts(self) -> Tuple[np.ndarray, Sequence[float], float]:
-        """Heights above the origin, whose height they say, their south-west corner (m) and spacing."""
+        """Heights above the origin, the south-west corner (m) and the spacing. Also sets the height of the origin."""
         west, east, south, north = rectangle = tuple(x + sign * 50.0 for x, sign in zip(self.rectangle, (-1, 1, -1, 1)))
         if self.dem is None:
             spacing = FLAT_SPACING
@@ -154,11 +154,11 @@ class AirportMap:
             self.origin = (*self.origin[:2], round(here, 3))
             posts = posts - self.origin[2]
         self.error = self.known["terrain_error"] if self.dem is not None else self.known["level_error"]
-        self.terrain_words += f"; triangles within {self.error:g} m of that"
+        self.terrain_words += f"; triangles within {self.error:g} m of these heights"
         return posts, (west, south), spacing
 
     def scene_of(self, position: Optional[np.ndarray] = None) -> Dict[str, Any]:
-        """The scene file. @param position of the lidar, m; None before there is one"""
+        """The scene file. @param position position of the lidar, m; None before a place is found"""
         objects: List[Dict[str, Any]] = [{"name": "Terrain", "class": "terrain", "file": "terrain.vtp", "material": "Grass"}]
         there = collections.Counter((row["kind"], row.get("surface")) for row in self.rows)
         for kind, rule in self.known["kinds"].items():
@@ -193,7 +193,7 @@ class AirportMap:
                 **({"materials": materials} if materials else {}), "objects": objects}
 
     def count(self, chosen: Sequence[Feature]) -> None:
-        """How many of each kind are in the scene; what its reader leaves out becomes part of `self.left`."""
+        """Counts the features of each kind in the scene. Features that the scene's reader leaves out are added to `self.left`."""
         self.there = collections.Counter(self.used)
         for one in chosen:
             self.there[one.kind] += one.count
@@ -206,8 +206,8 @@ class AirportMap:
                 self.there[kind] -= int(count)
 
     def exclusions(self, mapped: pathlib.Path) -> List[Tuple[Dict[str, Any], Any]]:
-        """Where no lidar may stand beside buildings: around runways and taxiways, on aprons, roads and water, in woods, and outside
-        the aerodrome, if the extract has its outline."""
+        """Areas beside buildings where no lidar may stand: around runways and taxiways, on aprons, roads and water, in woods, and outside
+        the aerodrome if the extract has its outline."""
         rows = []
         if self.ground is not None:
             rows.append(({"what": "outside the aerodrome"}, self.box.Difference(self.ground)))
@@ -226,14 +226,14 @@ class AirportMap:
         return rows
 
     def _bounds(self) -> List[float]:
-        """Of the runways, and what lies beside them: least and greatest x, y, m."""
+        """Bounds of the runways and the area beside them: least and greatest x, y, m."""
         ends = np.array([end for runway in self.sides for end in (runway.start, runway.end)])
         low, high = ends.min(axis=0) - AROUND, ends.max(axis=0) + AROUND
         return [float(x) for x in np.round((low[0], high[0], low[1], high[1]), -1)]
 
     @property
     def leaves(self) -> bool:
-        """Whether the scene has any: the clutter behind them takes seconds in each of a report's weathers."""
+        """Whether the scene has leaves. Clutter behind leaves takes seconds in each weather of a report."""
         return any("medium" in self.known["kinds"][row["kind"]] for row in self.rows)
 
     @property
@@ -241,8 +241,8 @@ class AirportMap:
         return max(self.sides, key=lambda runway: runway.axis()[1])
 
     def place_lidar(self, mapped: pathlib.Path, exclusions: pathlib.Path) -> None:
-        """Find a place for the lidar, until siting finds a better one: the free place nearest to the middle of the longest runway, below the
-        obstacle limitation surfaces unless every free place pierces them."""
+        """Finds a place for the lidar, for use until siting finds a better place: the free place nearest to the middle of the longest
+        runway, below the obstacle limitation surfaces unless every free place pierces one of them."""
         taken = read_outlines(mapped, self.scene.geodetic_origin, "height")
         taken += read_outlines(exclusions, self.scene.geodetic_origin)
         with naming(f"{self.extract}: places for a lidar beside its runways"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The first page of a report in words: where a lidar should stand, what it detects, and what to do next."""
+"""The first page of a report in words: where a lidar should stand, which share of birds it detects, and what to do next."""
 from __future__ import annotations
 
 import math
@@ -16,7 +16,7 @@ from ._plan import Plan
 from ._regions import APPROACH_LENGTH, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
 from ._sites import FEWEST_DRAWS, listed
 
-LEAST = 0.0005  # share that is given as a number; a site that detects less is no answer
+LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 
 
@@ -29,18 +29,18 @@ def place(position: Sequence[float]) -> str:
 
 
 def decimals(error: float) -> int:
-    """How many decimals a standard error leaves of a number: those with one digit of its own."""
+    """Number of decimals that a standard error justifies: one significant digit of the error."""
     return min(max(-math.floor(math.log10(error)), 0), 9)
 
 
 def bound(places: int) -> float:
-    """The share that is surely not exceeded, with 95 %, where none of so many drawn places counts."""
+    """Upper bound (95 %) of a share if none of the drawn places counts. @param places number of drawn places"""
     return max(LEAST, 3.0 / places) if places else LEAST
 
 
 def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = True) -> str:
-    """A share as a percentage, with the digits that its standard error allows. @param error of drawn places @param places their number
-    @param bar whether the error is there, too"""
+    """A share as a percentage, with the digits that its standard error justifies. @param error standard error of drawn places
+    @param places number of drawn places @param bar whether the error is shown"""
     if math.isnan(value):
         return "–"
     if value < LEAST and (value > 0.0 or not math.isnan(error)):
@@ -53,7 +53,7 @@ def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = 
 
 
 def cell(row: Dict[str, Any], column: str) -> str:
-    """A share of a row of shares, or the standard error of one, with the digits that the error allows."""
+    """A share, or its standard error, from a row of shares, with the digits that the error justifies."""
     value, places = row[column], row["places"]
     of = row[column.replace("_std_error", "_probability")]
     if math.isnan(value):
@@ -68,13 +68,13 @@ def cell(row: Dict[str, Any], column: str) -> str:
 
 
 def metres(value: float) -> str:
-    """A range to what is known of it."""
+    """A range with two digits, or in tens of metres."""
     return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
 
 
 def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
-    """Where a place lies by the two nearest runways, in words: beside a runway how far from its middle line and from an end, else
-    how far from an end."""
+    """The position of a place relative to the two nearest runways, in words. Beside a runway: the distances from the middle line and
+    from an end. Beyond a runway: the distance from an end."""
     found = []
     at = np.asarray(position, dtype=float)[:2]
     for runway in runways:
@@ -92,12 +92,12 @@ def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
 
 
 def birds_of(view: Plan) -> str:
-    """Whom the plan asks for, as many."""
+    """The birds that the plan names, in the plural."""
     return f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
 
 
 def over(view: Plan) -> str:
-    """Where and how high the birds are that the plan asks for, for who has not seen the plan."""
+    """The regions and heights of the birds, for readers who have not seen the plan."""
     if not view.runways:
         return view.where
     parts = []
@@ -117,14 +117,14 @@ def over(view: Plan) -> str:
 
 
 def air_of(view: Plan) -> str:
-    """The air of the shares."""
+    """The air in which the shares hold."""
     visibility = view.coverage.visibility
     return f" in {in_words(view.air)}" if view.air else f" at {visibility / 1000.0:g}\u00a0km visibility" if visibility > 0.0 else ""
 
 
 def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any], of_year: Dict[str, float]) -> List[str]:
-    """Where the lidar should stand and which share of the birds it detects from there; how far they are seen. @param view the plan's
-    sensor at its best site, or the plan itself @param of_year the share over the plan's year, if it has one"""
+    """Two sentences: where the lidar should stand and which share of the birds is detected from there; how far birds are detected.
+    @param view the plan's sensor at its best site, or the plan itself @param of_year the share over the plan's year, if any"""
     detects = f"one scan detects {share_of(view.overall)} of {birds_of(view)} {over(view)}{air_of(view)}"
     if view.year:
         detects += f", {share_of(of_year)} over the year"
@@ -145,22 +145,22 @@ def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reache
 
 
 def share_of(row: Dict[str, Any]) -> str:
-    """The share of a row that one scan detects, with its standard error."""
+    """The share of a row that one scan detects, with the standard error."""
     return percent(row["detection_probability"], row["detection_std_error"], row["places"])
 
 
 def by_end(view: Plan) -> List[str]:
-    """A sentence with the share by strip and approach, where several are asked for."""
+    """A sentence with the shares by strip and approach, if the plan has several."""
     alike: Dict[Tuple[str, str], List[str]] = {}
     for row in view.by_end:
         kind, _, name = row["region"].partition(" ")
         alike.setdefault((share_of(row), kind), []).append(name)
     words = [f"{share} in the {kind} {'of' if kind == 'strip' else 'to'} {listed(names)}" for (share, kind), names in alike.items()]
-    return [f"By runway end it is {listed(words)}."] if len(view.by_end) > 1 else []
+    return [f"By runway end the share is {listed(words)}."] if len(view.by_end) > 1 else []
 
 
 def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
-    """How far birds are seen, and where that is at the heights asked for."""
+    """Sentence on how far birds are detected, and on the distances at the plan's heights."""
     found = []
     for name, one in reaches["of"].items():
         half = f"half of {name}s to {metres(one.to(0.5))}" if one.to(0.5) > 0.0 else f"at no range half of {name}s"
@@ -179,8 +179,8 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:
-    """A command with every option that the report was made with and that the verb has. @param settings to be added to those of the sensor or
-    the coverage, in place of others of their names"""
+    """A command with every option of this report that the verb has. @param settings further settings of the sensor or the coverage, which
+    replace settings of the same names"""
     file = pathlib.Path(view.file).name if pathlib.Path(view.file).is_absolute() else view.file
     words = ["avianlidar", verb, file, "-o", out]
     flags = {"--weather", "--sensor-set", "--coverage-set", *(("--metar", "--siting-set") if verb == "report" else ())}
@@ -193,49 +193,50 @@ def command(view: Plan, verb: str, out: str, **settings: str) -> str:
 
 
 def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]) -> List[Dict[str, str]]:
-    """What follows from the answer: a head, words, an anchor of the page for more, and a command, each perhaps empty."""
+    """The next steps: for each a head, words, an anchor of the page, and a command, which may be empty."""
     steps = [_raise(view, advice)] if advice else []
     if site and len(site["gain"]) > 1 and view is not plan:
         one, *more = [percent(row["value"], row["std_error"], view.count, bar=False) for row in site["gain"]]
         together = [f"{('two', 'three')[row['sensors'] - 2] if row['sensors'] < 4 else row['sensors']} detect {share}"
                     for row, share in zip(site["gain"][1:], more)]
         steps.append({"head": "Weigh a second lidar.", "more": "#sites", "command": "",
-                      "words": f"Where one detects {one}{' over the year' if view.year else ''}, {listed(together)} at their best sites, "
+                      "words": f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, {listed(together)}, "
                                "if they miss birds independently."})
     if site and view is not plan:
         steps.append(_check(view, site))
     steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
-                  "words": f"Size and reflectance ({view.coverage.reflectance:g}) of birds, and {len(set(view.assumed))} numbers of {view.name}: ask its "
-                           "maker. What darker birds change:",
+                  "words": f"Assumed are size and reflectance ({view.coverage.reflectance:g}) of birds and "
+                           f"{len(set(view.assumed))} numbers of {view.name}: ask the "
+                           "maker for these numbers. This command shows the effect of darker birds:",
                   "command": command(plan, "report", "darker.html", **{"coverage.reflectance": f"{view.coverage.reflectance / 2.0:g}"})})
     return steps
 
 
 def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
-    """The sensor itself, where its band leaves out heights that are asked for."""
+    """A change of the sensor, if the band leaves out heights of the plan."""
     found = {"head": "Change the beams first.", "more": "#heights-in-band", "command": ""}
     if advice["needed"] is None:
         return {**found, "head": "Take a lidar that sees farther.",
-                "words": "At the heights asked for no bird is near enough, whatever the elevation of the beams."}
+                "words": "At the heights of the plan no bird is near enough, whatever the elevation of the beams."}
     best = max(advice["ways"], key=lambda way: way["then"]["detection_probability"], default=None)
-    ends = f"They end at {advice['high']:.1f}°; for all heights asked for they should go up to {advice['needed']:.1f}°"
+    ends = f"The beams end at {advice['high']:.1f}°. For all heights of the plan they should reach {advice['needed']:.1f}°"
     if best is None:
-        return {**found, "words": f"{ends}. No change of them that was tried detects more from there."}
+        return {**found, "words": f"{ends}. No tried change of the beams detects more birds from the same place."}
     now, then = (percent(one["detection_probability"], one["detection_std_error"], one["places"], bar=False) for one in (advice["now"], best["then"]))
-    return {**found, "words": f"{ends}. From the same place {best['what'].partition(' (')[0]} detect {then} instead of {now}; it costs "
-                              f"{best['cost']}."}
+    return {**found, "words": f"{ends}. From the same place {best['what'].partition(' (')[0]} detect {then} "
+                              f"instead of {now}. The change costs {best['cost']}."}
 
 
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
-    """Sentences on candidates that are as good as the best, and on its place in the lattice, each perhaps none."""
+    """Sentences on candidates that are as good as the best, and on a best candidate at the lattice's edge; each list may be empty."""
     alike = site["alike"]
     return ([f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error."] * (alike > 0),
-            ["It lies at the lattice's edge: wider bounds may have a better one."] * site["edge"])
+            ["The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."] * site["edge"])
 
 
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
-    """The site itself."""
-    words = [f"{site['surfaces']}; what no map has may be there."]
+    """The step that checks the site."""
+    words = [f"{site['surfaces']}. Objects that no map shows may stand there."]
     masts = [f"{percent(row['share'][0], row['share'][1], view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
@@ -244,10 +245,10 @@ def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     alone = [row for row in site["robustness"] if row["sensors"] == 1]
     if alone:
         most = max(alone, key=lambda row: row["another winner"])
-        words.append(f"With other numbers ({most['change']}) another wins in up to {most['another winner']} of {most['draws']} draws, with at most "
-                     f"{1.0 + max(row['gain at most'] for row in alone):.2f} times the share.")
+        words.append(f"With other numbers ({most['change']}) another site wins in up to {most['another winner']} of "
+                     f"{most['draws']} draws, with at most {1.0 + max(row['gain at most'] for row in alone):.2f} times the share.")
     words += edge
     if site["draws"] < FEWEST_DRAWS:
-        words.append(f"How sure it is the best was not looked at: that takes draws={FEWEST_DRAWS}.")
-    return {"head": "Check the site.", "more": "#sites", "words": " ".join(words) + " Its maps for GIS:",
+        words.append(f"How sure the best site is was not computed, because this needs draws={FEWEST_DRAWS}.")
+    return {"head": "Check the site.", "more": "#sites", "words": " ".join(words) + " Maps of the site for GIS:",
             "command": command(view, "coverage", "maps", **{"sensor.position": ",".join(rounded(view.sensor.position))})}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Predictions for labelled sequences, held against their labels: the command `avianlidar bench`."""
+"""Comparison of predictions for labelled sequences with the labels: the command `avianlidar bench`."""
 from __future__ import annotations
 
 import itertools
@@ -24,12 +24,12 @@ from ._sequence import FOLDERS
 from ._simulation import SUBSETS
 from ._tables import embedded, read_table, render
 
-RANGES = (0.0, 200.0, 400.0, 600.0, 1000.0, math.inf)  # m
-LOST = 3  # scans with points, one after the other, of which none is called bird, end the track of a bird
-FALSE = (1, 10)  # points a scan that may be false
-RECALLS = np.linspace(0.0, 1.0, 101)  # of the curve
-SURE = 2.0  # standard errors that a difference is larger than, to be called one
-# Of a score: words and unit of the page.
+RANGES = (0.0, 200.0, 400.0, 600.0, 1000.0, math.inf)  # limits of the groups by range, m
+LOST = 3  # number of consecutive scans with points of a bird, none predicted as bird, after which the bird's track is lost
+FALSE = (1, 10)  # allowed false points a scan
+RECALLS = np.linspace(0.0, 1.0, 101)  # recalls of the curve
+SURE = 2.0  # a difference is sure if it is larger than this number of standard errors
+# Scores with the words and the unit of the page.
 SCORES = {**{f"recall_at_{most}": (f"recall at {most} false point{'s' if most > 1 else ''} a scan", "%") for most in FALSE},
           "average_precision": ("average precision", ""), "iou": ("IoU", ""), "recall": ("recall", "%"), "precision": ("precision", "%"),
           "false": ("false points a scan", ""), "lost": ("tracks lost", "%"), "others": ("others under way called birds", "%")}
@@ -37,26 +37,26 @@ ALL = ("all", "")  # the group of all points
 
 
 class Points(NamedTuple):
-    """The points of a sequence that are scored, or of one scan. Arrays of a value for each point."""
+    """The scored points of a sequence or of one scan, in arrays with one value for each point."""
     scan: np.ndarray
-    bird: np.ndarray                # whether it is one
-    other: np.ndarray               # whether it is something else under way: neither right nor wrong
+    bird: np.ndarray                # whether the point belongs to a bird
+    other: np.ndarray               # whether the point belongs to another moving object, which counts as neither right nor wrong
     instance: np.ndarray
     subset: np.ndarray
     range: np.ndarray               # m
-    called: np.ndarray              # whether it is predicted to be a bird
-    score: Optional[np.ndarray]     # the greater, the surer
+    called: np.ndarray              # whether the point is predicted to be a bird
+    score: Optional[np.ndarray]     # score of a bird; greater means surer
 
 
 class Threshold(NamedTuple):
-    """By their scores: how many birds and false points are at and above each value, from the greatest on."""
+    """Scores in descending order, with the numbers of birds and of false points at or above each score."""
     values: np.ndarray
     birds: np.ndarray
     false: np.ndarray
 
 
 def ranked(score, bird, other) -> Threshold:
-    """Points by falling score. Points of the same score come together."""
+    """Points by descending score. Points of the same score form one step."""
     score, bird = score[~other], bird[~other]
     order = np.argsort(-score, kind="stable")
     score, birds = score[order], np.cumsum(bird[order])
@@ -65,19 +65,19 @@ def ranked(score, bird, other) -> Threshold:
 
 
 def threshold(rank: Threshold, most: float) -> float:
-    """The least score with no more false points than that; nan, which no score reaches, if the first has more."""
+    """The least score with at most that many false points; nan, which no score reaches, if the first step has more."""
     fit = np.flatnonzero(rank.false <= most)
     return float(rank.values[fit[-1]]) if len(fit) else math.nan
 
 
 def average_precision(rank: Threshold) -> float:
-    """The mean of the precision, each weighted with the recall that is won there; nan without a bird."""
+    """The mean of the precision, weighted with the gain of recall at each step; nan without a bird."""
     won = np.diff(rank.birds, prepend=0)
     return float(np.sum(won * rank.birds / (rank.birds + rank.false)) / rank.birds[-1]) if rank.birds.any() else math.nan
 
 
 def curve(rank: Threshold) -> np.ndarray:
-    """The greatest precision at each of `RECALLS` or more."""
+    """The greatest precision at or above each of `RECALLS`."""
     if not rank.birds.any():
         return np.full(len(RECALLS), math.nan)
     best = np.maximum.accumulate((rank.birds / (rank.birds + rank.false))[::-1])[::-1]
@@ -86,7 +86,7 @@ def curve(rank: Threshold) -> np.ndarray:
 
 
 def lost(points: Points) -> Tuple[int, int]:
-    """(birds that have points in `LOST` scans one after the other; those of them that have none called bird in some such scans)."""
+    """(birds that have points in `LOST` consecutive scans; those with such scans without a point predicted as bird)."""
     many = lost_ones = 0
     mine = np.flatnonzero(points.bird)
     mine = mine[np.argsort(points.instance[mine], kind="stable")]
@@ -100,7 +100,8 @@ def lost(points: Points) -> Tuple[int, int]:
 
 
 def scores(points: Points, among: np.ndarray, scans: int, least: Sequence[float]) -> Dict[str, float]:
-    """Scores of some of the points of a sequence. @param among which @param scans of the sequence @param least scores of a bird, for each of `FALSE`"""
+    """Scores of a group of points of a sequence. @param among which points @param scans number of scans of the sequence @param least least
+    score of a bird, for each of `FALSE`"""
     bird, called, other = points.bird & among, points.called & among, points.other & among
     hit, false, missed = (int(np.count_nonzero(part)) for part in (bird & called, called & ~points.bird & ~other, bird & ~called))
 
@@ -120,7 +121,7 @@ class Set:
     """A folder that `avianlidar sequence` has made."""
 
     def __init__(self, folder, numbers: Sequence[str] = (), first: int = 0):
-        """@param numbers of the sequences that are scored, default all @param first scan of each that is: those before are history"""
+        """@param numbers numbers of the scored sequences, default all @param first first scored scan of each sequence"""
         self.folder, self.first, manifest = pathlib.Path(folder), first, read_manifest(folder)
         parts, scenario = sorted(manifest["sequences"]), manifest["scenario"]
         self.numbers = [number for number in parts if not numbers or number in numbers]
@@ -132,19 +133,19 @@ class Set:
         self.scene, self.sensor = pathlib.Path(scenario["scene"]).name.split(".")[0], pathlib.Path(str(scenario["sensor"]["preset"])).name.split(".")[0]
 
     def species(self, number: str) -> Dict[int, str]:
-        """Of a sequence's birds by instance."""
+        """The species of the birds of a sequence by instance."""
         rows = read_table(self.folder / "sequences" / number / "truth.csv", ("bird", "species"), "the truth of a sequence")
         return {int(row["bird"]) + 1: row["species"] for row in rows}
 
     def points(self, number: str, predictions: pathlib.Path) -> Tuple[Points, int]:
-        """The points of a sequence with what is predicted of them, and the number of scans."""
+        """The points of a sequence with their predictions, and the number of scans."""
         home, theirs = self.folder / "sequences" / number, predictions / "sequences" / number
         names = [file.stem for file in sorted((home / "velodyne").glob("*.bin"))][self.first:]
         if not names:
             raise Error(f"{home}: has no scan from number {self.first} on, expected longer sequences or a smaller --first")
         kinds = [(home / folder, suffix, kind) for (folder, suffix, _), kind in zip(FOLDERS, ("<f4", "<u4", "u1"))]
         kinds.append((theirs / "predictions", ".label", "<u4"))
-        if any((theirs / "predictions" / f"{name}.score").exists() for name in names):  # then of all scans
+        if any((theirs / "predictions" / f"{name}.score").exists() for name in names):  # then all scans need scores
             kinds.append((theirs / "predictions", ".score", "<f4"))
         columns = []
         for scan, name in enumerate(names):
@@ -163,7 +164,7 @@ class Set:
         return Points(*arrays[:7], *(arrays[7:] or [None])), len(names)
 
     def groups(self, number: str, points: Points) -> Dict[Tuple[str, str], np.ndarray]:
-        """Which points are in a group: by what, and its name."""
+        """For each group (kind, name), which points belong to the group."""
         found: Dict[Tuple[str, str], np.ndarray] = {("all", ""): np.ones(len(points.bird), bool)}
         found.update({("subset", words.replace("_", " ")): points.subset == place for place, words in enumerate(SUBSETS)})
         for low, high in zip(RANGES, RANGES[1:]):
@@ -178,7 +179,7 @@ class Set:
 def _content(file: pathlib.Path, kind: str) -> np.ndarray:
     if not file.exists():
         expected = "scores of all scans or of none" if file.suffix == ".score" else "a file for each scan, of the same number"
-        raise Error(f"{file}: is not there, expected {expected}")
+        raise Error(f"{file}: is missing, expected {expected}")
     content, unit = read_regular(file), 16 if file.suffix == ".bin" else np.dtype(kind).itemsize
     if len(content) % unit:
         raise Error(f"{file}: has {len(content)} bytes, expected {unit} for each point")
@@ -186,7 +187,7 @@ def _content(file: pathlib.Path, kind: str) -> np.ndarray:
 
 
 class Scored:
-    """What predictions for a set score: by group the values of each sequence, and the curves."""
+    """Scores of predictions for a set: for each group the values of the sequences, and the curves."""
 
     def __init__(self, of: Set, predictions: pathlib.Path, name: str, step: Callable[[], Any] = lambda: None):
         self.set, self.name = of, name
@@ -206,27 +207,27 @@ class Scored:
                 if group[0] == "all":
                     many, gone = lost(points)
                     found["lost"] = gone / many if many else math.nan
-                if group[0] == "species":  # nothing false is of a species
+                if group[0] == "species":  # false points have no species
                     found = {key: found[key] for key in found if key == "birds" or key.startswith("recall")}
                 self.values.setdefault(group, []).append(found)
             step()
 
     def of_sequences(self, group: Tuple[str, str], score: str) -> np.ndarray:
-        """A value for each sequence, nan without the score."""
+        """A value for each sequence, nan if the sequence has no score."""
         return np.array([values.get(score, math.nan) for values in self.values.get(group, ())])
 
     def value(self, group: Tuple[str, str], score: str) -> Value:
-        """The mean of the sequences and its standard error."""
+        """The mean over the sequences and the standard error."""
         found = self.of_sequences(group, score)
         return mean(found[~np.isnan(found)])
 
     def points(self, group: Tuple[str, str]) -> int:
-        """Of birds, in all sequences."""
+        """Number of points of birds in all sequences."""
         return int(sum(values["birds"] for values in self.values.get(group, ())))
 
 
 def verdict(scored: Sequence[Scored]) -> str:
-    """Which predictions for a set are best, and by how much: by recall, if all have scores, and by intersection over union."""
+    """Sentence on the best predictions for a set and their lead: by recall if all have scores, and by intersection over union."""
     return " ".join(_best(scored, score) for score in (f"recall_at_{FALSE[0]}", "iou") if score == "iou" or all(one.curves for one in scored))
 
 
@@ -240,19 +241,19 @@ def _best(scored: Sequence[Scored], score: str) -> str:
     parts = []
     for other in ordered[1:]:
         differences = best.of_sequences(ALL, score) - other.of_sequences(ALL, score)
-        by = mean(differences[~np.isnan(differences)])  # by sequences that both have
-        sure = by.value > SURE * by.error  # never with one sequence
+        by = mean(differences[~np.isnan(differences)])  # from sequences that both have
+        sure = by.value > SURE * by.error  # never true with one sequence
         parts.append(f"{cell(by, unit, ' percentage points' if unit else '')} more than {other.name}{'' if sure else ' (no sure difference)'}")
     end = f": {'; '.join(parts)}." if parts else "."
     return f"{best.name} has the best {words}, {cell(values[best.name], unit)}{end}"
 
 
 class Bench:
-    """Sets and predictions for each: tables, curves, and a page."""
+    """Sets with predictions for each: tables, curves, and a page."""
 
     def __init__(self, folders: Sequence[Any], predictions: Sequence[Any], numbers: Sequence[str] = (), first: int = 0):
-        """@param folders sets @param predictions folders that hold sequences/NN/predictions/NNNNNN.label, of several sets in a folder with the
-        set's name each @param numbers, first as those of `Set`"""
+        """@param folders sets @param predictions folders that hold sequences/NN/predictions/NNNNNN.label, for several sets in a subfolder
+        with the name of each set @param numbers, first as in `Set`"""
         if first < 0:
             raise Error(f"first is {first}, expected 0 or more")
         self.sets = [Set(folder, numbers, first) for folder in folders]
@@ -271,7 +272,7 @@ class Bench:
         raise Error(f"{folder}: holds no predictions for {one.name}, expected {expected}")
 
     def write(self, out, progress: Callable[[str, int, int], Any] = lambda *_: None) -> List[List[Scored]]:
-        """Write bench.csv, curves.csv, pictures and bench.html into a folder. @return what each set's predictions score"""
+        """Writes bench.csv, curves.csv, pictures and bench.html to a folder. @return the scores of each set's predictions"""
         out = pathlib.Path(out)
         total, done = sum(len(one.numbers) for one, _, _ in self.jobs), itertools.count(1)
         with only_run(out):
@@ -302,7 +303,7 @@ class Bench:
 
     @staticmethod
     def _shown(out: pathlib.Path, scored: Sequence[Scored]) -> Dict[str, Any]:
-        """What the page says of a set."""
+        """The values that the page shows for a set."""
         first = scored[0]
 
         def row(name: str, group: Tuple[str, str], keys: Sequence[str]) -> Dict[str, Any]:

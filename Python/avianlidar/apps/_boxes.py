@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Boxes about what moves, for networks that learn boxes."""
+"""Boxes around movers, for networks that learn boxes."""
 from __future__ import annotations
 
 import math
@@ -11,11 +11,11 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator
 
 from .._cloud import Cloud, field_values, leaves_of, triangles_of
 
-RAYS = 72  # at least, to a mover: the triangles of a bird
+RAYS = 72  # least number of rays to a mover
 
 
 def _rotation(times: np.ndarray, quaternions: np.ndarray, time: float) -> np.ndarray:
-    """From a mover's frame to the scene's at a time, s. @param quaternions w, x, y, z"""
+    """Rotation from a mover's frame to the scene's at a time, s. @param quaternions w, x, y, z"""
     from scipy.spatial.transform import Rotation, Slerp
     turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
     return (Slerp(times, turns)(np.clip(time, times[0], times[-1])) if len(times) > 1 else turns[0]).as_matrix()
@@ -29,16 +29,16 @@ def _parts(n: int) -> np.ndarray:
 
 
 class Boxes:
-    """Boxes of the movers of scans. What hides them are the surfaces of the scene, what cuts them is the sensor's field of view: the
-    azimuths, elevations and ranges between its outermost beams."""
+    """Boxes of the movers of scans. Surfaces of the scene hide movers. The field of view cuts movers: it contains the azimuths,
+    elevations and ranges between the sensor's outermost beams."""
 
     def __init__(self, surfaces: vtkPolyData, sensor, pose: np.ndarray):
         """sensor  a Sensor, at rest
-           pose    3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's"""
+           pose    3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates"""
         self.pose, self.gate = pose, (float(sensor.minimum_range), float(sensor.range_gate))
         self.locator = vtkStaticCellLocator()
         self.locator.SetDataSet(surfaces)
-        self.locator.SetNumberOfCellsPerNode(2)  # by default rays take several times as long
+        self.locator.SetNumberOfCellsPerNode(2)  # by default, rays take several times as long
         self.has_surfaces = surfaces.GetNumberOfCells() > 0
         if self.has_surfaces:
             self.locator.BuildLocator()
@@ -46,17 +46,17 @@ class Boxes:
         turned, margin = np.sort(turned), float(sensor.half_beamwidth)
         self.low, self.high = up.min() - margin, up.max() + margin
         gaps = np.diff(np.append(turned, turned[0] + 2 * np.pi))
-        widest = int(gaps.argmax())  # behind it the field of view begins
+        widest = int(gaps.argmax())  # the field of view begins after the widest gap
         self.begin = turned[(widest + 1) % len(turned)] - margin
         self.width = 2 * np.pi if gaps[widest] < np.radians(10) else 2 * np.pi - gaps[widest] + 2 * margin
 
     @staticmethod
     def _angles(rows: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """To the left and up of each row, rad."""
+        """Angles to the left and upwards of each row, rad."""
         return np.arctan2(rows[:, 1], rows[:, 0]), np.arctan2(rows[:, 2], np.hypot(rows[:, 0], rows[:, 1]))
 
     def lines(self, report: Cloud, movers) -> str:
-        """A line for each mover in the field of view. @param report the mover report @param movers the composite that the scan had"""
+        """A line for each mover in the field of view. @param report the mover report @param movers the composite of movers of the scan"""
         blocks = {int(block.GetCellData().GetArray("object_id").GetTuple1(0)): block for block in leaves_of(movers)}
         columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes")] if report.number_of_points else [[]]
         return "".join(self._line(blocks[number], number, 1e-6 * time, points, place) for number, time, points, place in zip(*columns, report.points))
@@ -70,7 +70,7 @@ class Boxes:
         if truncated >= 1:
             return ""
         bounds = np.reshape(block.GetBounds(), (3, 2))
-        width, length, height = bounds[:, 1] - bounds[:, 0]  # x is right, y forward
+        width, length, height = bounds[:, 1] - bounds[:, 0]  # x is right, y is forward
         centre = (rotation @ bounds.mean(axis=1) + place - self.pose[:, 3]) @ self.pose[:, :3]
         ahead = rotation[:, 1] @ self.pose[:, :3]
         name = "_".join(str(fields["object_classes"][0]).split()) or "object"
@@ -78,7 +78,7 @@ class Boxes:
         return f"{name} {truncated:.2f} {hidden:.2f} {' '.join(f'{value:.4f}' for value in numbers)} {number} {points}\n"
 
     def _shares(self, triangles: np.ndarray) -> Tuple[float, float]:
-        """How much of what is turned to the sensor is out of the field of view, and how much of the rest is hidden."""
+        """The share of the visible side that is outside the field of view, and the hidden share of the rest."""
         place, parts = self.pose[:, 3], _parts(math.ceil(math.sqrt(RAYS / len(triangles))))
         centres = np.einsum("pc,tcx->tpx", parts, triangles).reshape(-1, 3)
         views = centres - place

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Places where a lidar may stand: outside of outlines, on the ground, with masts below obstacle limitation surfaces of runways.
 
-Those are the strip, approach and transitional surfaces of ICAO Annex 14. `surfaces.json` has the dimensions with their source, and says what is
-assumed. Inner horizontal and conical surfaces, 45 m and more above the aerodrome, and take-off climb surfaces are not modelled.
+The surfaces are the strip, approach and transitional surfaces of ICAO Annex 14. `surfaces.json` has the dimensions, their source and
+assumptions. Not modelled are inner horizontal and conical surfaces, which lie 45 m and more above the aerodrome, and take-off climb
+surfaces.
 """
 from __future__ import annotations
 
@@ -20,14 +21,14 @@ from ._json import packaged
 from ._regions import Runway, runway_outline
 
 MOST_CANDIDATES = 100_000
-SAME_PLACE = 1e-3  # m: candidates whose coordinates are the same to this are one
+SAME_PLACE = 1e-3  # m: candidates with equal coordinates to this precision are one candidate
 NAMES = ("strip", "approach", "transitional")
-STEP = 100.0  # m, along a runway between places where its height is taken from the scene
+STEP = 100.0  # distance along a runway between places at which the runway's height is taken from the scene, m
 
 
 def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
-    """Which points (n x 2, m) lie in an outline or within `margin` (m) of it: n of bool. @param outline a ring (m x 2, m), or several:
-    the outer one and holes"""
+    """Which points (n x 2, m) lie in an outline or within `margin` (m) of the outline: n of bool. @param outline a ring (m x 2, m), or
+    several rings: the outer ring and holes"""
     from ._gdal import geometry
     points = np.asarray(points, dtype=float)[:, :2]
     rings = [np.asarray(ring) for ring in (outline if np.ndim(outline[0]) == 2 else [outline])]
@@ -43,8 +44,8 @@ def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
 
 
 def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
-    """Points n x 2 (m), x fastest, at most MOST_CANDIDATES. @param bounds least and greatest x, least and greatest y, m, both
-    included"""
+    """Points n x 2 (m), x fastest, at most MOST_CANDIDATES. @param bounds least and greatest x, least and greatest y, m,
+    inclusive"""
     if not spacing > 0.0 or bounds[1] < bounds[0] or bounds[3] < bounds[2]:
         raise ValueError(f"spacing {spacing} and bounds {tuple(bounds)} make no lattice")
     counts = [np.floor((high - low) / spacing + 1e-9) + 1.0 for low, high in (bounds[:2], bounds[2:])]
@@ -60,7 +61,7 @@ def _check_count(count: float, what: str, instead: str) -> None:
 
 
 def _along_verticals(scene, points) -> List[np.ndarray]:
-    """z of all surfaces above and below each point (n x 2, m), rising."""
+    """z of all surfaces above and below each point (n x 2, m), ascending."""
     update(scene.tree)
     surfaces = scene.tree.GetOutput()
     low, high = surfaces.GetBounds()[4:]
@@ -75,19 +76,19 @@ def _along_verticals(scene, points) -> List[np.ndarray]:
 
 
 def ground_of(scene, points) -> np.ndarray:
-    """z of the lowest surface at each point, m; NaN where there is none. @param points n x 2, m"""
+    """z of the lowest surface at each point, m; NaN without a surface. @param points n x 2, m"""
     return np.array([z[0] if len(z) else np.nan for z in _along_verticals(scene, points)])
 
 
 def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (), scene=None) -> np.ndarray:
-    """Where a lidar may stand, n x 3, m: each point that no exclusion holds, with each mast. Of candidates in one place only the
-    first is there, with a warning: two sensors there would be one.
+    """Places where a lidar may stand, n x 3, m: each point outside all exclusions, with each mast. Candidates at equal places are
+    reduced to the first, with a warning, because two sensors at one place would count as one.
 
     points      n x 2, m
     masts       heights above the ground, m
-    exclusions  outlines (m x 2, m), each with the margin (m) around it
-    scene       a Scene: its lowest surface is the ground, and nothing may stand under another one, as in a building. None: the
-                ground is at z = 0, as it is where the scene has no surface
+    exclusions  outlines (m x 2, m), each with the margin (m) around the outline
+    scene       a Scene: its lowest surface is the ground, and no candidate may stand under another surface, as in a building. None:
+                the ground is at z = 0, as it is where the scene has no surface
     """
     points = rows_of("points", points, (2,))
     _check_count(len(points) * len(masts), f"{len(points)} points and {len(masts)} masts make", "take fewer")
@@ -103,28 +104,28 @@ def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tup
     places = np.concatenate(found)
     first = np.sort(np.unique(np.round(places / SAME_PLACE), axis=0, return_index=True)[1])
     if len(first) < len(places):
-        warnings.warn(f"{len(places) - len(first)} of {len(places)} candidates stand where another one stands, and are left out",
+        warnings.warn(f"{len(places) - len(first)} of {len(places)} candidates stand at the place of another candidate, and are left out",
                       RuntimeWarning, stacklevel=callers_level())
     return places[first]
 
 
 def table() -> Dict[str, Any]:
-    """All dimensions, their source, and what is assumed."""
+    """All dimensions, their source, and the assumptions."""
     return packaged("surfaces.json")
 
 
 def code_of(length: float) -> int:
-    """The code number, 1 to 4, that goes with a runway's length, m."""
+    """The code number, 1 to 4, that belongs to a runway's length, m."""
     return 1 + int(np.searchsorted(table()["codes"]["lengths"], length, side="right"))
 
 
 @dataclasses.dataclass(frozen=True)
 class Surfaces:
-    """The surfaces of a runway.
+    """The obstacle limitation surfaces of a runway.
 
-    code      number, 1 to 4              category  of the approach: non-instrument, non-precision, precision
-    numbers   dimensions of each surface that is kept, as in `surfaces.json`
-    profile   distances from the runway's start, m, and the heights (z, m) of its middle there
+    code      number, 1 to 4              category  category of the approach: non-instrument, non-precision, precision
+    numbers   dimensions of each surface that counts, as in `surfaces.json`
+    profile   distances from the runway's start, m, and heights (z, m) of the runway's middle line at these distances
     """
 
     runway: Runway
@@ -135,8 +136,8 @@ class Surfaces:
 
     @classmethod
     def of(cls, runway: Runway, scene=None, changes: Optional[Mapping[str, Any]] = None) -> Surfaces:
-        """The surfaces by the table. @param scene its lowest surface is the ground, which is at z = 0 where it has none
-        @param changes code, category, and of surfaces False, which leaves one out, or other dimensions"""
+        """The surfaces from the table. @param scene scene whose lowest surface is the ground; without a surface the ground is at z = 0
+        @param changes code, category, and for a surface False, which leaves the surface out, or other dimensions"""
         changes = changes or {}
         length = runway.axis()[1]
         code, category = changes.get("code", code_of(length)), changes.get("category", table()["category"]["default"])
@@ -158,12 +159,12 @@ class Surfaces:
         return runway_outline(self.runway, self.numbers["strip"]["beyond"], self.numbers["strip"]["half_width"])
 
     def limits(self, points) -> Dict[str, np.ndarray]:
-        """The height (z, m) of each surface that is kept above or below each point: infinite where there is none, minus infinity in the
-        strip, where nothing may stand. @param points n x 2 or n x 3, m"""
+        """The height (z, m) of each counting surface above or below each point: infinite outside the surface, minus infinity in the
+        strip, where no lidar may stand. @param points n x 2 or n x 3, m"""
         axis, length = self.runway.axis()
         off = np.asarray(points, dtype=float)[:, :2] - self.runway.start
         along, aside = off @ axis, np.abs(off @ np.array([axis[1], -axis[0]]))
-        beyond = np.maximum(-along, along - length)  # the nearer end; below 0 beside the runway
+        beyond = np.maximum(-along, along - length)  # distance beyond the nearer end, m; negative beside the runway
         ground = np.interp(along, *self.profile)
         strip, approach, transitional = (self.numbers[name] for name in NAMES)
         lengths, slopes = np.transpose(approach["sections"])
@@ -181,7 +182,7 @@ class Surfaces:
 
 
 def pierced(surfaces: Sequence[Surfaces], tops) -> np.ndarray:
-    """Which surface each top pierces first: 0 for none, else 1 more than its number in NAMES. @param tops of masts, n x 3, m"""
+    """The first surface that each top pierces: 0 for none, else 1 + the number in NAMES. @param tops tops of masts, n x 3, m"""
     tops = np.asarray(tops, dtype=float)
     found = np.zeros(len(tops), dtype=int)
     for number, name in enumerate(NAMES, 1):

@@ -22,23 +22,23 @@ from ._json import load_json
 from ._scores import Value
 from ._tables import embedded, render
 
-HEIGHTS = (0.0, 10.0, 30.0, 60.0, math.inf)  # m, bands of a bird's mean height
-WARNED = (10.0, 30.0, 60.0)  # s
+HEIGHTS = (0.0, 10.0, 30.0, 60.0, math.inf)  # limits of the bands of a bird's mean height, m
+WARNED = (10.0, 30.0, 60.0)  # warning times that are counted, s
 Named = List[Tuple[str, str, Value]]  # words, unit and value of scores
-# Of groups of birds: name, words and unit of the page.
-OF_BIRDS = (("tracked", "birds tracked", "%"), ("near", "or beside a track", "%"), ("time", "share of time", "%"),
+# Scores of groups of birds: name, words and unit on the page.
+OF_BIRDS = (("tracked", "birds tracked", "%"), ("near", "tracked or beside a track", "%"), ("time", "share of time", "%"),
             ("delay", "delay", "s"), ("switches", "identity switches", ""))
 OF_TRACKS = (("false", "false tracks an hour", ""), ("vehicle", "tracks of vehicles an hour", ""),
              ("second", "second tracks of a bird an hour", ""), ("ospa", "OSPA distance", "m"), ("ospa_localisation", "OSPA: localisation", "m"),
              ("ospa_cardinality", "OSPA: without partner", "m"))
-NEAREST = 300.0  # m that maps hold around the sensor at least
-FEWEST = 5  # birds of a curve of warnings
-COLOURS = ("#1b9e77", "#66c2a5", "#7570b3", "#d95f02", "#e7298a", "#66a6ff")  # of ORIGINS
+NEAREST = 300.0  # least extent of maps around the sensor, m
+FEWEST = 5  # least number of birds for a curve of warnings
+COLOURS = ("#1b9e77", "#66c2a5", "#7570b3", "#d95f02", "#e7298a", "#66a6ff")  # colours of ORIGINS
 Results = List[Dict[str, Any]]
 
 
 def of_birds(birds: Results) -> Dict[str, Value]:
-    """Scores of a group of birds that were in the volume."""
+    """Scores of a group of birds that were in the volume of the sensor."""
     found = [bird for bird in birds if bird["found_s"] is not None]
     return {"tracked": scores.share(len(found), len(birds)), "near": scores.share(sum(bird["near"] > 0 for bird in birds), len(birds)),
             "time": scores.ratio([bird["tracked"] for bird in birds], [bird["scans"] for bird in birds]),
@@ -55,8 +55,8 @@ def of_tracks(sequences: Results) -> Dict[str, Value]:
 
 
 def warnings_of(birds: Results, volume: str) -> np.ndarray:
-    """s that each bird which flies into a volume was beside a confirmed track before; 0 without one. A bird that begins in such a
-    volume counts if it flies into another one."""
+    """Warning times, s: how long each bird that flies into a volume was on or beside a confirmed track before; 0 without a track. A bird
+    that begins in such a volume counts if it flies into a different volume."""
     return np.array([max(bird[volume] - bird["near_s"], 0.0) if bird["near_s"] is not None else 0.0 for bird in birds if bird[volume] is not None])
 
 
@@ -78,7 +78,7 @@ GROUPS: Tuple[Tuple[str, Callable[[Dict[str, Any]], str]], ...] = (
 
 
 def _groups(everywhere: Sequence[Results]) -> List[Dict[str, Any]]:
-    """By species, height and weather: rows with the scores of each input."""
+    """Rows by species, height and weather with the scores of each input."""
     found = []
     for by, name_of in GROUPS:
         names = {name_of(bird) for birds in everywhere for bird in birds}
@@ -89,7 +89,7 @@ def _groups(everywhere: Sequence[Results]) -> List[Dict[str, Any]]:
 
 
 def cell(value: Value, unit: str = "", words: Optional[str] = None) -> str:
-    """A score with its standard error, both to the second digit of the error or hundredths. @param words in place of the unit"""
+    """A score with its standard error, both to the second digit of the error or to hundredths. @param words words in place of the unit"""
     number, error = ((100.0 if unit == "%" else 1.0) * part for part in value[:2])
     if math.isnan(number):
         return "–"
@@ -103,14 +103,14 @@ def _named(kinds: Sequence[Tuple[str, str, str]], of: Mapping[str, Value]) -> Na
 
 
 def _rows(parts: Sequence[Named]) -> List[Dict[str, Any]]:
-    """A row for each score. @param parts of each input"""
+    """A row for each score. @param parts scores of each input"""
     return [{"words": same[0][0], "cells": [cell(value, unit) for _, unit, value in same]} for same in zip(*parts)]
 
 
 def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]], runways: Sequence[Sequence[Any]], settings: Dict[str, Any],
                progress: Callable[[str, int, int], Any]) -> Dict[str, Any]:
-    """Write card.csv, tracks.csv, birds.csv, pictures, card.json and card.html. @param results of each input, by the number of the sequence
-    @return what card.json holds"""
+    """Writes card.csv, tracks.csv, birds.csv, pictures, card.json and card.html. @param results results of each input, by the number of the
+    sequence @return the content of card.json"""
     sequences = [list(of.values()) for of in results]
     birds = [[bird for one in of for bird in one["birds"]] for of in sequences]
     overall = [{**of_birds(flock), **of_tracks(of)} for flock, of in zip(birds, sequences)]
@@ -154,10 +154,10 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
 
 
 def _answer(name: str, of: Dict[str, Value], warned: Sequence[Tuple[str, np.ndarray]]) -> str:
-    """The card of an input in a sentence."""
+    """A sentence that sums up the card of an input."""
     mean = ", ".join(f"a warning of {cell(scores.mean(seconds), 's')} before the {volume} ({len(seconds)} birds)"
                      for volume, seconds in warned if len(seconds) >= FEWEST)
-    return (f"{name}: {cell(of['tracked'], '%')} of birds tracked, {cell(of['near'], '%')} in or beside a track, "
+    return (f"{name}: {cell(of['tracked'], '%')} of birds tracked, {cell(of['near'], '%')} tracked or beside a track, "
             f"{cell(of['false'])} false tracks an hour{', and on average ' + mean if mean else ''}.")
 
 
@@ -173,7 +173,7 @@ def read_card(folder) -> Dict[str, Any]:
 
 
 def shown(folder: pathlib.Path, card: Dict[str, Any]) -> Dict[str, Any]:
-    """A card whose pictures are in it."""
+    """A card with embedded pictures."""
     return {**card, "pictures": [{**picture, "source": embedded(folder / picture["file"])} for picture in card["pictures"]]}
 
 
@@ -193,8 +193,9 @@ def _pictures(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapp
         ground = _ground(of, lines, of.sensor.position[:2], reach)
         count = sum(clutter == 0 for clutter in last["clutter"])
         add("strip", f"{of.name}-scan.png", (13.2, 3.7), f"One scan of {of.name} in four steps.",
-            f"{of.name}, scan {last['scan']} (sequence {number}), from above: its {len(last['clutter'])} echoes; the {count} that the clutter filter leaves; "
-            "confirmed tracks so far; birds as they were, tracked or not", lambda axes, ground=ground, first=first: _draw_strip(axes, ground, first), 4)
+            f"{of.name}, scan {last['scan']} (sequence {number}), from above: its {len(last['clutter'])} echoes; the {count} "
+            "echoes that the clutter filter keeps; confirmed tracks so far; "
+            "birds as they were, tracked or not", lambda axes, ground=ground, first=first: _draw_strip(axes, ground, first), 4)
         begun = [track for sequence in one.values() for track in sequence["tracks"]]
         where = np.array([track["begin"][:2] for track in begun] or [of.sensor.position[:2]])
         reach = max(NEAREST, 1.05 * float(np.abs(where - of.sensor.position[:2]).max()))
@@ -211,8 +212,8 @@ def _pictures(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapp
 
 
 def _ground(of: Input, runways: Sequence[Any], middle: Sequence[float], reach: float) -> Any:
-    """What `draw_airport` draws, to that many metres around a place."""
-    scene = of.scene if pathlib.Path(of.scenario["scene"]).exists() else None  # sequences may have come without
+    """The ground that `draw_airport` draws, up to `reach` metres around a place."""
+    scene = of.scene if pathlib.Path(of.scenario["scene"]).exists() else None  # sequences may have been copied without the scene
     return SimpleNamespace(runways=runways, scene=scene, ground=None, sensor=of.sensor,
                            extent=(middle[0] - reach, middle[0] + reach, middle[1] - reach, middle[1] + reach))
 
@@ -220,7 +221,7 @@ def _ground(of: Input, runways: Sequence[Any], middle: Sequence[float], reach: f
 def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
     last = sequence["shown"]
     points, origins, clutter = np.array(last["points"]).reshape(-1, 3), np.array(last["origins"], int), np.array(last["clutter"], bool)
-    for ax, title in zip(axes, ("echoes", "left by the clutter filter", "confirmed tracks", "birds: tracked (green), not (red)")):
+    for ax, title in zip(axes, ("echoes", "kept by the clutter filter", "confirmed tracks", "birds: tracked (green), not (red)")):
         pictures.draw_airport(ax, ground, "0.85")
         ax.set_title(title, fontsize=9)
         ax.set_ylabel("m north" if ax is axes[0] else "")

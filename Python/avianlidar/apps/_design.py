@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What must the lidar be? Designs within bounds, their shares and costs: a plan's `design`, the command `avianlidar design`."""
+"""Lidar designs within bounds, with shares and costs: a plan's `design`, the command `avianlidar design`."""
 from __future__ import annotations
 
 import dataclasses
@@ -28,13 +28,13 @@ from ._tables import read_table
 from ._tracks import LEARNING, BirdTracks
 
 DESIGNS = 128
-FINALISTS = 5  # that are tracked
-LIGHTS = 4  # designs of one geometry: they differ in what changes no line of sight and no hit
-TOLD = 2.0  # standard errors that a share must lie above or below what is asked
-CHANGE = 0.2  # of a number, to either side, for sensitivities
-OTHER_PLACES = 1 << 40  # to a seed: places by which no design was chosen
-MOST_SCANS = 100  # of vtkAvianLidarCoverage's NumberOfScans
-PUPIL = math.pi * 0.0035 ** 2  # m2: an eye's in the dark, 7 mm across
+FINALISTS = 5  # number of designs that are tracked
+LIGHTS = 4  # designs of one geometry that are computed together: the differences change no line of sight and no hit
+TOLD = 2.0  # standard errors by which a share must lie above or below the required share to be decided
+CHANGE = 0.2  # change of a number to either side, for sensitivities
+OTHER_PLACES = 1 << 40  # offset of the seed for places that were not used to choose designs
+MOST_SCANS = 100  # greatest NumberOfScans of vtkAvianLidarCoverage
+PUPIL = math.pi * 0.0035 ** 2  # area of a pupil in the dark, 7 mm across, m2
 
 Progress = Callable[[str, int, int], Any]
 
@@ -44,13 +44,13 @@ class Field(NamedTuple):
 
     unit: str
     words: str
-    light: bool  # whether beams hit the same, however it changes
-    shown: Tuple[float, str]  # on pages: factor and unit
-    least: float = 0.0  # not included
+    light: bool  # whether a change of the number leaves all hits of beams unchanged
+    shown: Tuple[float, str]  # factor and unit on pages
+    least: float = 0.0  # lower limit of the number, exclusive
     whole: bool = False
 
     def text(self, value: float) -> str:
-        """For a reader."""
+        """A value with its unit, for a reader."""
         return f"{self.shown[0] * value:.4g}{self.shown[1]}"
 
 
@@ -65,13 +65,13 @@ FIELDS = {
     "pulse_energy": Field("J", "energy of a pulse", True, (1e3, " mJ")),
     "rotation_rate": Field("Hz", "scans a second", True, (1.0, ""))}
 BAND = ("number_of_channels", "minimum_elevation", "maximum_elevation")
-PULSES = {"pulse_rate": ("Hz", "pulses a second, mean"), "average_power": ("W", "average power")}  # that formulas may name, too
+PULSES = {"pulse_rate": ("Hz", "pulses a second, mean"), "average_power": ("W", "average power")}  # further names for formulas
 
 
 def spread(number: int, count: int) -> np.ndarray:
     """Points first, first + 1, ... of a sequence that fills the unit cube evenly: the additive recurrence k -> frac(1/2 + k a) with
-    a_j = phi^-(j + 1), phi^(d + 1) = phi + 1 (M. Roberts, 2018). More points keep those before. @param number of dimensions, d
-    @param count of points @return count x d"""
+    a_j = phi^-(j + 1), phi^(d + 1) = phi + 1 (M. Roberts, 2018). A longer sequence begins with the same points. @param number number of
+    dimensions, d @param count number of points @return count x d"""
     phi = 2.0
     for _ in range(100):
         phi = (1.0 + phi) ** (1.0 / (number + 1))
@@ -79,53 +79,53 @@ def spread(number: int, count: int) -> np.ndarray:
 
 
 def on_the_front(costs, shares) -> np.ndarray:
-    """Of each design whether none of the others has a share as large at a lower cost, or a larger one at a cost as low: n of bool.
-    NaN: never."""
+    """For each design, whether no other design has an equal share at a lower cost, or a larger share at an equal cost: n of bool.
+    A design with NaN is never on the front."""
     costs, shares = np.asarray(costs, float), np.asarray(shares, float)
     order, found = np.lexsort((-shares, costs)), np.zeros(len(costs), bool)
     order = order[np.isfinite(costs + shares)[order]]
-    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]  # the cheapest with a share as large
+    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]  # the cheapest design with an equal share
     found[order] = (shares[first] == shares[order]) & (costs[first] == costs[order])
     return found
 
 
 def is_told(share: float, error: float, asked: float) -> Optional[bool]:
-    """Whether a share is what is asked or more; None where the error does not tell."""
+    """Whether a share is at least the required share; None if the error does not decide."""
     return True if share - TOLD * error >= asked else False if share + TOLD * error < asked else None
 
 
 @dataclasses.dataclass
 class Candidate:
-    """A design: its numbers by FIELDS, what it costs, what it emits, and what is detected or tracked with it."""
+    """A design: its numbers by FIELDS, its cost, its pulses, and the shares of birds detected and tracked."""
 
     number: int
     values: Dict[str, float]
     cost: float = math.nan
     pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2, pupil J
-    refused: str = ""  # by the sensor: why there is no such lidar
+    refused: str = ""  # reason why the sensor refuses the design
     share: scores.Value = scores.Value(math.nan, math.nan, 0)
     tracked: scores.Value = scores.Value(math.nan, math.nan, 0)
     front: bool = False
 
 
 class Study:
-    """Designs of a plan within its bounds; `look` finds their shares.
+    """Designs of a plan within its bounds; `look` computes the shares.
 
-    candidates  all of them         base     numbers of the plan's own sensor
-    swept       names of the FIELDS that differ, in their order
-    chosen      the cheapest that has the asked share, None without one; after `look`
+    candidates  all designs             base     numbers of the plan's own sensor
+    swept       names of the FIELDS that differ, in the order of FIELDS
+    chosen      after `look`: the cheapest design with the required share, None without such a design
     """
 
     def __init__(self, plan: Union[Plan, str, "os.PathLike[str]"], folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
-        """All that the plan says of its designs, checked, and what they cost. `Error` names the plan's file and the member.
+        """Checks all that the plan says of its designs, and computes their costs. `Error` names the plan's file and the member.
 
-        plan      a plan's file, or a Plan, whose sensor is then that of the design that was looked at last
-        folder    keeps what each design detects, so that a stopped run goes on, and what is written at the end
-        progress  called with the name of the work, what is done of it and all of it
+        plan      a plan's file, or a Plan, whose sensor is left with the last computed design
+        folder    holds the results of each design, so that a stopped run can continue, and the written files
+        progress  called with the name of the work, the completed amount and the total amount
         """
         plan = plan if isinstance(plan, Plan) else Plan(read_plan(plan))
         if "design" not in plan.plan:
-            raise Error(f"{plan.file}: design: is not in the plan, expected share, bounds and cost of designs")
+            raise Error(f"{plan.file}: design: is missing in the plan, expected share, bounds and cost of designs")
         self.plan, self.folder, self.ranks = plan, pathlib.Path(folder), ranks or Ranks()
         self.progress: Progress = progress if progress and not self.ranks.rank else lambda *_: None
         self.options: Dict[str, Any] = plan.plan["design"]
@@ -146,7 +146,7 @@ class Study:
         for one in self.candidates:
             self._judge(one)
         if all(one.refused for one in self.candidates):
-            raise Error(f"{plan.file}: design.bounds: hold no lidar that can be: {self.candidates[0].refused}")
+            raise Error(f"{plan.file}: design.bounds: contain no possible lidar: {self.candidates[0].refused}")
         self.scenario = self._scenario() if self.measure == "tracked" else {}
 
     def _base(self) -> Dict[str, float]:
@@ -157,12 +157,12 @@ class Study:
         return {name: ours[name] if name in ours else float(getattr(sensor, name)) for name in FIELDS}
 
     def _ends(self, name: str) -> List[float]:
-        """Values of a bound, or its ends; of a number that is not swept the sensor's own."""
+        """Values of a bound, or its ends; for a number that is not varied, the sensor's own value."""
         given = self.options["bounds"].get(name, [self.base[name]])
         return [float(value) for value in (given if isinstance(given, list) else (given["from"], given["to"]))]
 
     def _levels(self, name: str) -> Callable[[float], float]:
-        """From 0 to 1 all values of a bound. Bounds are checked."""
+        """Function from 0 to 1 onto all values of a bound. Checks the bound."""
         what, given = f"{self.plan.file}: design.bounds.{name}", self.options["bounds"][name]
         field, ends = FIELDS[name], self._ends(name)
         broken = [value for value in ends if not value.is_integer()]
@@ -188,12 +188,12 @@ class Study:
         return at
 
     def _check(self) -> None:
-        """What bounds say together."""
+        """Checks the bounds together."""
         what, sensor = f"{self.plan.file}: design", self.plan.sensor
         regular = (not sensor.channel_elevations and sensor._beams is None and not sensor.algorithm.GetNumberOfPrisms())
         of_band = [name for name in (*BAND, "azimuth_step") if name in self.swept]
         if of_band and not regular:
-            raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table of its own, expected channels at even steps, as of Search905")
+            raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table, expected channels at even steps, as of Search905")
         if "receiver_aperture" in self.swept and not gathers_light(sensor):
             raise Error(f"{what}.bounds.receiver_aperture: the sensor has no aperture, expected a photon receiver, as of Search905")
         low, high = max(self._ends("minimum_elevation")), min(self._ends("maximum_elevation"))
@@ -204,14 +204,14 @@ class Study:
             raise Error(f"{what}.bounds.number_of_channels: begins at 1, expected 2 or more, of which the lowest and the highest are the band's ends")
 
     def _scans(self, values: Mapping[str, float]) -> int:
-        """Within the time that a bird is given."""
+        """Number of scans within the time for which a bird is present."""
         return int(self.within * values["rotation_rate"] * (1.0 + 1e-12))
 
     def _all_values(self) -> List[Dict[str, float]]:
-        """The numbers of all designs; those of one geometry stand together."""
+        """The numbers of all designs; designs of one geometry are neighbours."""
         bounds, count = self.options["bounds"], int(self.options.get("designs", DESIGNS))
         sizes = [len(of) if isinstance(of, list) else int(of.get("levels", 0)) for of in (bounds[name] for name in self.swept)]
-        self.factorial = 0 < math.prod(sizes) <= count  # 0 where there are intervals
+        self.factorial = 0 < math.prod(sizes) <= count  # 0 if a bound is an interval
         if self.factorial:
             places = [[(k + 0.5) / size for k in range(size)] for size in sizes]
             units = [dict(zip(self.swept, point)) for point in itertools.product(*places)]
@@ -224,7 +224,7 @@ class Study:
         return [dict(one) for one in dict.fromkeys(tuple(values.items()) for values in found)]  # lists may give one design twice
 
     def _set(self, values: Mapping[str, float]) -> None:
-        """Make the plan's sensor that design. `Error` of the sensor says why there is none."""
+        """Sets the plan's sensor to a design. The sensor's `Error` says why a design is impossible."""
         sensor, (x, y, _) = self.plan.sensor, self.plan.sensor.position
         changes: Dict[str, Any] = {name: values[name] for name in FIELDS if name not in ("mast", *BAND) and values[name] != getattr(sensor, name)}
         if "mast" in self.swept:
@@ -236,7 +236,7 @@ class Study:
         update(sensor.algorithm)
 
     def changes(self, values: Mapping[str, float]) -> Dict[str, Any]:
-        """Properties of the plan's sensor that make it a design."""
+        """Properties that turn the plan's sensor into a design."""
         self._set(values)
         sensor = self.plan.sensor
         names = {name for name in self.swept if name not in ("mast", "maximum_elevation")} | {"position", "orientation"}
@@ -245,15 +245,15 @@ class Study:
         return {name: list(value) if isinstance(value, tuple) else value for name, value in ((name, getattr(sensor, name)) for name in sorted(names))}
 
     def _judge(self, one: Candidate) -> None:
-        """Pulses and cost of a design."""
+        """Computes pulses and cost of a design."""
         try:
             if self._scans(one.values) > MOST_SCANS:
                 raise Error(f"{self._scans(one.values)} scans in {self.within:g} s, expected at most {MOST_SCANS}")
             self._set(one.values)
             gate, limit = self.plan.sensor.range_gate, self.plan.sensor.algorithm.GetUnambiguousRange()
             if gate > limit and not self.options.get("ambiguous_ranges", False):
-                raise Error(f"range_gate is {gate:g} m, expected at most the {limit:.4g} m from which an echo arrives before the next pulse leaves, "
-                            "or design.ambiguous_ranges true")
+                raise Error(f"range_gate is {gate:g} m, expected at most {limit:.4g} m, so that an echo "
+                            "arrives before the next pulse leaves, or design.ambiguous_ranges true")
         except Error as error:
             one.refused = str(error)
             return
@@ -274,15 +274,15 @@ class Study:
     def _scenario(self) -> Dict[str, Any]:
         what = f"{self.plan.file}: design.scenario"
         if "scenario" not in self.options:
-            raise Error(f"{what}: is not in the plan, expected a scenario of sequences whose birds are tracked")
+            raise Error(f"{what}: is missing in the plan, expected a scenario of sequences whose birds are tracked")
         with naming(what):
             found = read_scenario(self.options["scenario"])
         if pathlib.Path(found["scene"]).resolve() != pathlib.Path(self.plan.plan["scene"]).resolve():
-            raise Error(f"{what}: is of the scene {found['scene']}, expected that of the plan")
+            raise Error(f"{what}: has the scene {found['scene']}, expected the scene of the plan")
         return found
 
     def look(self) -> Study:
-        """Find what each design detects, and of the finalists what is tracked. @return this"""
+        """Computes the share of birds that each design detects, and the share that finalists track. @return this study"""
         possible = [one for one in self.candidates if not one.refused]
         self.weights = self.plan.weights(self.plan.points).sum(axis=0)
         found = self._found("designs", [one.values for one in possible], self.plan.points)
@@ -302,26 +302,26 @@ class Study:
 
     @property
     def judged(self) -> List[Candidate]:
-        """Designs whose share is known by the measure asked for."""
+        """Designs whose share is known by the plan's measure."""
         return self.finalists if self.measure == "tracked" else [one for one in self.candidates if not one.refused]
 
     def of(self, one: Candidate) -> scores.Value:
-        """The share by the measure asked for."""
+        """The share by the plan's measure."""
         return one.tracked if self.measure == "tracked" else one.share
 
     def has_it(self, one: Candidate) -> Optional[bool]:
-        """Whether a design has the asked share; None where the error does not tell."""
+        """Whether a design has the required share; None if the error does not decide."""
         return is_told(*self.of(one)[:2], self.asked)
 
     def undecided(self) -> List[Candidate]:
-        """Designs whose share is within the error of the asked one and that are cheaper than the chosen design; without a chosen
-        design, at any cost."""
+        """Designs within the error of the required share that are cheaper than the chosen design; without a chosen design, at any
+        cost."""
         limit = self.chosen.cost if self.chosen else math.inf
         return [one for one in self.judged if one.cost < limit and self.has_it(one) is None]
 
     def _found(self, what: str, designs: Sequence[Mapping[str, float]], points: np.ndarray) -> np.ndarray:
-        """The probability at each place for the birds and weathers asked for: float32, designs x places. Ranks share designs, those of one
-        geometry together; what is kept in the folder is not found again."""
+        """The probability at each place for the plan's birds and weathers: float32, designs x places. Ranks share the designs; designs
+        of one geometry stay together. Results in the folder are not computed again."""
         require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places", "take fewer")
         folder, places = self.folder / "coverage", np.ascontiguousarray(points, float)
         settings = {name: value for name, value in self.plan.settings.items() if name != "height_limits"}
@@ -345,7 +345,7 @@ class Study:
         if self.within:
             name, scans = "track_probability", self._scans(values)
             if scans < cover.required_detections:
-                return np.zeros(1, np.float32)  # of every place
+                return np.zeros(1, np.float32)  # one value for all places
             cover.number_of_scans = scans
         whole = sum(air.share for air in self.airs)
         for species, share in self.plan.mix.items():
@@ -358,8 +358,8 @@ class Study:
         return np.asarray(total, np.float32)
 
     def _sensitivities(self, found: np.ndarray) -> List[Dict[str, Any]]:
-        """Rows: each swept number of the design lower and higher by CHANGE (elevations by CHANGE of the band), one at a time: what
-        that changes of the detected share, at the same places, and of the cost."""
+        """Rows: each varied number of the design lower and higher by CHANGE (elevations by CHANGE of the band), one number at a time. A row
+        has the changes of the detected share, at the same places, and of the cost."""
         about, changed = self.about.values, []
         width = about["maximum_elevation"] - about["minimum_elevation"]
         for name in self.swept:
@@ -369,7 +369,7 @@ class Study:
                 one = Candidate(-1, {**about, name: value})
                 try:
                     self._judge(one)
-                except Error as error:  # a formula gives no number outside the bounds
+                except Error as error:  # a formula may give no number outside the bounds
                     one.refused = str(error)
                 changed.append((name, value, one))
         possible = [one for _, _, one in changed if not one.refused]
@@ -379,7 +379,7 @@ class Study:
                  "share": one.share} for name, value, one in changed]
 
     def _tracked_ones(self) -> List[Candidate]:
-        """Designs on the front, evenly by their order, with how many birds of the scenario are tracked."""
+        """Designs spread evenly along the front, with the number of tracked birds of the scenario."""
         count = min(int(self.options.get("finalists", FINALISTS)), len(self.front))
         finalists = [self.front[i] for i in np.unique(np.round(np.linspace(0, len(self.front) - 1, count)).astype(int))]
         with naming(f"{self.plan.file}: design.scenario"):
@@ -387,7 +387,8 @@ class Study:
         for number, one in enumerate(finalists):
             sensor = {**self.scenario["sensor"], **{name: value for name, value in self.plan.plan["sensor"].items() if name != "name"}, **self.changes(one.values)}
             each = int(self.scenario.get("scans_per_sequence", 100))
-            scans, learning = (max(round(count * one.values["rotation_rate"] / rate), 1) for count in (each, LEARNING))  # in the same time
+            # within equal times
+            scans, learning = (max(round(count * one.values["rotation_rate"] / rate), 1) for count in (each, LEARNING))
             with naming(f"{self.plan.file}: design.scenario"):
                 tracks = BirdTracks([self.options["scenario"]], learning_scans=learning, threads=self.plan.threads, sensor=sensor, scans_per_sequence=scans,
                                     number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
@@ -400,7 +401,7 @@ class Study:
         return finalists
 
     def _tracked(self, birds: Sequence[Mapping[str, str]]) -> scores.Value:
-        """The share of birds tracked, of the plan's species at its heights. @param birds rows of birds.csv"""
+        """The share of tracked birds of the plan's species at the plan's heights. @param birds rows of birds.csv"""
         low, high = self.plan.asked or (-math.inf, math.inf)
         parts = []
         for species, share in self.plan.mix.items():

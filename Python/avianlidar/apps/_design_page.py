@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `avianlidar design` writes: design.csv, sensitivities.csv, pictures and a page of HTML."""
+"""The files that `avianlidar design` writes: design.csv, sensitivities.csv, pictures and a page of HTML."""
 from __future__ import annotations
 
 import math
@@ -25,7 +25,7 @@ def _cost(study: Study, cost: float) -> str:
 
 
 def does(study: Study) -> str:
-    """What the share is of, in words."""
+    """The meaning of the share, in words."""
     birds = f"{study.plan.bird}s" if len(study.plan.mix) == 1 else "birds"
     if study.measure == "tracked":
         return f"tracks {birds} of the scenario at least once"
@@ -35,18 +35,18 @@ def does(study: Study) -> str:
 
 
 def stands(study: Study) -> str:
-    """Where the lidar is."""
+    """The place of the lidar, in words."""
     x, y, _ = study.plan.sensor.position
     return f"{place((x, y, study.about.values['mast'] + study.ground)).rsplit(',', 1)[0]} of the scene's origin" if x or y else "at the scene's origin"
 
 
 def in_words(study: Study, one: Candidate) -> str:
-    """The swept numbers of a design."""
+    """The varied numbers of a design, in words."""
     return ", ".join(f"{FIELDS[name].words} {FIELDS[name].text(one.values[name])}" for name in study.swept)
 
 
 def pulses(study: Study, one: Candidate) -> str:
-    """What whoever assesses eye safety asks for first."""
+    """The numbers of pulses with which an assessment of eye safety begins."""
     of, energy = one.pulses, FIELDS["pulse_energy"].text(one.values["pulse_energy"])
     first = "" if "pulse_energy" in study.swept else f"{energy} a pulse, "
     return (f"{first}{of['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * of['exit_aperture']:.4g} cm², "
@@ -54,31 +54,33 @@ def pulses(study: Study, one: Candidate) -> str:
 
 
 def unassessed(study: Study, one: Candidate) -> str:
-    """That eye safety is not assessed, and what an eye at the lidar would receive of a pulse."""
+    """Words on eye safety, which is not assessed, and on the energy of a pulse that an eye at the lidar would receive."""
     microjoules = float(f"{1e6 * one.pulses['pupil']:.2g}")
     return (f"eye safety is not assessed: at {study.plan.sensor.wavelength:g} nm each pulse puts {microjoules:g} µJ "
-            "through a pupil of 7 mm at its exit aperture, which it is assumed to fill evenly")
+            "through a pupil of 7 mm at the exit aperture, if the pulse fills the aperture evenly (assumed)")
 
 
 def answers(study: Study) -> List[str]:
-    """The question answered."""
+    """The answers to the question of the plan, in sentences."""
     count, asked = len(study.judged), f"{100.0 * study.asked:g} %"
     about, share = study.about, cell(study.of(study.about), "%")
     question, cost = does(study).replace(" ", f" {asked} of ", 1), f"costs {_cost(study, about.cost)} by the plan's formula"
     first = (f"The cheapest of {count} designs that {question} {cost} and has {share}" if study.chosen else
-             f"None of {count} designs surely {question}: the best has {share} and {cost}")
-    found = [f"{first}; {unassessed(study, about)}.", f"It is number {about.number}: {in_words(study, about)}; {pulses(study, about)}."]
+             f"None of {count} designs surely {question}: the best design has {share} and {cost}")
+    found = [f"{first}; {unassessed(study, about)}.", f"The design is number {about.number}: "
+                                                      f"{in_words(study, about)}; {pulses(study, about)}."]
     other = study.elsewhere
     same = is_told(other.value, other.error, study.asked)
-    words = {True: "the asked share or more", False: "less than the asked share", None: "so the error does not tell"}[same]
-    found.append(f"At {other.number:,} other places, by which no design was chosen, it detects {cell(other, '%')}"
+    words = {True: "at least the required share", False: "less than the required share", None: "the error does not decide"}[same]
+    found.append(f"At {other.number:,} other places, which were not used to choose designs, the design detects {cell(other, '%')}"
                  + (f": {words}." if study.measure == "detected" and study.chosen else "."))
     unsure = study.undecided()
     if unsure:
         least = min(unsure, key=lambda one: one.cost)
-        found.append(f"Of {len(unsure)} {'cheaper ' if study.chosen else ''}{'design' if len(unsure) == 1 else 'designs'}, "
+        found.append(f"For {len(unsure)} {'cheaper ' if study.chosen else ''}{'design' if len(unsure) == 1 else 'designs'}, "
                      f"from {_cost(study, least.cost)} on, the error "
-                     f"does not decide: they lie within {TOLD:g} standard errors of {asked}. More {'scans' if study.measure == 'tracked' else 'places'} would.")
+                     f"does not decide, because their shares lie within {TOLD:g} standard errors of {asked}. More "
+                     f"{'scans' if study.measure == 'tracked' else 'places'} would decide.")
     return found
 
 
@@ -101,7 +103,7 @@ def table(study: Study) -> List[Dict[str, Any]]:
 
 
 def _verdict(study: Study, one: Candidate, unknown: str) -> str:
-    """Whether a design has the asked share, in words. @param unknown for designs without a share"""
+    """Whether a design has the required share, in words. @param unknown words for designs without a share"""
     return unknown if math.isnan(study.of(one).value) else TOLD_WORDS[study.has_it(one)]
 
 
@@ -114,9 +116,10 @@ def _draw_front(axes, study: Study) -> None:
     axes.step([one.cost for one in front], [100 * one.share.value for one in front], where="post", color="C0", linewidth=1)
     if study.finalists:
         bars(study.finalists, [one.tracked for one in study.finalists], fmt="s-", color="C1", label="tracked")
-    axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"asked: {100 * study.asked:g} %")
+    axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"required: {100 * study.asked:g} %")
     about = study.about
-    axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5, label="the cheapest that has it" if study.chosen else "the best")
+    axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5,
+              label="cheapest with this share" if study.chosen else "the best")
     pictures.finish(axes, ylim=(0.0, None), xlabel=f"cost{', ' + study.unit if study.unit else ''}", ylabel="share of birds, %")
 
 
@@ -150,7 +153,8 @@ def write(study: Study) -> None:
     base = [{"words": FIELDS[name].words, "base": FIELDS[name].text(study.base[name]),
              "bounds": _bounds(name, bounds[name]) if name in bounds else "the same in all designs", "swept": name in bounds} for name in FIELDS]
     write_whole(out / "design.html", render(
-        "design.html.jinja", question=plan.plan.get("description") or f"What must the lidar be that {does(study).replace(' ', f' {100 * study.asked:g} % of ', 1)}?",
+        "design.html.jinja", question=plan.plan.get("description") or "Which is the cheapest lidar that "
+                                                                      f"{does(study).replace(' ', f' {100 * study.asked:g} % of ', 1)}?",
         answer=answers(study), study=study, stands=stands(study), shown=shown, fields=[FIELDS[name] for name in study.swept],
         names=study.swept, told=TOLD, change=CHANGE, refused=refused,
         base=base, version=__version__, does=does(study), places=len(plan.points), name=plan.name, count=len(study.candidates),
@@ -159,9 +163,9 @@ def write(study: Study) -> None:
         cost=lambda one: _cost(study, one.cost), added=lambda value: f"{value:+.3g}", words=FIELDS, filter_percent=lambda value: cell(value, "%"),
         filter_points=lambda value: "–" if math.isnan(value.value) else f"{100 * value.value:+.2f} ± {100 * value.error:.2f}",
         pictures=[{"source": embedded(out / "front.png"), "alt": f"Share of birds by cost of {len(study.candidates)} designs; {answers(study)[0]}",
-                   "caption": "Share of birds by cost, with one standard error; blue: on the front; red: what is asked"},
+                   "caption": "Share of birds by cost, with one standard error; blue: on the front; red: required share"},
                   {"source": embedded(out / "sensitivities.png"), "alt": "Change of the share by a change of each number.",
-                   "caption": f"What {100 * CHANGE:g} % more or less of one number change (elevations: of the band's width)"}]))
+                   "caption": f"Effect of {100 * CHANGE:g} % more or less of one number (for elevations, of the band's width)"}]))
 
 
 def _bounds(name: str, given: Any) -> str:
@@ -180,7 +184,7 @@ class Designs(Study):
     """
 
     def write(self) -> Designs:
-        """Look, then write design.html, design.csv, sensitivities.csv and pictures into the folder. @return this"""
+        """Computes the shares, then writes design.html, design.csv, sensitivities.csv and pictures to the folder. @return this study"""
         with only_run(self.folder, self.ranks, goes_on=True, known=self.plan.decides):
             self.look()
             if not self.ranks.rank:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Features of extracts: which kind of the rules (`airport.json`) takes one, and what the scene file reads of it."""
+"""Features of extracts: the kind of each feature by the rules (`airport.json`), and the properties that the scene file reads."""
 from __future__ import annotations
 
 import collections
@@ -12,43 +12,43 @@ import numpy as np
 from ._gdal import form_of
 from ._json import packaged
 
-TALLEST = 1000.0  # m: what is higher is no height
+TALLEST = 1000.0  # greatest plausible height, m
 LONGEST_LENGTH = 100  # characters
-THOUSANDS = "[, \u00a0\u202f'\u2019]"  # between groups of three digits
+THOUSANDS = "[, \u00a0\u202f'\u2019]"  # separators between groups of three digits
 NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
 LENGTH = re.compile(rf"(?:~|<|>|≈|\+|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*(?:(?:±|\+/?-)\s*(?:{NUMBER})|\+)?\s*"
                     r"(mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|м|метр\w*|米|ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?)?\.?"
                     rf"\s*-?\s*(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?|high|tall|hoch)?", re.IGNORECASE)
-UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}  # m, by how a unit begins
+UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}  # m, by the unit's beginning
 HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height", "measuredHeight", "height:hub")
 LEVELS = ("building:levels", "num_floors", "levels", "floors")
 MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
 MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
-NOTHING = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")  # no height
+NOTHING = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")  # texts that give no height
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
 
 
 def number_of(text: str, most: float = np.inf) -> float:
-    """Of "1,200.5", "1 200", "12,5". @param most above which a comma is taken for that of decimals"""
+    """The number in "1,200.5", "1 200" or "12,5". @param most value above which a comma is read as a decimal mark"""
     thousands = re.fullmatch(rf"\d{{1,3}}({THOUSANDS}\d{{3}})+(\.\d+)?", text)
     value = float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
     return value if value <= most or "," not in text or "." in text else float(text.replace(",", ".", 1).replace(",", ""))
 
 
 def length_of(text: Any) -> Optional[float]:
-    """Metres of "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12", the greatest of "2;3" and "12-15"; None where it is no
-    length."""
+    """Metres in "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12"; the greatest value in "2;3" and "12-15". None for a text
+    without a length."""
     return _greatest(text, _one_length)
 
 
 def levels_of(text: Any) -> Optional[float]:
-    """The number of "2", "2 floors", "3+1", the greatest of "2;3", "2,3" and "2-3"; None for other texts."""
+    """The number in "2", "2 floors", "3+1"; the greatest in "2;3", "2,3" and "2-3". None for other texts."""
     return _greatest(re.sub(r",(?!5\b)", ";", str(text)) if text else text, _one_number_of_levels)
 
 
 def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[float]:
     said = str(text if text is not None else "").strip().strip(";").strip()
-    if not said or len(said) > LONGEST_LENGTH:  # expressions take the third power of a text's size
+    if not said or len(said) > LONGEST_LENGTH:  # the time of the expressions grows with the third power of a text's size
         return None
     values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
     known = [value for value in values if value is not None]
@@ -78,17 +78,17 @@ def _one_number_of_levels(text: str) -> Optional[float]:
 
 @dataclasses.dataclass
 class Feature:
-    """What a kind of the rules takes from an extract: tags and geometry (ogr, degrees, longitude first)."""
+    """A feature of an extract that belongs to a kind of the rules: tags and geometry (ogr, degrees, longitude first)."""
 
     kind: str
     tags: Dict[str, str]
     shape: Any = None
-    count: int = 1  # of the file's features that it is made of
-    reason: str = ""  # why it is not in the scene
+    count: int = 1  # number of the file's features that form this feature
+    reason: str = ""  # reason why the feature is not in the scene
 
     @property
     def id(self) -> str:
-        """As the extract has it, or empty."""
+        """The identifier in the extract, or empty."""
         return next((self.tags[name] for name in ("osm_id", "osm_way_id", "id", "@id") if self.tags.get(name)), "")
 
     @property
@@ -96,18 +96,18 @@ class Feature:
         return self.tags.get("name") or self.tags.get("ref") or ""
 
     def left(self, reason: str) -> Feature:
-        """The feature as one that is not in the scene."""
+        """The feature, marked as left out of the scene."""
         return dataclasses.replace(self, shape=None, reason=reason)
 
 
 def fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
-    """Whether tags have all of these: a word, several, `*` for any, `-*` for any that begins so."""
+    """Whether tags have all wanted values: a word, one of several words, `*` for any word, `-*` for any beginning with the text before."""
     return all(name in tags and any(tags[name] == word or (word[-1] == "*" and tags[name].startswith(word[:-1]))
                                     for word in ([words] if isinstance(words, str) else words)) for name, words in wanted.items())
 
 
 class Table:
-    """Names by tags: the first row counts that fits."""
+    """Names by tags; the first row that fits counts."""
 
     def __init__(self, rows: Iterable[Tuple[str, Dict[str, Any]]]):
         self.rows: Dict[str, List[Tuple[int, str, Dict[str, Any]]]] = collections.defaultdict(list)
@@ -120,23 +120,23 @@ class Table:
 
 
 def height_name(rule: Dict[str, Any]) -> str:
-    """The property with the height: `height` of buildings, which siting changes by some metres and keeps lidars away from, `top`
-    of plants, fences and masts."""
+    """The property with the height: `height` for buildings, whose heights siting varies and near which no lidar stands; `top`
+    for plants, fences and masts."""
     return "top" if rule["class"] in ("fence", "mast", "pole", "tree", "vegetation") else "height"
 
 
 def _first(tags: Dict[str, str], names: Tuple[str, ...], read: Callable[[Any], Optional[float]]) -> Tuple[Optional[float], str]:
-    """The first of some tags with a usable number, and its name."""
+    """The first usable number in some tags, and the name of the tag."""
     return next(((value, name) for name in names for value in [read(tags.get(name))] if value is not None), (None, "assumed"))
 
 
 def _not_understood(tags: Dict[str, str], names: Tuple[str, ...]) -> str:
-    """Which of some tags holds something else than no height."""
+    """The first of some tags whose text is neither a number nor one of the texts without a height."""
     return next((f"assumed: {name} is {tags[name][:40]!r}" for name in names if name in tags and not NOTHING.fullmatch(tags[name])), "")
 
 
 def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[float, str]:
-    """m above the ground, and what it is from. @param floor height of one, m"""
+    """Height above the ground, m, and the source of the number. @param floor height of a floor, m"""
     value, source = _first(tags, HEIGHTS, length_of)
     if value is not None:
         return value, f"{source}: {tags['height_source']}" if "height_source" in tags else source
@@ -152,7 +152,7 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
 
 
 def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
-    """What the scene file reads of a feature, and what each number is from."""
+    """The properties that the scene file reads for a feature, and the source of each number."""
     rule, tags = known["kinds"][feature.kind], feature.tags
     properties: Dict[str, Any] = {"kind": feature.kind, "id": feature.id or None, "name": tags.get("name"), "ref": tags.get("ref")}
     if feature.kind == "obstacle":

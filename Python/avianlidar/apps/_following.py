@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tracks of birds in labelled sequences, held against their truth."""
+"""Tracks of birds in labelled sequences, and comparison with the true flights."""
 from __future__ import annotations
 
 import collections
@@ -29,33 +29,33 @@ from ._sequence import DONE, _digest, _short
 from ._tables import read_table
 
 VOLUMES = ("strip", "glide path")
-NEEDED = ("bird", "species", "status", "time_s", "x_m", "y_m", "z_m", "range_m", "visibility_m", "rain_mm_h")  # of truth.csv
-ORIGINS = ("bird", "second track of a bird", "vehicle", "surface", "false alarm", "air")  # of a track
+NEEDED = ("bird", "species", "status", "time_s", "x_m", "y_m", "z_m", "range_m", "visibility_m", "rain_mm_h")  # columns of truth.csv
+ORIGINS = ("bird", "second track of a bird", "vehicle", "surface", "false alarm", "air")  # origins of a track
 FALSE = ("surface", "false alarm", "air")
 STATES = ("scan", "track", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "bird")
 NO_BIT = ("number_of_threads", "controller")
 
 
 class Live(NamedTuple):
-    """The tracks after a scan that have not ended, and of each point that of which it is, -1 for none."""
+    """The live tracks after a scan, and for each point the number of its track, -1 for none."""
     ids: np.ndarray
     confirmed: np.ndarray
-    times: np.ndarray  # s, of the last position
-    places: np.ndarray  # n x 3, m
+    times: np.ndarray  # time of the last position, s
+    places: np.ndarray  # last positions, n x 3, m
     velocities: np.ndarray  # n x 3, m/s
     of_points: np.ndarray
-    clutter: np.ndarray  # whether a point is
+    clutter: np.ndarray  # whether a point is clutter
 
 
 class Chain:
-    """Clutter filter and tracker, given one scan after the other."""
+    """A clutter filter and a tracker, which process one scan after another."""
 
     def __init__(self, sensor: Sensor, learning: int, clutter: Dict[str, Any], tracker: Dict[str, Any]):
-        """What is not set is the sensor's: steps of the grid, width of the beam."""
+        """Steps of the grid and width of the beam are taken from the sensor unless they are set."""
         steps = {name: getattr(sensor, name) for name in ("azimuth_step", "elevation_step") if getattr(sensor, name) > 0.0}
         widest = max(steps.values(), default=0.0)
         self.filter, self.tracker = _wrapped.vtkAvianLidarClutterFilter(), _wrapped.vtkAvianLidarTracker()
-        self.filter.SetController(None)  # ranks have sequences of their own
+        self.filter.SetController(None)  # ranks process different sequences
         self.tracker.SetController(None)
         set_properties(self.filter, "vtkAvianLidarClutterFilter", **{"warm_up": learning, **steps, **clutter})
         set_properties(self.tracker, "vtkAvianLidarTracker", **{"half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0,
@@ -63,12 +63,12 @@ class Chain:
         self.position = np.array(sensor.position, float)
 
     def properties(self) -> Dict[str, str]:
-        """All that decides what comes out."""
+        """All settings that decide the results."""
         return {f"{part}.{name}": _short(get_property(one, cxx)) for part, one in (("clutter", self.filter), ("tracker", self.tracker))
                 for name, cxx in property_names(type(one)).items() if name not in NO_BIT}
 
     def __enter__(self) -> "Chain":
-        """Another sequence begins: nothing is known."""
+        """Begins a new sequence: all learned clutter and tracks are dropped."""
         self.filter.Forget()
         self.tracker.Reset()
         self._stack = contextlib.ExitStack()
@@ -79,8 +79,8 @@ class Chain:
         self._stack.close()
 
     def __call__(self, points: np.ndarray, placed: np.ndarray, times: Optional[np.ndarray], time: float) -> Live:
-        """@param points m right, forward and up of the sensor, so that cells lie as its beams do @param placed the same in the scene
-        @param times of points, us @param time of the scan, s"""
+        """@param points m right, forward and up of the sensor, so that cells of the grid follow the beams @param placed the points in the
+        scene's frame @param times times of points, us @param time time of the scan, s"""
         self.filter.SetInputData(_cloud(points, time, np.zeros(3)))
         self._filtered()
         clutter = as_numpy(self.filter.GetOutputDataObject(0).GetPointData().GetArray("is_clutter")).astype(np.uint8)
@@ -102,7 +102,7 @@ def _cloud(points: np.ndarray, time: float, position: np.ndarray):
 
 
 def _last(tracks) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Ids, whether confirmed, times, places and velocities of the last positions of tracks that have not ended."""
+    """Ids, confirmed flags, times, places and velocities of the last positions of live tracks."""
     ends = [as_numpy(cells.GetConnectivityArray())[as_numpy(cells.GetOffsetsArray())[1:] - 1]
             for cells in (tracks.GetVerts(), tracks.GetLines()) if cells.GetNumberOfCells()]
     if not ends:
@@ -116,14 +116,14 @@ def _last(tracks) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.nd
 
 
 def origin_of(labels: np.ndarray) -> np.ndarray:
-    """What gave the light of points: an index in ORIGINS. @param labels of a sequence"""
+    """The origin of the light of each point, as an index in ORIGINS. @param labels labels of a sequence"""
     kind, instance = labels & 0xffff, (labels >> 16).astype(int) - 1
     return np.select([instance >= FIRST_BIRD, instance >= FIRST_OBJECT, kind == 1, (kind == 0) & (instance < 0)],
                      [ORIGINS.index(name) for name in ("bird", "vehicle", "air", "false alarm")], ORIGINS.index("surface"))
 
 
 def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
-    """Of each scan, by its number in the whole set, the birds that are somewhere: rows with numbers as such."""
+    """For each scan, by its number in the whole set, the rows of the birds that are present, with numbers parsed."""
     found: Dict[int, List[Dict[str, Any]]] = collections.defaultdict(list)
     for number, row in enumerate(read_table(file, ("scan", *NEEDED), "the truth of a sequence")):
         with naming(f"{file}: line {number + 2}"):
@@ -138,9 +138,9 @@ def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
 
 
 def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
-    """Which of n places (n x 3, m) lie in each volume of the runways, volumes x n: their strips, 150 m to either side of the middle and 60 m
-    high; their glide paths, two a runway, beyond its ends to 3 km, 75 m to either side and 45 m high at the end, widening by 0.15 and rising
-    by 3 degrees."""
+    """Which of n places (n x 3, m) lie in each volume of the runways, volumes x n. Strips reach 150 m to either side of the middle and 60 m
+    up. Glide paths begin at both ends of each runway and reach 3 km; they are 75 m wide to either side and 45 m high at the end, widen by
+    0.15 and rise by 3 degrees."""
     if volume == "strip":
         wedges: List[Any] = [(runway.start, *runway.axis(), (STRIP_HALF_WIDTH, 0.0), (STRIP_HEIGHTS[1], 0.0)) for runway in runways]
     else:
@@ -149,24 +149,24 @@ def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
 
 
 class Scorer:
-    """Holds the tracks of a sequence against the truth: collects them scan after scan, then scores them."""
+    """Collects the tracks of a sequence scan after scan, then scores them against the true flights."""
 
     def __init__(self, cutoff: float, order: float, runways: Many[Runway]):
         self.cutoff, self.order, self.runways = cutoff, order, runways
         self.scans: List[Tuple[int, List[Dict[str, Any]], Live]] = []
-        self.points: Dict[int, np.ndarray] = collections.defaultdict(lambda: np.zeros(len(ORIGINS), int))  # of tracks, by origin
-        self.begin: Dict[int, List[float]] = {}  # of tracks
+        self.points: Dict[int, np.ndarray] = collections.defaultdict(lambda: np.zeros(len(ORIGINS), int))  # points of tracks, by origin
+        self.begin: Dict[int, List[float]] = {}  # first time of tracks, s
 
     def add(self, scan: int, rows: List[Dict[str, Any]], live: Live, origins: np.ndarray) -> None:
-        """@param rows of the truth @param origins of points"""
+        """@param rows rows of the truth @param origins origins of points"""
         for track, origin in zip(live.of_points.tolist(), origins):
-            self.points[track][origin] += 1  # of no track, too
+            self.points[track][origin] += 1  # also counts points without a track
         for track, place in zip(live.ids.tolist(), live.places.tolist()):
             self.begin.setdefault(track, [round(x, 2) for x in place])
         self.scans.append((scan, rows, live))
 
     def results(self) -> Dict[str, Any]:
-        """Birds that were in the volume of the sensor, confirmed tracks, OSPA of each scan, states of confirmed tracks."""
+        """Birds in the volume of the sensor, confirmed tracks, OSPA of each scan, and states of confirmed tracks."""
         origins = {track: ORIGINS[int(np.argmax(counts))] for track, counts in self.points.items()}
         tracks: Dict[int, Dict[str, Any]] = {}
         birds: Dict[int, List[Tuple[Dict[str, Any], Optional[int], bool]]] = collections.defaultdict(list)
@@ -175,7 +175,7 @@ class Scorer:
         for scan, rows, live in self.scans:
             times, places, velocities = (part[live.confirmed] for part in (live.times, live.places, live.velocities))
             ids = live.ids[live.confirmed].tolist()
-            # Where each track is when the bird's beam is fired.
+            # positions of tracks when the bird's beam is fired
             away = np.array([np.linalg.norm(places + velocities * (row["time"] - times)[:, None] - row["place"], axis=1) for row in rows])
             away = away.reshape(len(rows), len(ids))
             of_birds = np.array([origins.get(track) == "bird" for track in ids], bool)
@@ -191,7 +191,7 @@ class Scorer:
                 if times[i] > known["end_s"]:
                     known["end_s"] = float(times[i])
                     states.append([scan, track, *(round(float(x), 3) for x in (times[i], *places[i], *velocities[i])), bird_of.get(track, -1)])
-            # Tracks of vehicles, and of birds that are elsewhere, are not asked for.
+            # Tracks of vehicles and of birds outside the volume are not scored.
             within = {row["bird"]: row["in"] for row in rows}
             asked = np.array([origins.get(track) != "vehicle" and within.get(bird_of.get(track, -1), True) for track in ids], bool)
             ospa.append([round(x, 4) for x in scores.ospa(away[np.array([*within.values()], bool)][:, asked], self.cutoff, self.order)])
@@ -203,7 +203,8 @@ class Scorer:
                 "tracks": [tracks[track] for track in sorted(tracks)], "ospa": ospa, "states": states, "last": last}
 
     def _of_bird(self, rows: Many[Dict[str, Any]], tracks: Many[Optional[int]], near: Many[bool]) -> Dict[str, Any]:
-        """What a bird's rows of the truth come to. @param tracks that it had @param near whether a track of a bird was within the cut-off"""
+        """Results of a bird from its rows of the truth. @param tracks assigned tracks @param near whether a bird's track was within the
+        cut-off"""
         times, places, within, ranges = (np.array([row[name] for row in rows]) for name in ("time", "place", "in", "range"))
         had, beside = np.array([track is not None for track in tracks]), np.array(near)
 
@@ -217,7 +218,7 @@ class Scorer:
 
 
 class Input:
-    """A folder of sequences."""
+    """A folder of sequences, as an input of the report card."""
 
     def __init__(self, folder: pathlib.Path, name: str):
         self.folder, self.name, self.manifest = folder, name, folder / "manifest.json"
@@ -232,29 +233,29 @@ class Input:
         beams = _short(digest_of_arrays(self.sensor.beams.data))
         for number, content in self.content.items():
             if content["inputs"].get("sensor.beams") != beams:
-                raise Error(f"{folder / 'sequences' / number}: is of another sensor than {self.manifest} names; expected sequences of one")
+                raise Error(f"{folder / 'sequences' / number}: has another sensor than {self.manifest}, expected sequences of one")
 
     def _whole(self, number: str) -> Dict[str, Any]:
-        """What DONE says of a sequence, `Error` unless its files are those that it was made with."""
+        """The content of DONE for a sequence; `Error` unless all files are those with which the sequence was made."""
         home = self.folder / "sequences" / number
         for name in ("truth.csv", DONE):
             if not (home / name).is_file():
-                raise Error(f"{home / name}: is not there, expected a sequence with its truth, as `avianlidar sequence` makes it")
+                raise Error(f"{home / name}: is missing, expected a sequence with its truth, as `avianlidar sequence` makes it")
         content = load_json(home / DONE)
         if not isinstance(content, dict) or not isinstance(content.get("inputs"), dict) or content.get("sha256") != _digest(home):
-            raise Error(f"{home}: its files are not those that its {DONE} has the sha256 of: something else has changed, added or removed some")
+            raise Error(f"{home}: its files differ from the sha256 in its {DONE}: another program has changed, added or removed files")
         return content
 
     @functools.cached_property
     def scene(self) -> Scene:
-        """The scene as loaded."""
+        """The loaded scene."""
         with naming(f"{self.manifest}: scene"):
             scene = load_scene(self.scenario["scene"])
             update(scene.tree)
         return scene
 
     def runways(self, file) -> List[Runway]:
-        """Runways of a file in the coordinates of the scene."""
+        """Runways of a file, in the coordinates of the scene."""
         if not file:
             return []
         origin = self.scene.geodetic_origin
@@ -263,8 +264,8 @@ class Input:
         return read_runways(file, origin)
 
     def scans(self, number: str):
-        """Of each scan: its number in the whole set, the time when it begins (s), points in the sensor's frame (right, forward, up, m) and
-        in the scene's, their times (us, None where they do not follow from the direction), labels."""
+        """For each scan: its number in the whole set, its start time (s), points in the sensor's frame (right, forward, up, m) and
+        in the scene's frame, times of points (us, None if the times do not follow from the direction), labels."""
         from scipy.spatial import cKDTree
         home, first = self.folder / "sequences" / number, int(self.content[number]["inputs"]["scans"].split()[0])
         starts, poses = (np.loadtxt(home / name, ndmin=1) for name in ("times.txt", "poses.txt"))

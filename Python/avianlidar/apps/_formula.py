@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Formulas that a user writes as text: numbers, names, + - * / ** and some functions, and nothing else of Python."""
+"""Formulas that a user writes as text: numbers, names, + - * / ** and some functions, and no other part of Python."""
 from __future__ import annotations
 
 import ast
@@ -25,7 +25,7 @@ class Formula:
     """
 
     def __init__(self, text: str, names: Iterable[str]):
-        """ValueError says what is wrong with the text. @param names that may stand in it"""
+        """Checks the text; ValueError names the wrong part. @param names names of the numbers in the text"""
         self.text, self.names = text, list(names)
         if len(text) > LONGEST:
             raise ValueError(f"{text[:40]}...: has {len(text)} characters, expected a formula of at most {LONGEST}")
@@ -64,7 +64,7 @@ class Formula:
         return isinstance(node, (ast.Expression, ast.Name, ast.expr_context, *OPERATORS))
 
     def __call__(self, values: Values) -> float:
-        """What it gives, a finite number. ValueError says for which values it gives none."""
+        """The value of the formula, a finite number. ValueError gives the numbers for which the formula has no finite value."""
         problem: Any = "it is not finite"
         try:
             result = eval(self._code, {"__builtins__": {}, **FUNCTIONS}, {**values})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runways, outlines and heights of footprints in files of GeoJSON, and degrees as metres of a scene."""
+"""Runways, outlines and heights of footprints in GeoJSON files, and conversion between degrees and metres of a scene."""
 from __future__ import annotations
 
 import json
@@ -60,7 +60,7 @@ def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:
 
 
 def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarray:
-    """East and north (n x 2, m) of corners in GeoJSON. @param least number of corners"""
+    """East and north (n x 2, m) of corners in GeoJSON. @param least least number of corners"""
     try:
         degrees = np.array([point[:2] for point in coordinates])
     except (TypeError, ValueError, LookupError):
@@ -87,7 +87,8 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
                 (x0, y0), (x1, y1) = (map(float, corner) for corner in corners[[0, -1]])
                 displaced = [properties.get(f"displaced_{end}", 0.0) for end in ("start", "end")]
                 if not all(isinstance(away, (int, float)) and 0.0 <= away < np.hypot(x1 - x0, y1 - y0) for away in displaced):
-                    raise ValueError(f"{name}: displaced thresholds are {displaced[0]!r} and {displaced[1]!r}, expected metres, less than its length")
+                    raise ValueError(f"{name}: displaced thresholds are {displaced[0]!r} and {displaced[1]!r}, expected "
+                                     "metres, less than the runway's length")
                 found.append(Runway(name, (x0, y0), (x1, y1), float(width), (float(displaced[0]), float(displaced[1]))))
     if not found:
         raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
@@ -104,8 +105,8 @@ def _ring(coordinates: Any, origin: Sequence[float]) -> np.ndarray:
 
 
 def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[Any]:
-    """The polygons in a GeoJSON file: each its ring (n x 2, m, open), or, where it has holes, a list of its outer ring and theirs.
-    @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only of features that have this one"""
+    """The polygons in a GeoJSON file: for each polygon its ring (n x 2, m, open), or a list of the outer ring and the holes.
+    @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only features with this attribute are read"""
     found: List[Any] = []
     for number, feature in enumerate(features_of(pathlib.Path(file))):
         shape = feature["geometry"]
@@ -121,7 +122,7 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
 
 
 def _height(value: Any) -> float:
-    """A height (m) as scenes take it: a number, or a text of it, with or without "m"; 0 for any other value."""
+    """A height (m) as scenes read heights: a number, or a text of a number with or without "m"; 0 for any other value."""
     try:
         found = float(re.sub(" ?m$", "", value) if isinstance(value, str) else value)
     except (TypeError, ValueError):
@@ -130,9 +131,9 @@ def _height(value: Any) -> float:
 
 
 def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
-    """A copy of a scene file in `folder`, where every footprint in GeoJSON whose height is read from an attribute is higher by
-    what `offset` gives (m; no height is below 0.1 m). Files keep their names, which objects are named by. @return the new scene
-    file"""
+    """Copies a scene file to `folder`. In the copy, every footprint in GeoJSON whose height is read from an attribute is higher by
+    the value of `offset` (m); no height is below 0.1 m. Files keep their names, because objects are named after files. @return the new
+    scene file"""
     path, out = pathlib.Path(scene_file), pathlib.Path(folder)
     scene = load_json(path)
     changed: Dict[str, Tuple[pathlib.Path, Any]] = {}
@@ -158,7 +159,7 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
             if value and (id(feature), height) not in moved:
                 properties[height] = max(value + offset(), 0.1)
                 under = _height(properties.get(item.get("min_height_attribute")))
-                if under:  # what does not reach the ground keeps its thickness
+                if under:  # an object above the ground keeps its thickness
                     properties[item["min_height_attribute"]] = max(under + properties[height] - value, 0.0)
                 moved.add((id(feature), height))
     out.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ground of an airport: heights of a raster as its file has them, with units and holes, and triangles.
+"""The ground of an airport: heights of a raster with the file's units and holes, and triangles.
 
-GDAL's units and nodata are what a writer declared. Many declare none, or one while the holes have another value, so values that
-no ground of the Earth has are holes, too.
+GDAL gives the unit and the nodata value that the file declares. Many files declare no nodata value, or a value that differs from the value
+of the holes. Therefore, values outside the heights of the Earth's ground also count as holes.
 """
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from ._maps import coordinate_system
 DRIVERS = {"GTiff": "GeoTIFF", "AAIGrid": "ASCII grid", "SRTMHGT": "SRTM .hgt", "VRT": "GDAL .vrt"}
 WHAT = f"heights, expected {', '.join(DRIVERS.values())}"
 LOWEST, HIGHEST = -500.0, 9000.0  # m: the Dead Sea's shore lies at -430, Everest at 8,849
-SENTINELS = (-32768.0, -32767.0, -9999.0)  # raw values that mean a hole, also where the unit makes them possible heights
-HOLE = -1e9  # of the raster that is returned
+SENTINELS = (-32768.0, -32767.0, -9999.0)  # raw values of holes, also if the unit makes them possible heights
+HOLE = -1e9  # value of holes in the returned raster
 FOOT, SURVEY_FOOT = 0.3048, 1200.0 / 3937.0  # m
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": FOOT, "us ft": SURVEY_FOOT, "yd": 0.9144, "in": 0.0254,
           "fathom": 1.8288}
-SPELLINGS = (  # of GDAL, EPSG, Esri and people, in lower case
+SPELLINGS = (  # spellings of GDAL, EPSG, Esri and users, in lower case
     (r"(?:us |u s )(?:survey )?(?:foot|feet|ft)|us ?ft|(?:foot|feet|ft) ?us|survey (?:foot|feet)", "us ft"),
     (r"(?:international |intl )?(?:foot|feet|ft)", "ft"), (r"(?:international )?(?:yards?|yd)", "yd"), (r"inch|inches|in", "in"), (r"fathoms?", "fathom"),
     (r"([dcmk]?m)", ""), (r"(deci|centi|milli|kilo|)met(?:re|er)s?", ""))
 PREFIXES = {"": "m", "deci": "dm", "centi": "cm", "milli": "mm", "kilo": "km"}
-MOST_POSTS = 250_000  # of a terrain: it takes some seconds
-MOST_CHOSEN = 0.25  # of the posts: where so many are needed, all are taken
+MOST_POSTS = 250_000  # greatest number of posts of a terrain, which takes some seconds
+MOST_CHOSEN = 0.25  # share of the posts above which all posts are taken
 
 
 def metres_of(name: str) -> Optional[float]:
-    """Metres of a unit; None where its name is not known."""
+    """Metres in a unit; None for an unknown name."""
     plain = re.sub(r"[\s_.()-]+", " ", name).strip().lower()
     for pattern, unit in SPELLINGS:
         found = re.fullmatch(pattern, plain)
@@ -49,8 +49,8 @@ def metres_of(name: str) -> Optional[float]:
 
 
 def unit_of(data) -> Tuple[str, float, str]:
-    """The unit of a raster's heights, and metres of it: that of its band or of its vertical system; "" and 1 where
-    neither says one. The third is the likely unit then: that of the coordinates, where it is not the metre."""
+    """The unit of a raster's heights and the metres in the unit, from the band or from the vertical system; "" and 1 if the file gives
+    no unit. The third value is then the likely unit: the unit of the coordinates, if this is not the metre."""
     system = osr.SpatialReference()
     system.ImportFromWkt(data.GetProjection())
     named = data.GetRasterBand(1).GetUnitType()
@@ -62,34 +62,35 @@ def unit_of(data) -> Tuple[str, float, str]:
     if metres is None:
         raise Error(f"its heights are in {named!r}, expected one of {', '.join(METRES)}")
     if vertical and not math.isclose(metres, factor, rel_tol=1e-4):
-        raise Error(f"its band says heights in {named!r}, and its vertical system in {vertical!r}, expected one unit")
+        raise Error(f"its band gives heights in {named!r} and its vertical system in {vertical!r}, expected one unit")
     return named, metres, ""
 
 
 def in_metres(file: pathlib.Path, data):
-    """A raster's first band in metres with HOLE where it has no height: read block by block when it is asked for. @return it, and the
-    unit that the file says"""
+    """A raster's first band in metres, with HOLE at missing heights; blocks are read when they are needed. @return the raster, and the
+    unit that the file gives"""
     if not data.GetProjection():
-        raise Error("does not say its coordinate reference system; an ASCII grid has it in a .prj file beside it")
+        raise Error("does not say its coordinate reference system; an ASCII grid needs a .prj file with the system")
     band = data.GetRasterBand(1)
     if band.DataType == gdal.GDT_Byte:
         raise Error(f"holds bytes in {data.RasterCount} {'bands' if data.RasterCount > 1 else 'band'}, as a picture or a hillshade does, expected heights "
                     "of 16 bits or more")
     unit, metres, likely = unit_of(data)
     if likely:
-        warnings.warn(f"{file}: says no unit of its heights, and its coordinates are in {likely}: they are taken for metres, and are likely in {likely}, too; "
-                      f"`gdal_edit.py -units '{likely}' {file.name}` says so", RuntimeWarning, stacklevel=4)
+        warnings.warn(f"{file}: says no unit of its heights, and its coordinates are in {likely}: the heights are read as "
+                      f"metres, but are likely in {likely}; `gdal_edit.py -units "
+                      f"'{likely}' {file.name}` sets the unit", RuntimeWarning, stacklevel=4)
     scale, offset = metres * (band.GetScale() or 1.0), metres * (band.GetOffset() or 0.0)
     copy = gdal.Translate("", data, format="VRT", bandList=[1], outputType=gdal.GDT_Float64, noData=HOLE)
     text = re.sub(r"<(Scale|Offset|UnitType)>[^<]*</\1>", "", copy.GetMetadata("xml:VRT")[0])
-    text = re.sub(r"<(/?)SimpleSource\b", r"<\1ComplexSource", text, count=2)  # of the band; its mask stays as it is
+    text = re.sub(r"<(/?)SimpleSource\b", r"<\1ComplexSource", text, count=2)  # of the band; the mask is kept
     none = band.GetNoDataValue()
     declared = "" if none is None else f"<NODATA>{none!r}</NODATA>"
     return gdal.Open(text.replace("</ComplexSource>", f"{declared}<LUT>{_table(scale, offset)}</LUT></ComplexSource>", 1)), unit
 
 
 def _table(scale: float, offset: float) -> str:
-    """Raw values and what they are, between which GDAL interpolates: metres within the limits, else HOLE."""
+    """Table from raw values to heights, between which GDAL interpolates: metres within the limits, else HOLE."""
     low, high = sorted(((LOWEST - offset) / scale, (HIGHEST - offset) / scale))
     rows: List[Tuple[float, float]] = [(-1e300, HOLE), (math.nextafter(low, -math.inf), HOLE), (low, scale * low + offset)]
     for value in sorted(value for value in SENTINELS if low < value < high):
@@ -101,8 +102,8 @@ def _table(scale: float, offset: float) -> str:
 
 def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequence[float], known: Dict[str, Any]
                  ) -> Tuple[np.ndarray, float, float, str]:
-    """Heights of a raster at posts that cover a rectangle (m about the origin), rows from south to north: where the raster says
-    none they are level, and it fades into that. @return heights (m), spacing (m), height at the origin (m), words for the reader"""
+    """Heights of a raster at posts that cover a rectangle (m from the origin), rows from south to north. Missing heights become level
+    ground, into which the raster fades. @return heights (m), spacing (m), height at the origin (m), words for the reader"""
     raw = open_file(file, WHAT, list(DRIVERS), gdal.OF_RASTER)
     with naming(str(file)), quiet():
         data, unit = in_metres(file, raw)
@@ -126,19 +127,22 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
             heights = _feathered(band.ReadAsArray(), spacing, known["feather"])
     heights = heights[::-1]
     here = height_at(heights, (west, south), spacing, (0.0, 0.0))
-    words = f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {spacing:.3g} m" + (f" (it has them every {own:.3g} m)" if spacing > 1.01 * own else "")
+    words = (f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {spacing:.3g} m"
+             + (f" (the file has heights every {own:.3g} m)" if spacing > 1.01 * own else ""))
     if unit and metres_of(unit) != 1.0:
-        words += f", in {unit}, which it says"
+        words += f", in {unit} by the file"
     if holes > 0.0:
-        words += (f"; {holes:.2g} % of the places have none there: holes are filled from around them, and beyond its border the ground is level, "
-                  f"into which it fades over {known['feather']:g} m (assumed)")
+        words += (f"; {holes:.2g} % of the places have no height in the file: holes are filled from their surroundings, and beyond the "
+                  f"raster's border the ground is level. The raster fades into level ground over {known['feather']:g} m (assumed)")
     if holes > 5.0:
-        warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene, which are level there", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene; "
+                      "the ground is level at these places", RuntimeWarning, stacklevel=2)
     return heights, spacing, here, words
 
 
 def _feathered(heights: np.ndarray, spacing: float, width: float) -> np.ndarray:
-    """Level where heights are missing, at the mean of the border, and fading into that within `width` (m)."""
+    """Heights with level ground at missing heights, at the mean height of the border. Heights fade into the level ground within `width`
+    (m)."""
     from scipy.ndimage import distance_transform_edt
     missing = ~(np.abs(heights) < 1e8)
     if not missing.any():
@@ -150,14 +154,14 @@ def _feathered(heights: np.ndarray, spacing: float, width: float) -> np.ndarray:
 
 
 def height_at(values: np.ndarray, corner: Sequence[float], spacing: float, place: Sequence[float]) -> float:
-    """Between four posts."""
+    """The height at a place, interpolated between four posts."""
     from scipy.ndimage import map_coordinates
     at = [[(place[i] - corner[i]) / spacing] for i in (1, 0)]
     return float(map_coordinates(values, at, order=1, mode="nearest")[0])
 
 
 def curvature(origin: Sequence[float], x, y):
-    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order: 5 um off at 5 km and 8 mm at 50 km.
+    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order; the error is 5 um at 5 km and 8 mm at 50 km.
     @param origin latitude (deg), ... @param x, y east and north, m"""
     a, f = 6378137.0, 1.0 / 298.257223563
     bulge = 1.0 - f * (2.0 - f) * math.sin(math.radians(origin[0])) ** 2
@@ -167,9 +171,10 @@ def curvature(origin: Sequence[float], x, y):
 
 
 def terrain(heights: np.ndarray, corner: Sequence[float], spacing: float, origin: Sequence[float], error: float):
-    """Triangles (vtkPolyData, m east, north and up of the origin) within `error` (m) of the posts: Delaunay's of the corners and of
-    the worst post of each triangle, again and again; of rough ground all posts. VTK's vtkGreedyTerrainDecimation does not keep to its error: of waves of 20 m
-    it was 34 m off where 0.25 m was asked for (VTK 9.1). @param heights above the origin's height, m, rows from south to north"""
+    """Triangles (vtkPolyData, m east, north and up of the origin) within `error` (m) of the posts: a Delaunay triangulation of the
+    corners, to which the worst post of each triangle is added repeatedly. Rough ground takes all posts. VTK's vtkGreedyTerrainDecimation
+    exceeds its error limit: on waves of 20 m the error was 34 m in place of 0.25 m (VTK 9.1). @param heights above the origin's height,
+    m, rows from south to north"""
     from scipy.spatial import Delaunay
     rows, columns = heights.shape
     row, column = (index.ravel() for index in np.indices(heights.shape))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plans of coverage and scenarios of labelled sequences as files, and the manifests of sequences."""
+"""Files of plans of coverage, of scenarios of labelled sequences, and of manifests of sequences."""
 from __future__ import annotations
 
 import pathlib
@@ -13,16 +13,16 @@ from .._weather import in_weather, weather, without_air
 from . import _metar
 from ._json import check_json, load_json, naming
 
-SUM = 1e-6  # to which the shares of a year are 1
+SUM = 1e-6  # allowed difference of a year's shares from the sum 1
 
 
 def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes: Dict[str, Any]) -> Dict[str, Any]:
-    """A plan of coverage (JSON, `coverage.schema.json`), with its own name as `file` and what was changed as `options`; `Error` names what
-    is wrong. Files that it names are absolute.
+    """A plan of coverage (JSON, `coverage.schema.json`), with the plan's file name as `file` and the changes as `options`; `Error` names
+    the wrong part. File names in the plan become absolute.
 
-    words    of weather, in place of the plan's, its year and what its `coverage` says of the air
-    metar    file of reports, in place of the plan's year
-    changes  parts of the plan, such as `sensor`, each with what else it shall hold
+    words    words of weather that replace the plan's weather, its year and the air in its `coverage`
+    metar    file of reports that replaces the plan's year
+    changes  parts of the plan, such as `sensor`, each with values to add
     """
     path = pathlib.Path(file)
     plan = load_json(path)
@@ -78,14 +78,14 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
 
 
 def _as_option(value: Any) -> str:
-    """A value as commands take it."""
+    """A value as an option of a command."""
     if isinstance(value, (list, tuple)):
         return ",".join(map(_as_option, value))
     return ("off", "on")[value] if isinstance(value, bool) else str(value)
 
 
 def _check_question(plan: Dict[str, Any], file: str) -> None:
-    """`Error` where parts of a plan ask for different birds or places."""
+    """`Error` if parts of a plan contradict each other about birds, places or weather."""
     if "regions" in plan and "runways" not in plan:
         raise Error(f"{file}: regions: needs runways")
     with naming(f"{file}: weather"):
@@ -94,28 +94,28 @@ def _check_question(plan: Dict[str, Any], file: str) -> None:
         with naming(f"{file}: year[{number}].weather"):
             weather(part["weather"])
     if "year" in plan and "metar" in plan:
-        raise Error(f"{file}: metar: is there beside 'year', expected one of both to say which weather there is")
+        raise Error(f"{file}: metar: is given beside 'year', expected only one of them")
     total = sum(part["share"] for part in plan.get("year", ()))
     if "year" in plan and not abs(total - 1.0) <= SUM:
         raise Error(f"{file}: year: shares sum to {total:g}, expected 1")
     if "species" in plan.get("coverage", {}) and "mix" in plan:
-        raise Error(f"{file}: coverage.species: is there beside 'mix', expected one of both to say which birds are asked for")
+        raise Error(f"{file}: coverage.species: is given beside 'mix', expected only one of them")
 
 
 def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
-    """Its name in files and reports: `name`, else that of the preset; "changed" if more than place and orientation are set.
-    @param what it is in a plan"""
+    """The name of a sensor in files and reports: `name`, else the name of the preset; with "changed" if more than place and orientation
+    are set. @param what the sensor's member of a plan"""
     preset = pathlib.Path(sensor["preset"]).name.split(".lidarsensor")[0]
     changed = any(name not in ("preset", "position", "orientation") for name in sensor)
     return checked_name(sensor.get("name", f"{preset} changed" if changed and preset else preset), f"{what}.name")
 
 
-# Whose properties the parts of a scenario name.
+# Classes whose properties the parts of a scenario name.
 PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter, "birds": _wrapped.vtkAvianLidarTracks}
 
 
 def checked(scenario: Any, what: str) -> Dict[str, Any]:
-    """A scenario whose properties have their names in snake case, as its schema wants it. @param what its file, for errors"""
+    """A scenario with properties in snake case, as the schema requires. @param what name of the scenario's file, for errors"""
     def here(wrapped: type, value: Any, part: str) -> Any:
         if isinstance(value, list):
             return [here(wrapped, one, f"{part}[{place}]") for place, one in enumerate(value)]
@@ -128,7 +128,7 @@ def checked(scenario: Any, what: str) -> Dict[str, Any]:
 
 
 def with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
-    """The scenario with other words for the files that it names."""
+    """The scenario with other names of the files that it needs."""
     preset = scenario["sensor"]["preset"]
     birds = [{name: change(value) if name in ("file_name", "species_file_name") else value for name, value in group.items()}
              for group in scenario.get("birds", ())]
@@ -137,7 +137,7 @@ def with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[s
 
 
 def read_scenario(file) -> Dict[str, Any]:
-    """A scenario file, or the manifest of a sequence; `Error` names what is wrong. Files that it names are absolute."""
+    """A scenario file, or the manifest of a sequence; `Error` names the wrong part. File names in the scenario become absolute."""
     path = pathlib.Path(file)
     scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:
@@ -147,7 +147,7 @@ def read_scenario(file) -> Dict[str, Any]:
 
 
 def read_manifest(folder, others: str = "") -> Dict[str, Any]:
-    """The manifest of a folder of sequences. @param others what else could be given, in words"""
+    """The manifest of a folder of sequences. @param others words for other allowed inputs"""
     file, made = pathlib.Path(folder) / "manifest.json", "a folder that `avianlidar sequence` has made"
     if not file.is_file():
         raise Error(f"{folder}: holds no manifest.json, expected {made}{others}")

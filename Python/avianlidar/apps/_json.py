@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""JSON files of the user's, with errors that name what is wrong."""
+"""JSON files of the user, with errors that name the wrong part."""
 from __future__ import annotations
 
 import contextlib
@@ -12,25 +12,26 @@ from typing import Any, Iterator
 from .._files import read_regular
 from .._pipeline import Error, words_of
 
-KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}  # by a key that others have not
+# kinds of files, by a key that other kinds do not have
+KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}
 SCHEMAS = {"coverage.schema.json": "a plan", "scenario.schema.json": "a scenario"}
-LONGEST = 400  # characters of what a schema says, which may quote a whole list
+LONGEST = 400  # characters of a schema's message, which may quote a whole list
 
 
 def _finite(text: str) -> float:
-    value = float(text)  # also of words that are no JSON: NaN, Infinity
+    value = float(text)  # also refuses NaN and Infinity, which are not JSON
     if not math.isfinite(value):
         raise ValueError(f"{text[:40]} is not a finite number")
     return value
 
 
 def _integer(text: str) -> int:
-    _finite(text)  # with more than 308 digits it is none
+    _finite(text)  # refuses integers of more than 308 digits
     return int(text)
 
 
 def load_json(file) -> Any:
-    """What a file holds, also compressed by gzip; `Error` says what is wrong with it. Numbers are finite."""
+    """The content of a JSON file, which may be compressed by gzip; `Error` names the problem. Numbers are finite."""
     try:
         return json.loads(read_regular(file), parse_constant=_finite, parse_float=_finite, parse_int=_integer)
     except RecursionError:
@@ -41,12 +42,12 @@ def load_json(file) -> Any:
 
 @functools.lru_cache(maxsize=None)
 def packaged(name: str) -> Any:
-    """What a JSON file of this package holds."""
+    """The content of a JSON file of this package."""
     return load_json(pathlib.Path(__file__).with_name(name))
 
 
 def check_json(document: Any, schema: str, what: str) -> None:
-    """`Error` names the property that does not fit. @param schema a file of this package @param what the document's name"""
+    """`Error` names the property that does not fit. @param schema a schema file of this package @param what name of the document"""
     import jsonschema
     wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(packaged(schema)).iter_errors(document))
     if wrong:
@@ -62,8 +63,8 @@ def check_json(document: Any, schema: str, what: str) -> None:
 
 @contextlib.contextmanager
 def naming(what: str) -> Iterator[None]:
-    """What goes wrong inside is an `Error` that begins with `what`: a file and its member, as in
-    `my.coverage.json: siting.spacing`. @param what also said of errors that name another file"""
+    """Turns an exception inside into an `Error` that begins with `what`: a file and its member, as in
+    `my.coverage.json: siting.spacing`. @param what is also put before errors that name another file"""
     try:
         yield
     except (RuntimeError, OSError, ValueError, TypeError, LookupError, ArithmeticError, MemoryError) as error:

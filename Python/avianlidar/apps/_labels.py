@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Classes of labelled sequences, and their configuration for programs that read SemanticKITTI."""
+"""Classes of labelled sequences, and the configuration for programs that read SemanticKITTI."""
 from __future__ import annotations
 
 from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Tuple
@@ -8,20 +8,20 @@ import numpy as np
 
 from .._pipeline import Error
 
-BIRD = 99  # unless the scenario says another
-FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of what moves; labels hold id + 1 in 16 bits
-# Of what is under way: the class at rest, and its moving one.
+BIRD = 99  # default label of birds
+FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of movers; labels hold id + 1 in 16 bits
+# Classes of objects at rest, and the class of the same objects in motion.
 MOVING = {10: 252, 18: 258, 20: 259}
 
 
 class Class(NamedTuple):
     """A class of the labels."""
-    name: str                      # SemanticKITTI's
-    here: str                      # what it is in a sequence
+    name: str                      # name in SemanticKITTI
+    here: str                      # meaning in a sequence
     color: Tuple[int, int, int]    # blue, green, red
 
 
-# Every class that a sequence can have, by its id in SemanticKITTI (Documentation/reference/formats.md): what is looked for comes first.
+# Every class of a sequence, by its id in SemanticKITTI (Documentation/reference/formats.md). Classes to be found come first.
 CLASSES = {
     0: Class("unlabeled", "false alarms, objects of no known class", (0, 0, 0)),
     BIRD: Class("bird", "birds", (110, 0, 215)),
@@ -45,10 +45,10 @@ CLASSES = {
 
 
 def classes_of(bird: int) -> Dict[int, Class]:
-    """The classes where birds have the label `bird`, in the order in which they are learned."""
+    """The classes if birds have the label `bird`, in the order of their learned numbers."""
     if bird != BIRD and bird in CLASSES and bird not in MOVING.values():
-        raise Error(f"bird_class is {bird}, expected no label of what stands still ({CLASSES[bird].name}): 99, one of "
-                    "what moves, or one that nothing else has")
+        raise Error(f"bird_class is {bird}, expected no label of a static class ({CLASSES[bird].name}), but 99, the label of "
+                    "a moving class, or an unused label")
     classes = {0: CLASSES[0], bird: CLASSES.get(bird, CLASSES[BIRD])}
     if bird in MOVING.values():
         classes[bird] = classes[bird]._replace(here=f"birds, {classes[bird].here}")
@@ -56,7 +56,7 @@ def classes_of(bird: int) -> Dict[int, Class]:
 
 
 def relabel(labels: np.ndarray, bird: int) -> np.ndarray:
-    """Labels of the KITTI writer with the class of birds, and with moving classes for what is under way."""
+    """Labels of the KITTI writer with the class of birds, and with moving classes for moving objects."""
     classes, objects = labels & 0xffff, (labels >> 16).astype(np.int64) - 1
     under_way = (objects >= FIRST_OBJECT) & (objects < FIRST_BIRD)
     changed = classes.copy()
@@ -67,16 +67,16 @@ def relabel(labels: np.ndarray, bird: int) -> np.ndarray:
 
 
 def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]) -> str:
-    """The configuration (YAML) by which SemanticKITTI's programs read, train on and score sequences.
+    """The configuration (YAML) with which SemanticKITTI's programs read, train on and score sequences.
 
     bird       label of birds
     points     number of points of each label
     sequences  numbers of the sequences
     """
     classes, total, numbers = classes_of(bird), max(sum(points.values()), 1), list(sequences)
-    learned = {label: number for number, label in enumerate(classes)}  # each class is told from all others; 0 is not learned
-    lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: birds are counted, and what moves",
-             "# has a class of its own. Only 0 is left out of loss and score.", 'name: "avian-lidar"']
+    learned = {label: number for number, label in enumerate(classes)}  # each class is separate; 0 is not learned
+    lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: birds count as a class, and moving objects",
+             "# have separate classes. Only 0 is left out of loss and score.", 'name: "avian-lidar"']
     parts: Tuple[Tuple[str, List[Tuple[Any, Any]]], ...] = (
         ("labels", [(label, f'"{classes[label].name}"  # {classes[label].here}') for label in sorted(classes)]),
         ("color_map:  # blue, green, red", [(label, list(classes[label].color)) for label in sorted(classes)]),
@@ -84,7 +84,7 @@ def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]
         ("learning_map", [(label, learned[label]) for label in sorted(classes)]),
         ("learning_map_inv", [(number, label) for label, number in learned.items()]),
         ("learning_ignore", [(number, number == 0) for number in learned.values()]),
-        # Of five sequences three to train, one to validate and one to test; more sequences change no role.
+        # Three of five sequences train, one validates and one tests. More sequences change no role.
         ("split:  # numbers of sequences", [
             (role, [number for number in numbers if number % 5 in rests])
             for role, rests in (("train", (0, 3, 4)), ("valid", (1,)), ("test", (2,)))]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What lidars at sites detect at places. Results are kept in files, so that a stopped run goes on and ranks share the work."""
+"""Results of lidars at sites for given places. Results are kept in files, so that a stopped run can continue and ranks share the work."""
 from __future__ import annotations
 
 import contextlib
@@ -22,7 +22,7 @@ from .._pipeline import Error, Updates, callers_level, update
 from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
 from .._version import __version__
 
-SAME_BIRDS = 20_000  # places whose poses are held together: 6 MB a sensor and air
+SAME_BIRDS = 20_000  # number of places whose poses are in memory together: 6 MB for each sensor and air
 
 
 def _checked_sites(sites) -> np.ndarray:
@@ -35,20 +35,20 @@ def _checked_sites(sites) -> np.ndarray:
 def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
          progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
          airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> np.ndarray:
-    """What a lidar at each site finds at each place: float32, sites x species x places; with several airs sites x (species x airs)
-    x places, the airs of a species side by side. Without clutter unless `clutter` is on;
-    on one thread unless `number_of_threads` says more, which pays only for many places: ranks share sites better.
+    """Results of a lidar at each site for each place: float32, sites x species x places. With several airs: sites x (species x airs)
+    x places, where the airs of a species are neighbours. Clutter is off unless `clutter` is on. One thread is used unless
+    `number_of_threads` is larger, which is faster only for many places; ranks share sites more efficiently.
 
-    sensor       a Sensor; it is moved, and put back
+    sensor       a Sensor; its position is changed and restored
     sites        n x 3, m
     places       m x 3, m
-    species      by name; "" with `effective_area`
-    folder       where each site's result is kept, a file of its own: a second call with the same scene, sensor, places and so
-                 on reads what is there, also after the first was stopped. Needed on several ranks, which share the sites
-    progress     called with the number of sites done and of all that this process makes
+    species      names of species; "" with `effective_area`
+    folder       folder with one file for the result of each site. A second call with the same scene, sensor, places and other inputs
+                 reads these files, also after the first call was stopped. Required on several ranks, which share the sites
+    progress     called with the number of finished sites and the number of all sites of this process
     array        a point array of vtkAvianLidarCoverage
-    area_factor  on each species' mean effective area
-    airs         further settings, all of the same names: visibility, rain_rate, ... For each the lines of sight are those of the first
+    area_factor  factor on each species' mean effective area
+    airs         further settings, all with the same names: visibility, rain_rate, ... Lines of sight are traced once for all airs
     settings     properties of Coverage, for example visibility=10e3 (m)
 
     @throws ValueError that names the argument, Error of Coverage
@@ -64,12 +64,13 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     with ranks.together():
         try:
             sensor.position = (0.0, 0.0, 0.0)
-            inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}  # which changes no bit
+            # the number of threads changes no bit
+            inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}
             known = [list(species), array, area_factor, inputs, *([[dict(air) for air in airs]] if any(airs) else [])]
             files = files_of(cover, sites, places, known, folder)
             ranks.agree(folder, lambda: [file.name for file in files])
             if len(sites):
-                sensor.position = tuple(sites[0])  # who is warned of a place is warned of one that was asked for
+                sensor.position = tuple(sites[0])  # so that a warning about a place names one of the sites
             areas = [cover.effective_area] * len(species)
             if area_factor != 1.0:
                 areas = [area_factor * float(np.ravel(field_values(cover.set(species=name).data)["effective_area"])[0])
@@ -95,16 +96,16 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
 
 def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], weights: np.ndarray, airs: Sequence[Mapping[str, Any]] = ({},),
                         **settings: Any) -> float:
-    """The weighted share that at least one of the sites detects in one scan if all of them look at the same bird: its heading
-    and wing phase are kept from sensor to sensor. Beside it stands value_of, for which each sensor has a bird of its own. Without
-    clutter unless `clutter` is on.
+    """The weighted share that at least one of the sites detects in one scan if all sites observe the same bird, whose heading
+    and wing phase are equal for all sensors. In value_of, each sensor observes a different bird. Clutter is off
+    unless `clutter` is on.
 
-    sensor    a Sensor; it is moved, and put back
-    sites     n x 3, m: of the network
+    sensor    a Sensor; its position is changed and restored
+    sites     n x 3, m: sites of the network
     places    m x 3, m
-    species   by name
+    species   names of species
     weights   species x places, from weights_of; with several airs (species x airs) x places
-    airs      as of look
+    airs      as in look
     settings  properties of Coverage, for example visibility=10e3 (m)
 
     @throws ValueError that names the argument, Error of Coverage
@@ -141,14 +142,14 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
 
 
 def require_memory(needed: float, what: str, instead: str) -> None:
-    """Error where results are larger than this computer's memory. @param needed bytes @param instead what to do"""
+    """Raises Error if results are larger than this computer's memory. @param needed bytes @param instead advice to the user"""
     there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if needed > there:
-        raise Error(f"{what} need {needed / 1e9:.3g} GB, there are {there / 1e9:.3g} GB: {instead}")
+        raise Error(f"{what} need {needed / 1e9:.3g} GB, but the memory has {there / 1e9:.3g} GB: {instead}")
 
 
 def files_of(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]:
-    """Of each site, named by all that its result depends on."""
+    """The file of each site, named by a checksum of everything that decides the result."""
     if folder is None:
         return []
     home = pathlib.Path(folder)
@@ -167,14 +168,14 @@ def files_of(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Pat
 
 def fill(found: np.ndarray, files: Sequence[pathlib.Path], ranks: Ranks, make: Callable[[int], Any],
           progress: Optional[Callable[[int, int], Any]] = None, key: Callable[[int], Any] = lambda i: i) -> None:
-    """Read each row from its file; make and write what is missing. Ranks share that work.
+    """Reads each row from its file, and makes and writes missing rows. Ranks share this work.
 
-    make  a row, by its number
-    key   equal for neighbouring rows that one rank makes
+    make  function that makes a row from its number
+    key   equal for neighbouring rows that one rank must make
     """
     kept = {i for i, file in enumerate(files) if _read_kept(file, found[i])}
     damaged = [str(file) for i, file in enumerate(files) if i not in kept and os.path.lexists(file)]
-    ranks.wait()  # all have looked before anybody adds anything
+    ranks.wait()  # all ranks have read before any rank writes
     if damaged and ranks.rank == 0:
         warnings.warn(f"kept coverage is damaged and is made again: {', '.join(damaged)}", RuntimeWarning,
                       stacklevel=callers_level())
@@ -184,25 +185,25 @@ def fill(found: np.ndarray, files: Sequence[pathlib.Path], ranks: Ranks, make: C
     for number, i in enumerate(mine):
         found[i] = make(i)
         if files:
-            files[i].unlink(missing_ok=True)  # a damaged one may be a pipe
+            files[i].unlink(missing_ok=True)  # a damaged file may be a pipe
             write_whole(files[i], packed(found[i]))
         if progress:
             progress(number + 1, len(mine))
     ranks.wait()
-    for i in sorted(set(todo) - set(mine)):  # of other ranks
+    for i in sorted(set(todo) - set(mine)):  # rows of other ranks
         if not _read_kept(files[i], found[i]):
-            raise Error(f"{files[i]}: is damaged, which another rank has just written")
+            raise Error(f"{files[i]}: is damaged, although another rank has just written this file")
 
 
 def packed(values: np.ndarray) -> bytes:
-    """A file of values: .npy, and behind it the digest of all that."""
+    """The bytes of a file of values: .npy, followed by a checksum."""
     stream = io.BytesIO()
     np.save(stream, values)
     return stream.getvalue() + hashlib.sha256(stream.getvalue()).digest()
 
 
 def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
-    """Whether a file is whole, as it was written; its values are read into `values`."""
+    """Whether a file is complete and undamaged; its values are read into `values`."""
     with contextlib.suppress(OSError):
         content = file.read_bytes() if file.is_file() else b""
         read = np.load(io.BytesIO(content[:-32])) if hashlib.sha256(content[:-32]).digest() == content[-32:] else np.empty(0)

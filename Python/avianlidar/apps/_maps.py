@@ -17,18 +17,18 @@ from ._plan import Plan
 from ._tables import write_table
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
-              "minimum_effective_area": "m2", "status": ""}  # maps that are written, with their units
-LIMITS = (0.1, 0.5, 0.9)  # of the detection probability, in GeoJSON
-IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's
+              "minimum_effective_area": "m2", "status": ""}  # written maps with their units
+LIMITS = (0.1, 0.5, 0.9)  # limits of the detection probability, in GeoJSON
+IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's folder in memory
 
 
 def coordinate_system(origin: Sequence[float]):
-    """The scene's plane for GIS: the transverse Mercator projection about its origin on WGS84, scaled to the origin's height. It
-    differs from east and north by some millimetres at 3 km. @param origin latitude, longitude (deg), height (m)"""
+    """The scene's plane for GIS: the transverse Mercator projection about the origin on WGS84, scaled to the origin's height. The
+    difference to east and north is some millimetres at 3 km. @param origin latitude, longitude (deg), height (m)"""
     from osgeo import osr
     osr.UseExceptions()
     system = osr.SpatialReference()
-    # Metres at a height are longer than on the ellipsoid: by the mean radius of curvature there.
+    # Lengths at a height are longer than on the ellipsoid, in proportion to the distance from the mean centre of curvature.
     flattening = 1.0 / osr.SRS_WGS84_INVFLATTENING
     bulge = 1.0 - flattening * (2.0 - flattening) * math.sin(math.radians(origin[0])) ** 2
     radius = osr.SRS_WGS84_SEMIMAJOR * (1.0 - flattening) / bulge
@@ -40,11 +40,11 @@ def coordinate_system(origin: Sequence[float]):
 
 def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Sequence[float], origin: Optional[Sequence[float]],
                   name: str, unit: str = "", categories: Sequence[str] = (), notes: Optional[Dict[str, str]] = None) -> None:
-    """Write a map as a GeoTIFF.
+    """Writes a map as a GeoTIFF.
 
     values      rows (from south to north) x columns; integers up to 255 become bytes, others single precision
-    corner      x and y of the first value, m; the middle of its pixel
-    spacing     between columns and rows, m
+    corner      x and y of the first value, m, at the centre of its pixel
+    spacing     distance between columns and between rows, m
     origin      of the scene: latitude, longitude (deg), height (m); None: no coordinate system
     categories  names of the values 0, 1, ...
     """
@@ -67,10 +67,10 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     if categories:
         band.SetCategoryNames(list(categories))
     band.WriteArray(pixels)
-    del band, image  # written now
+    del band, image  # closes and writes the image
     with naming(f"{file}: GDAL has not written the whole map"):
         if not np.array_equal(gdal.Open(IN_MEMORY + "map.tif").ReadAsArray(), pixels, equal_nan=True):
-            raise ValueError("it holds other values")
+            raise ValueError("the file holds other values")
         content, beside = _taken("map.tif"), _taken("map.tif.aux.xml")
     names = pathlib.Path(f"{file}.aux.xml")
     if beside:
@@ -79,12 +79,12 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
             write_whole(file, content)
     else:
         write_whole(file, content)
-        names.unlink(missing_ok=True)  # with statistics of the map that was there
+        names.unlink(missing_ok=True)  # statistics of an older map
 
 
 def _taken(name: str) -> bytes:
-    """What GDAL has written in memory, which it frees; nothing if there is no such file. It writes no file of a disk: where that is
-    full, it says so where nobody hears it."""
+    """The bytes that GDAL has written to a file in memory, which is freed; empty without such a file. GDAL does not write to the disk
+    itself, because GDAL does not report a full disk."""
     from osgeo import gdal
     name = IN_MEMORY + name
     found = gdal.VSIStatL(name)
@@ -100,11 +100,11 @@ def _taken(name: str) -> bytes:
 
 
 def write_areas(file, geotiff, description: str) -> None:
-    """Write where a map's probabilities lie between LIMITS as GeoJSON: polygons of whole pixels, in longitude and latitude, with
-    the numbers `probability_from` and `probability_to`. Below the first limit there is none.
+    """Writes the areas where a map's probabilities lie between LIMITS as GeoJSON: polygons of whole pixels, in longitude and latitude, with
+    the numbers `probability_from` and `probability_to`. Areas below the first limit are left out.
 
-    geotiff      the map, in a coordinate system
-    description  of the file, in words
+    geotiff      the map, which needs a coordinate system
+    description  description in the file
     """
     from osgeo import gdal, ogr
     gdal.UseExceptions()
@@ -116,7 +116,7 @@ def write_areas(file, geotiff, description: str) -> None:
     bounds = ("probability_from", "probability_to")
     for name, kind in (("class", ogr.OFTInteger), *((name, ogr.OFTReal) for name in bounds)):
         layer.CreateField(ogr.FieldDefn(name, kind))
-    gdal.Polygonize(classes.GetRasterBand(1), classes.GetRasterBand(1), layer, 0)  # masked: class 0 is not there
+    gdal.Polygonize(classes.GetRasterBand(1), classes.GetRasterBand(1), layer, 0)  # masked: class 0 is left out
     for feature in layer:
         number = feature.GetField("class")
         for name, value in zip(bounds, (*LIMITS, 1.0)[number - 1:number + 1]):
@@ -128,20 +128,21 @@ def write_areas(file, geotiff, description: str) -> None:
         content = _taken("areas.geojson")
         count, wanted = len(json.loads(content)["features"]), layer.GetFeatureCount()
         if count != wanted:
-            raise ValueError(f"{count} of {wanted} are there")
+            raise ValueError(f"the file holds {count} of {wanted} areas")
     write_whole(file, content)
 
 
 def height_name(height: float) -> str:
-    """As it stands in the names of files: as short as it can be, and another for each height."""
+    """The height in names of files: as short as possible, and different for each height."""
     short = f"{height:g}"
     return f"{short if float(short) == height else repr(float(height))}m"
 
 
 def notes_of(plan: Plan) -> Dict[str, str]:
-    """What maps were made for, in words."""
+    """The settings for which maps were made, in words."""
     cover, area = plan.coverage, plan.regions.data.GetFieldData().GetArray("effective_area").GetValue(0)
-    size = f", effective area {area:.4f} m2 (assumed)" if len(plan.mix) == 1 else ", effective areas assumed; reasons are of the first"
+    size = (f", effective area {area:.4f} m2 (assumed)" if len(plan.mix) == 1 else
+            ", effective areas assumed; reasons are for the first species")
     return {"sensor": plan.name, "position_m": " ".join(f"{c:g}" for c in plan.sensor.position),
             "target": f"{plan.bird}{size}, reflectance {cover.reflectance:g} (assumed)",
             "visibility_m": f"{cover.visibility:g} (assumed)" if cover.visibility > 0.0 else f"none, attenuation {cover.attenuation_coefficient:.3g}/m",
@@ -150,8 +151,8 @@ def notes_of(plan: Plan) -> Dict[str, str]:
 
 
 def write_maps(plan: Plan, folder, progress: Callable[[int, int], Any] = lambda *_: None) -> int:
-    """Write a GeoTIFF for each height and quantity, GeoJSON where the scene has an origin, shares.csv, ends.csv, clutter.vtp. @param progress
-    called with the files done and their number @return that number"""
+    """Writes a GeoTIFF for each height and quantity, GeoJSON if the scene has an origin, shares.csv, ends.csv, clutter.vtp. @param progress
+    called with the number of finished files and the number of all files @return the number of all files"""
     folder, origin, done = pathlib.Path(folder), plan.scene.geodetic_origin, itertools.count(1)
     total = len(plan.heights) * (len(QUANTITIES) + (origin is not None)) + 3
     folder.mkdir(parents=True, exist_ok=True)

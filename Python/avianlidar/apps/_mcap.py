@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sequence as one MCAP file of ROS 2 messages: clouds, where the sensor stands, and boxes about what moves.
+"""Writes a sequence as one MCAP file of ROS 2 messages: clouds, the pose of the sensor, and boxes around movers.
 
-Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions of common_interfaces and geometry2 (Humble and later).
+Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions in common_interfaces and geometry2
+(Humble and later).
 """
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from .._version import __version__
 
 _MAGIC = b"\x89MCAP0\r\n"
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = 1, 2, 3, 4, 5, 6, 7, 8, 11, 15
-_TF, _POINTS, _BOXES = 1, 2, 3  # channels, and their schemas
+_TF, _POINTS, _BOXES = 1, 2, 3  # numbers of the channels and of their schemas
 _TOPICS = {_TF: ("/tf", "tf2_msgs/TFMessage"), _POINTS: ("/points", "sensor_msgs/PointCloud2"),
            _BOXES: ("/boxes", "visualization_msgs/MarkerArray")}
 _STAMPED = "std_msgs/Header header"
@@ -50,16 +51,16 @@ _TYPES = {
     "visualization_msgs/MarkerArray": "visualization_msgs/Marker[] markers",
     "visualization_msgs/MeshFile": "string filename, uint8[] data",
     "visualization_msgs/UVCoordinate": "float32 u, float32 v"}
-_CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # of struct
-_CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # of markers
-_COLOURS = {True: (0.1, 0.7, 0.3, 0.5), False: (0.6, 0.3, 0.8, 0.5)}  # of birds, of others: red, green, blue, opacity
-_FLOAT, _UINT = ("<f4", 7), ("<u2", 4)  # types, and what PointField calls them
+_CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # format characters of the module struct
+_CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # type and actions of markers
+_COLOURS = {True: (0.1, 0.7, 0.3, 0.5), False: (0.6, 0.3, 0.8, 0.5)}  # red, green, blue, opacity of birds (True) and of other movers
+_FLOAT, _UINT = ("<f4", 7), ("<u2", 4)  # types in NumPy, and in PointField
 _FIELDS = {"x": _FLOAT, "y": _FLOAT, "z": _FLOAT, "intensity": _FLOAT, "label": _UINT, "instance": _UINT}
 _POINT = np.dtype([(name, kind) for name, (kind, _) in _FIELDS.items()])
 
 
 def _schema(name: str) -> str:
-    """The definition of a message, followed by those of the types in it."""
+    """The definition of a message, followed by the definitions of the types inside."""
     names = [name]
     for one in names:
         names += [kind for kind in dict.fromkeys(re.findall(r"\w+/\w+", _TYPES[one])) if kind not in names]
@@ -68,7 +69,7 @@ def _schema(name: str) -> str:
 
 
 def _put(data: bytearray, kind: str, value) -> bytearray:
-    """Append a value of a type, a message as the tuple of its fields. Each number is at a multiple of its size."""
+    """Appends a value of a type; a message is the tuple of its fields. Each number starts at a multiple of its size."""
     if kind.endswith("[]"):
         _put(data, "uint32", len(value))
         if kind == "uint8[]":
@@ -87,12 +88,12 @@ def _put(data: bytearray, kind: str, value) -> bytearray:
 
 
 def _message(key: int, *fields) -> bytes:
-    """A message of a channel, little endian."""
+    """A message in a channel, little endian."""
     return b"\0\1\0\0" + _put(bytearray(), _TOPICS[key][1], fields)
 
 
 def _transform(time: int, pose: np.ndarray) -> bytes:
-    """From the sensor's frame to the map."""
+    """The transform from the sensor's frame to the map."""
     from scipy.spatial.transform import Rotation
     rotation = Rotation.from_matrix(pose[:, :3]).as_quat()
     return _message(_TF, [((divmod(time, 10**9), "map"), "lidar", (pose[:, 3], rotation * (-1 if rotation[3] < 0 else 1)))])
@@ -105,10 +106,10 @@ def _cloud(time: int, points: np.ndarray) -> bytes:
 
 
 def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> Tuple:
-    """A marker of a box, which stays until the next scan takes all away.
+    """A marker of a box, which is shown until the next scan removes all boxes.
 
-    numbers  middle, size and heading, as of a line of boxes
-    words    its text
+    numbers  middle, size and heading, as in a line of boxes
+    words    text of the marker
     """
     pose = numbers[:3], (0, 0, math.sin(numbers[6] / 2), math.cos(numbers[6] / 2))
     texture = ((0, 0), ""), "", b""
@@ -117,7 +118,7 @@ def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[fl
 
 
 def _boxes(time: int, file: pathlib.Path) -> bytes:
-    """The boxes of the scan before go, and one of each line comes."""
+    """Messages that remove the boxes of the last scan and add one box for each line."""
     try:
         markers = [_marker(time, "", 0, _DELETE_ALL, (0,) * 7)]
         for line in read_regular(file).decode().splitlines():
@@ -126,7 +127,7 @@ def _boxes(time: int, file: pathlib.Path) -> bytes:
             words = f"truncated {float(truncated):.2f}, hidden {float(hidden):.2f}, points {int(points)}"
             markers.append(_marker(time, name, int(number), _ADD, (x, y, z, length, width, height, yaw), words))
         return _message(_BOXES, markers)
-    except (ValueError, struct.error):  # also words that are no UTF-8
+    except (ValueError, struct.error):  # also raised for text that is not UTF-8
         raise ValueError(f"{file}: expected lines of a class, 9 numbers, an id and a number of points") from None
 
 
@@ -143,7 +144,7 @@ def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "")
 
 
 def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndarray]]:
-    """Name, time (ns), pose and points of each scan. A calibration turns poses of a camera to those of the lidar, as in SemanticKITTI."""
+    """Name, time (ns), pose and points of each scan. With a calibration, camera poses become lidar poses, as in SemanticKITTI."""
     if not (folder / "velodyne").is_dir():
         raise ValueError(f"{folder}: is not a folder of a sequence, expected one with velodyne/, times.txt and poses.txt")
     files = sorted((folder / "velodyne").glob("*.bin"))
@@ -176,7 +177,7 @@ def _bytes(content: bytes) -> bytes:
 
 
 def write(folder: pathlib.Path, out: pathlib.Path) -> int:
-    """Write a sequence; returns the number of scans. Each scan is a chunk with an index, not compressed."""
+    """Writes a sequence and returns the number of scans. Each scan is a chunk with an index, not compressed."""
     topics = {key: topic for key, topic in _TOPICS.items() if key != _BOXES or (folder / "boxes").is_dir()}
     known = b"".join(_record(_SCHEMA, struct.pack("<H", key) + b"".join(
         map(_bytes, (kind.replace("/", "/msg/").encode(), b"ros2msg", _schema(kind).encode()))))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""METAR reports as a year's weather: shares of the hours of some visibilities and rain rates.
+"""METAR reports as a year's weather: shares of the hours with some visibilities and rain rates.
 
 Source: the code form FM 15 METAR (WMO No. 306) and its spellings in archives: statute miles, kilometres, visibility by direction, lower
-case, reports that go on in the next line. Rain rates are assumed. The grammar is this module's own, because Debian has no parser of such
-lines for Python: `python3-pymetar` reads the decoded pages of one service. It reads what the year's weather needs, visibility and
-precipitation, and passes over the rest.
+case, and reports that continue on the next line. Rain rates are assumed. Debian has no parser of such lines for Python
+(`python3-pymetar` reads the decoded pages of one service), so this module has its own grammar. The grammar reads visibility and
+precipitation, and skips the rest of a report.
 """
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from ._air import extinction_of_rain
 
 MILE = 1609.344  # m
 KOSCHMIEDER = 3.912  # visibility times extinction at 550 nm
-LEAST = 50.0  # m, of 0000, which is "less than"
-MOST = 10_000.0  # m, from which on reports say no more
-CLEAR = 23_000.0  # m, that these count as; assumed
-LIMITS = (500.0, 1000.0, 2000.0, 5000.0, MOST)  # m, between classes of visibility without rain ...
-LIMITS_IN_RAIN = (2000.0,)  # ... and with it
+LEAST = 50.0  # visibility of the group 0000, which means "less than 50 m", m
+MOST = 10_000.0  # visibility from which on reports do not distinguish, m
+CLEAR = 23_000.0  # visibility in place of MOST and more, m; assumed
+LIMITS = (500.0, 1000.0, 2000.0, 5000.0, MOST)  # limits between classes of visibility without rain, m ...
+LIMITS_IN_RAIN = (2000.0,)  # ... and with rain
 RAIN = {"-": 1.0, "": 5.0, "+": 15.0}  # mm/h; assumed
-DRIZZLE = 0.5  # mm/h, of any intensity; assumed
+DRIZZLE = 0.5  # rain rate of drizzle of any intensity, mm/h; assumed
 NOT_MODELLED = {"SN": "snow", "SG": "snow grains", "IC": "ice crystals", "PL": "ice pellets", "GR": "hail", "GS": "small hail",
                 "UP": "unknown precipitation"}
-# A station and a time. Without its Z the time counts only before a wind, because heads of bulletins have six digits, too.
+# A station and a time. A time without Z counts only before a wind, because heads of bulletins also have six digits.
 START = re.compile(r"\b([A-Z][A-Z0-9]{3})\s+(\d{6})(?:Z\b|(?=\s+(?:(?:AUTO|COR)\s+)?\S{3,8}(?:KT|MPS|KMH)\b))")
-FORECAST = re.compile(r"(?:\d{4}/\d{4}|\d{6})\s")  # the period of a TAF
+FORECAST = re.compile(r"(?:\d{4}/\d{4}|\d{6})\s")  # validity period of a TAF (forecast)
 END = re.compile(r"\s(?:RMKS?|NOSIG|TEMPO|BECMG|INTER|PROB\d\d|FM\d{4,6}|TTF)\b.*|=.*")  # remarks, trends, the end of a report
 AFTER = re.compile(r"FEW|SCT|BKN|OVC|VV|NSC|NCD|SKC|CLR|M?\d\d/(?:M?\d\d|//)?$|[QA]\d{4}$")  # clouds, temperatures, pressure
 METRES = re.compile(r"[MP]?(\d{3,4})(?:M|NDV|(N|NE|E|SE|S|SW|W|NW))?$")
@@ -42,13 +42,13 @@ PRESENT = re.compile(r"([-+]?)(?:MI|PR|BC|DR|BL|SH|TS|FZ)*((?:DZ|RA|SN|SG|IC|PL|
 
 
 class Hour(NamedTuple):
-    """What one report says."""
+    """The weather in one report."""
 
     station: str
     time: str  # day, hour, minute
     visibility: float  # m; infinite for 10 km or more
     rain: float  # mm/h
-    others: Tuple[str, ...]  # precipitation that is not modelled
+    others: Tuple[str, ...]  # codes of precipitation that is not modelled
 
 
 def _plain(line: str) -> str:
@@ -56,7 +56,7 @@ def _plain(line: str) -> str:
 
 
 def report_of(line: str) -> Hour:
-    """The weather in one report; ValueError says what is missing."""
+    """The weather in one report; ValueError names the missing part."""
     found = START.search(_plain(line))
     if not found:
         raise ValueError("expected a station and a time as in 'ZSSS 010000Z'")
@@ -80,8 +80,8 @@ def report_of(line: str) -> Hour:
 
 
 def _visibility(words: List[str]) -> Optional[float]:
-    """Prevailing visibility in metres, or the least that follows it with a direction; None where it is missing."""
-    first = next((k for k, word in enumerate(words) if AFTER.match(word)), len(words))  # metres stand before it
+    """Prevailing visibility in metres, or the least visibility that follows with a direction; None if it is missing."""
+    first = next((k for k, word in enumerate(words) if AFTER.match(word)), len(words))  # visibility in metres stands before the clouds
     for k, word in enumerate(words):
         metres, miles = METRES.match(word) if k < first else None, MILES.match(word)
         if word == "CAVOK":
@@ -107,21 +107,23 @@ def _number(digits: str, denominator: Optional[str]) -> float:
 
 @dataclasses.dataclass
 class Hours:
-    """Reports of a file, which count by the hour: several in one hour share it."""
+    """Reports of a file. Several reports in one hour share the hour."""
 
     file: str
     reports: List[Hour]
-    bad: List[Tuple[int, str, str]]  # number, line, what is wrong
+    bad: List[Tuple[int, str, str]]  # number and text of the line, and the problem
 
     def weighted(self) -> Iterator[Tuple[float, Hour]]:
         """Reports, each with its share of an hour."""
-        for _, group in itertools.groupby(self.reports, key=lambda one: one.time[:4]):  # the same day and hour come again next month
+        # the same day and hour occur again in the next month
+        for _, group in itertools.groupby(self.reports, key=lambda one: one.time[:4]):
             together = list(group)
             yield from ((1.0 / len(together), one) for one in together)
 
     def classes(self) -> Dict[Tuple[str, ...], float]:
-        """Words of weather, with their hours. In a class without rain the visibility is that of the mean extinction, to two digits; with
-        rain that of the haze beside it: what extinction the rain leaves of the reported one."""
+        """Words of weather, with their hours. In a class without rain, the visibility follows from the mean extinction, to two digits. In
+        a class with rain, the visibility is that of the haze in the rain, whose extinction is the reported extinction less that of the
+        rain."""
         sums: Dict[Tuple[float, int], List[float]] = {}
         for hours, one in self.weighted():
             number = sum(one.visibility >= limit for limit in (LIMITS_IN_RAIN if one.rain else LIMITS))
@@ -137,13 +139,13 @@ class Hours:
         return found
 
     def year(self) -> List[Dict[str, Any]]:
-        """As a plan has it."""
+        """The list `year` of a plan."""
         classes = self.classes()
         total = sum(classes.values())
         return [{"weather": list(words), "share": hours / total} for words, hours in classes.items()]
 
     def words(self) -> str:
-        """What was counted, assumed and left out."""
+        """Words on the reports that were counted, the assumptions, and the lines that were left out."""
         hours = sum(share for share, _ in self.weighted())
         stations = ", ".join(dict.fromkeys(one.station for one in self.reports))
         said = f"{pathlib.Path(self.file).name}: {len(self.reports):,} METAR reports of {stations}, {hours:,.0f} hours"
@@ -152,14 +154,15 @@ class Hours:
             said += f"; left out: {count:,}, the first in line {number}, '{line[:60]}' ({why})"
         others = collections.Counter(name for one in self.reports for name in set(one.others))
         if others:
-            said += "; not modelled, but for the visibility: " + ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
+            said += "; not modelled, except for the visibility: " + ", ".join(f"{name} ({count} "
+                                                                              "reports)" for name, count in others.most_common())
         return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and DZ {DRIZZLE:g} mm/h; 10 km or more is "
                 f"{CLEAR / 1000:g} km")
 
 
 def _reports(text: str) -> Iterator[Tuple[int, str]]:
-    """Reports with the numbers of their first lines. A report goes on until its equals sign, an empty line or the next station and time;
-    lines that begin with # do not count."""
+    """Reports with the numbers of their first lines. A report ends at its equals sign, at an empty line or at the next station and time.
+    Lines that begin with # are comments."""
     number, report = 0, ""
     for here, line in enumerate(text.splitlines(), 1):
         if line.startswith("#"):
@@ -180,8 +183,8 @@ def _reports(text: str) -> Iterator[Tuple[int, str]]:
 
 
 def read_metar(file) -> Hours:
-    """The reports of a file, METAR and SPECI; a station and a time stand where they are, whatever is before them. `Error` where there
-    is none."""
+    """The METAR and SPECI reports of a file. Text before a station and a time is ignored. `Error` if the file has no
+    report."""
     found = Hours(str(file), [], [])
     for number, report in _reports(read_regular(file).decode("utf-8", "replace")):
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The best of networks of sites, by what each site alone detects."""
+"""The best networks of sites, from what each site alone detects."""
 from __future__ import annotations
 
 import dataclasses
@@ -11,7 +11,7 @@ import numpy as np
 
 @dataclasses.dataclass(frozen=True)
 class Network:
-    """Sites that look together, by their numbers, and the weighted share that they detect."""
+    """Sites that work together, by their numbers, and the weighted share that they detect."""
 
     sites: Tuple[int, ...]
     value: float
@@ -19,12 +19,12 @@ class Network:
 
 def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, float],
                mix: Mapping[str, float]) -> np.ndarray:
-    """What each place counts for each species: species x places, the sum 1.
+    """The weight of each place for each species: species x places, with the sum 1.
 
     count    number of places
     regions  names, each with the numbers of its places
-    shares   of regions, by name: places of a region share it evenly
-    mix      shares of species, by name
+    shares   share of each region, by name; the places of a region divide the share evenly
+    mix      share of each species, by name
     """
     for what, given in (("share", shares), ("mix", mix)):
         if not given or min(given.values()) < 0.0 or not 0.0 < sum(given.values()) < np.inf:
@@ -45,7 +45,7 @@ def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
 
 
 def value_of(found: np.ndarray, weights: np.ndarray, sites: Sequence[int]) -> float:
-    """The weighted share that at least one of the sites detects; sensors are independent."""
+    """The weighted share that at least one of the sites detects, for independent sensors."""
     return float(weights.sum() - _missed(found, weights, sites).sum())
 
 
@@ -58,7 +58,7 @@ def _missed(found, weights, sites) -> np.ndarray:
 
 
 def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
-    """Networks of 1 to `count` sites, each the one before and the site that adds most. Shapes as for values_of."""
+    """Networks of 1 to `count` sites; each network is the one before with the site that adds most. Shapes as for values_of."""
     chosen: List[Network] = []
     sites: Tuple[int, ...] = ()
     for _ in range(_count(found, weights, count)):
@@ -80,14 +80,14 @@ def _count(found, weights, count) -> int:
 
 
 def _gains(found, weights, sites) -> np.ndarray:
-    """What each site would add to the others; below 0 for these themselves."""
+    """The share that each site would add to the given sites; negative for the given sites themselves."""
     gains = found.reshape(len(found), -1) @ _missed(found, weights, sites).astype(found.dtype).ravel()
     gains[list(sites)] = -1.0
     return gains
 
 
 def exchange(found: np.ndarray, weights: np.ndarray, network: Network) -> Network:
-    """A network from which no exchange of one site gains any more. Never below the given one."""
+    """A network that no exchange of one site improves, at least as good as the given network."""
     best = network
     while True:
         tried = [best.sites[:k] + best.sites[k + 1:] for k in range(len(best.sites))]
@@ -101,7 +101,7 @@ def exchange(found: np.ndarray, weights: np.ndarray, network: Network) -> Networ
 def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
     """The best of all networks of one, two or three sites."""
     if _count(found, weights, count) > 3:
-        raise ValueError(f"count is {count}, expected at most 3: there are too many networks of more")
+        raise ValueError(f"count is {count}, expected at most 3: larger networks are too many")
     n = len(found)
     missed = 1.0 - found.reshape(n, -1).astype(float)
     least = np.inf
@@ -122,8 +122,8 @@ def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
 
 
 def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60) -> List[Network]:
-    """The best networks of 1 to `count` sites. One site, and up to three of at most `largest`: exhaustive. Else greedy, then
-    exchange.
+    """The best networks of 1 to `count` sites. The search is exhaustive for one site, and for up to three of at most `largest` sites.
+    Otherwise the greedy network is improved by exchange.
 
     found    sites x species x places, from look
     weights  species x places, from weights_of
@@ -133,6 +133,6 @@ def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int 
 
 
 def rank_correlation(a, b) -> float:
-    """Spearman's, of two rows of numbers; equal ones share their mean rank."""
+    """Spearman's rank correlation of two rows of numbers; equal numbers share their mean rank."""
     from scipy.stats import spearmanr
     return float(spearmanr(a, b)[0])

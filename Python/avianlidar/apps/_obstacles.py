@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Surveyed obstacles, as States publish them: AIXM 5.1, and CSV with named columns."""
+"""Surveyed obstacles in the formats of State publications: AIXM 5.1, and CSV with named columns."""
 from __future__ import annotations
 
 import csv
@@ -22,16 +22,16 @@ METRES = {"'": 0.3048, "′": 0.3048, "m": 1.0, "metre": 1.0, "metres": 1.0, "me
 COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"), "latitude": ("latitude", "lat", "latdec", "y"),
            "height": ("height", "agl", "hgt"), "elevation": ("elevation", "amsl", "elev"), "unit": ("unit", "units", "uom"),
            "kind": ("kind", "type", "obstacle_type"), "name": ("name", "id", "identifier", "designator", "oas"), "action": ("action",)}
-UNIT = re.compile(r"[ _]*[\[(](\w+)[\])]$|_(m|ft|feet)$")  # of a column, as in "height_ft" and "Height (m)"
+UNIT = re.compile(r"[ _]*[\[(](\w+)[\])]$|_(m|ft|feet)$")  # unit of a column, as in "height_ft" and "Height (m)"
 CELL = re.compile(rf"\+?({NUMBER})\s*(m|met(?:re|er)s?|ft|foot|feet|['′])?\.?\s*(?:agl|amsl)?", re.IGNORECASE)
 ANGLE = re.compile(r"([NSEW]?)\s*(\d{1,3})[°:\s-]*(\d{2})[′':\s-]*(\d{2}(?:[.,]\d+)?)[″\"\s]*([NSEW]?)", re.IGNORECASE)
-MOST = {"height": TALLEST, "elevation": 9000.0}  # m
+MOST = {"height": TALLEST, "elevation": 9000.0}  # greatest plausible values, m
 NO_PLACE = "without a place or a height"
 
 
 def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
-    """Obstacles as features of the rules, and what is left out. Their tag `height` is in metres above the ground; where a file gives
-    only the elevation of the top, that is in `elevation`, m."""
+    """Obstacles as features of the rules, and obstacles that are left out. The tag `height` is in metres above the ground. If a file gives
+    only the elevation of the top, the tag `elevation` has the elevation, m."""
     suffix = file.suffix.lower()
     if suffix not in (".xml", ".csv"):
         raise Error(f"{file}: is not a file of obstacles by its name, expected .xml (AIXM 5.1) or .csv")
@@ -44,7 +44,7 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
         if shape is None or not {"height", "elevation"} & tags.keys():
             left.append(one.left(NO_PLACE))
         elif kind == "wire" or tags.get("gone"):
-            left.append(one.left("a wire" if kind == "wire" else "ruins, or gone"))
+            left.append(one.left("a wire" if kind == "wire" else "ruins, or removed"))
         else:
             found.append(one)
     for one in left:
@@ -53,7 +53,8 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
 
 
 def _kind_of(word: str, form: str, known: Dict[str, Any]) -> str:
-    """The kind of the rules for the words of a file, of which the last says what it is, as in "cable car pylon". A building without an outline is taken for a tower, which has a width."""
+    """The kind of the rules for the words of a file. The last known word counts, as in "cable car pylon". A building without an outline
+    becomes a tower, which has a width."""
     said = re.sub(r"[\W_]+", " ", word.lower())
     ends = [(found.end(), len(one), kind) for kind, words in known["obstacles"].items() for one in words for found in re.finditer(rf"\b{one}s?\b", said)]
     kind = max(ends, default=(0, 0, "obstacle"))[2]
@@ -63,7 +64,7 @@ def _kind_of(word: str, form: str, known: Dict[str, Any]) -> str:
 
 
 def _metres(value: str, unit: str, what: str, most: float) -> Optional[float]:
-    """None where there is no number above 0. @param unit where the value has none @param most m"""
+    """Metres above 0, or None for other texts. @param unit unit if the value has no unit @param most greatest plausible value, m"""
     found = CELL.fullmatch(value)
     if not found:
         return None
@@ -103,7 +104,7 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
 
 
 def _angle(text: str) -> float:
-    """Degrees of "13.302", "13,302", "0131807.2E", "53°36'10\"N"; NaN for any other text."""
+    """Degrees in "13.302", "13,302", "0131807.2E", "53°36'10\"N"; NaN for any other text."""
     found = ANGLE.fullmatch(text)
     if found and (found[1] or found[5]):
         value = int(found[2]) + int(found[3]) / 60.0 + float(found[4].replace(",", ".")) / 3600.0
@@ -152,7 +153,7 @@ def _shape(part, what: str):
         words = " ".join(one.text or "" for one in _all(place, "pos", "posList"))
         if words.strip():
             try:
-                [float(word) for word in words.replace(",", " ").split()]  # GDAL takes other words for 0
+                [float(word) for word in words.replace(",", " ").split()]  # GDAL would read other words as 0
                 shape = ogr.CreateGeometryFromGML(ElementTree.tostring(place, "unicode").replace("Elevated", ""))
             except (RuntimeError, ValueError) as error:
                 raise Error(f"{what}: {words[:60]!r}: cannot be read as coordinates of GML ({error})") from None
@@ -161,7 +162,7 @@ def _shape(part, what: str):
 
 
 def _to_degrees(srs: str, what: str):
-    """From a coordinate system by its name, with its own order of axes, to longitude and latitude. Nothing is fetched."""
+    """Transformation from a named coordinate system, with its own order of axes, to longitude and latitude. Downloads nothing."""
     code = re.search(r"EPSG[:/]+(?:[\d.]*[:/])?(\d+)$", srs)
     if srs.endswith("CRS84"):
         return osr.CoordinateTransformation(degrees(), degrees())
@@ -169,6 +170,6 @@ def _to_degrees(srs: str, what: str):
     try:
         system.ImportFromEPSG(int(code[1]) if code else 0)
     except RuntimeError:
-        raise Error(f"{what}: the coordinate system is {srs!r}, expected one of EPSG") from None
+        raise Error(f"{what}: the coordinate system is {srs!r}, expected a system of EPSG") from None
     system.SetAxisMappingStrategy(osr.OAMS_AUTHORITY_COMPLIANT)
     return osr.CoordinateTransformation(system, degrees())

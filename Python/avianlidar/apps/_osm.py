@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Extracts of maps as files: OpenStreetMap's, GeoJSON and GeoPackages, also of Overture's maps. GDAL reads."""
+"""Extracts of maps as files: OpenStreetMap's formats, GeoJSON and GeoPackage, also of Overture's maps. GDAL reads the files."""
 from __future__ import annotations
 
 import contextlib
@@ -19,15 +19,16 @@ from ._features import Feature
 from ._gdal import degrees, expect_file, open_file, plain, quiet
 from ._json import naming
 
-SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # with GDAL's drivers
-LARGEST = 256 << 20  # bytes of an extract
-CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # and marks of direction, which disorder a line
-TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # of GDAL's OSM driver
+SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # suffixes with GDAL's drivers
+LARGEST = 256 << 20  # greatest size of an extract, bytes
+# control characters, and marks of text direction, which would disorder a line
+CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # format of tags in GDAL's OSM driver
 
 
 def _needs_order(file: pathlib.Path) -> bool:
-    """Whether XML of OpenStreetMap has nodes after ways, things that an editor has deleted, or places in ways: GDAL reads none of
-    these."""
+    """Whether XML of OpenStreetMap has nodes after ways, objects that an editor has deleted, or coordinates in ways. GDAL reads none of
+    the three."""
     with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
         way, relation = data.find(b"<way "), data.find(b"<relation ")
         return (0 <= way < data.rfind(b"<node ") or 0 <= relation < data.rfind(b"<way ") or 0 <= relation < data.rfind(b"<node ")
@@ -35,14 +36,14 @@ def _needs_order(file: pathlib.Path) -> bool:
 
 
 def _memberless(file: pathlib.Path) -> int:
-    """How many areas of XML of OpenStreetMap have no way, of which GDAL says nothing."""
+    """The number of areas without a way in XML of OpenStreetMap. GDAL does not report such areas."""
     with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
         return sum(re.search(rb"""type=["']way""", one[1]) is None and re.search(rb"""v=["'](multipolygon|boundary)""", one[1]) is not None
                    for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
 
 
 def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
-    """A copy of XML of OpenStreetMap with nodes, then ways, then relations, each once, by their ids."""
+    """Writes a copy of XML of OpenStreetMap with nodes, then ways, then relations, each object once, by id."""
     found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
     places: Dict[Tuple[str, str], str] = {}
 
@@ -54,7 +55,7 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
         root = one if root is None else root
         if event == "start" or one.tag not in found:
             continue
-        for node in one.iter("nd"):  # of what Overpass writes by `out geom`: with places, without a number in members of relations
+        for node in one.iter("nd"):  # output of Overpass for `out geom`: coordinates, and no node numbers in members of relations
             where = node.get("lat"), node.get("lon")
             if where[0]:
                 node.set("ref", node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places))))
@@ -75,7 +76,7 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
 
 
 def _expect_map(file: pathlib.Path) -> None:
-    """Say what a file is that tools leave where an extract was expected."""
+    """Raises an error that names a frequent wrong kind of file in place of an extract."""
     with open(file, "rb") as stream:
         head = stream.read(2000).lstrip(b"\xef\xbb\xbf \r\n\t").lower()
     what = ("is empty" if not head else "is in UTF-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "is a web page" if head.startswith((b"<!doctype html", b"<html"))
@@ -104,14 +105,14 @@ def _tags(feature, names: List[str]) -> Dict[str, str]:
 
 
 def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
-    """What the rules know, aerodromes, and what is left out."""
+    """Features known to the rules, aerodromes, and features that are left out."""
     driver = SUFFIXES.get(file.suffix.lower())
     if not driver:
         raise Error(f"{file}: is not an extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
     expect_file(file)
     if file.stat().st_size > LARGEST:
-        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut it to the airport and some "
-                    "kilometres around it first, as `osmium extract --bbox W,S,E,N` does")
+        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut "
+                    "the extract to the airport and some kilometres around it first, for example with `osmium extract --bbox W,S,E,N`")
     _expect_map(file)
     options = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO") if driver == "OSM" else ()
     aliases = {name.replace(":", "_"): name for name in known["colons"]}
@@ -134,7 +135,7 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
             try:
                 feature, layer = data.GetNextFeature()
             except RuntimeError:
-                raise Error("cannot be read to its end: it is damaged or not whole, expected a whole extract") from None
+                raise Error("cannot be read to its end: the extract is damaged or incomplete, expected a complete extract") from None
             if feature is None:
                 break
             if layer.GetName() not in layers:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of coverage with Matplotlib, which is imported here only."""
+"""Pictures of coverage with Matplotlib, which only the functions import."""
 from __future__ import annotations
 
 import io
@@ -18,20 +18,20 @@ from ._regions import APPROACH_LENGTH, Runway, region_outlines
 
 # Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
 STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
-HIGH = 160.0  # m, of the section; a tenth above the heights asked for where these are higher
-GLIDE_PATH = 3.0  # deg
-THRESHOLD_HEIGHT = 15.0  # m, of the glide path above a runway's end
-TALL = 5.0  # m above the ground at the sensor: what is higher is drawn as a building ...
-FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... but for these classes
-PIXELS = 150  # an inch
-OUTLINES = (0.1, 0.5)  # probabilities, on the first page
-AROUND_SITES = 150.0  # m, around the candidates on their map
+HIGH = 160.0  # height of the section, m; one tenth more than the plan's greatest height if that is larger
+GLIDE_PATH = 3.0  # slope of the glide path, deg
+THRESHOLD_HEIGHT = 15.0  # height of the glide path above a runway's end, m
+TALL = 5.0  # height above the ground at the sensor from which on surfaces are drawn as buildings, m ...
+FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... except these classes
+PIXELS = 150  # pixels per inch
+OUTLINES = (0.1, 0.5)  # probabilities whose outlines are drawn on the first page
+AROUND_SITES = 150.0  # margin around the candidates on their map, m
 SHOWN = 250  # pixels along the longer side of the map on the first page
-AROUND = 0.04  # of the longer side, around what that map shows
-SIDES = (0.35, 1.15)  # of that map, height over width
+AROUND = 0.04  # margin around the map on the first page, as a share of the longer side
+SIDES = (0.35, 1.15)  # least and greatest ratio of height to width of the map on the first page
 PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
-CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own lacks
-STEP = (10.0, 2.0)  # m, of the section, along and up
+CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
+STEP = (10.0, 2.0)  # steps of the section along the runway and upwards, m
 
 
 def gradient() -> List[str]:
@@ -42,12 +42,12 @@ def gradient() -> List[str]:
 
 
 def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> None:
-    """Write a picture, see `drawn`."""
+    """Writes a picture to a file; see `drawn`."""
     write_whole(file, drawn(size, work, columns))
 
 
 def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> bytes:
-    """A picture (PNG). @param size inches @param work draws into the axes that it is given @param columns axes beside one another"""
+    """A picture (PNG). @param size inches @param work function that draws into the given axes @param columns number of axes side by side"""
     from matplotlib import font_manager, rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -57,7 +57,7 @@ def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 
     style = {**dict.fromkeys(("axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 9), "legend.fontsize": 8,
              "grid.alpha": 0.4, "font.family": fonts, "text.parse_math": False}  # names keep their $
     with rc_context(style), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes stand for letters that no font has
+        warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
         work(figure.subplots(1, columns))
@@ -66,7 +66,7 @@ def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 
 
 
 def finish(axes, **settings: Any) -> None:
-    """Limits and words of axes, a grid, and a legend where something has a label."""
+    """Sets limits and labels of axes, a grid, and a legend if something has a label."""
     axes.set(**settings)
     axes.grid()
     if axes.get_legend_handles_labels()[0]:
@@ -74,18 +74,19 @@ def finish(axes, **settings: Any) -> None:
 
 
 def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: float = 0.0) -> Tuple[float, float]:
-    """Inches of a picture that a map with its labels fills. @param width of the map @param beside, above inches for what else is there"""
+    """Size in inches of a picture filled by a map with labels. @param width width of the map @param beside, above inches for other
+    contents"""
     x0, x1, y0, y1 = extent
     return width + beside, 0.5 + (width - 0.7) * float(np.clip((y1 - y0) / max(x1 - x0, 1e-9), 0.25, 3.0)) + above
 
 
 def _bar(axes, dots, words: str) -> None:
-    """A colour bar as high as the map."""
+    """Draws a colour bar as high as the map."""
     axes.figure.colorbar(dots, cax=axes.inset_axes([1.03, 0.0, 0.04, 1.0]), label=words)
 
 
 def draw_land(axes, plan: Plan) -> None:
-    """Woods and water of the scene, from above."""
+    """Draws woods and water of the scene from above."""
     from matplotlib.collections import PolyCollection
     for block in leaves_of(plan.scene.surfaces):
         polygons, ids = block.GetPolys(), block.GetCellData().GetArray("object_id")
@@ -101,7 +102,7 @@ def draw_land(axes, plan: Plan) -> None:
 
 
 def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
-    """Buildings and runways in a colour, and the sensor, as seen from above."""
+    """Draws buildings, runways and the sensor from above. @param colour colour of buildings and runways"""
     from matplotlib.colors import ListedColormap
     for runway in plan.runways:
         axes.plot(*np.transpose([runway.start, runway.end]), color=colour, linewidth=1.5, solid_capstyle="butt")
@@ -120,7 +121,7 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
 
 
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
-    """A map of probabilities, or of statuses."""
+    """Draws a map of probabilities or of statuses."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
     number, colour, values, style = len(STATUS_COLOURS), "0.75", cover["status"], {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
     if quantity == "status":
@@ -135,7 +136,7 @@ def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
 
 
 def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
-    """What the map on the first page holds, m: all regions that are asked for and the sensor, or without runways the map."""
+    """Extent of the map on the first page, m: all regions of the plan and the sensor, or without runways the plan's map."""
     outlines = [outline for name, outline in region_outlines(plan.runways).items() if name in plan.ends]
     corners = np.concatenate([*outlines, [plan.sensor.position[:2]]]) if outlines else np.transpose([plan.extent[:2], plan.extent[2:]])
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -147,7 +148,7 @@ def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
 
 
 def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarray]]:
-    """Each height that is asked for, m, and over an extent how many of OUTLINES the probability reaches, rows from south to north."""
+    """For each height of the plan, m, the number of OUTLINES that the probability reaches over an extent, rows from south to north."""
     x0, x1, y0, y1 = extent
     step = max(x1 - x0, y1 - y0, 1.0) / (SHOWN - 1)
     cover, spacing, classes = plan.coverage, plan.coverage.spacing, []
@@ -160,8 +161,8 @@ def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarra
 
 def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], extent: Tuple[float, float, float, float],
                 shares: Mapping[str, str]) -> None:
-    """The airport with the sensor, the regions that are asked for, and for each height where the probability is above OUTLINES.
-    @param found as of `found_at` @param shares of each region in words"""
+    """Draws the airport with the sensor, the regions of the plan, and for each height the areas where the probability is above OUTLINES.
+    @param found result of `found_at` @param shares shares of each region in words"""
     from matplotlib import colormaps
     from matplotlib.patches import Patch
     x0, x1, y0, y1 = extent
@@ -196,7 +197,7 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
 
 
 def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
-    """Probabilities above the middle of a runway and its approaches, rows from the ground up, and what they span: m along the
+    """Probabilities above the middle of a runway and its approaches, rows from the ground up, and their extent: m along the
     runway from its first end, m above ground."""
     axis, length = runway.axis()
     along = np.arange(-APPROACH_LENGTH, length + APPROACH_LENGTH, STEP[0])
@@ -209,7 +210,7 @@ def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float,
 
 
 def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: Tuple[float, float, float, float]) -> None:
-    """A section with the runway, glide paths that end at 15 m above its ends, and the heights asked for."""
+    """Draws a section with the runway, glide paths that end 15 m above the runway's ends, and the heights of the plan."""
     _, length = runway.axis()
     axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="viridis", vmin=0.0, vmax=1.0)
     axes.plot([0.0, length], [0.5, 0.5], color="white", linewidth=3)
@@ -222,7 +223,7 @@ def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: T
 
 
 def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
-    """Shares of birds by range, with bars of one standard error. @param reaches by the name of the curve @param several names the
+    """Draws shares of birds by range, with bars of one standard error. @param reaches by the name of the curve @param several name of the
     dashed curve, such as "2 of 3 scans" """
     for number, (name, reach) in enumerate(reaches.items()):
         colour = f"C{number}"
@@ -233,8 +234,8 @@ def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
 
 
 def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[float], Sequence[float]]], words: str, logarithmic: bool) -> None:
-    """Shares of birds by the weather, with bars of one standard error. @param curves by name: weathers, shares, errors @param words
-    of the weathers' axis"""
+    """Draws shares of birds by weather, with bars of one standard error. @param curves by name: weathers, shares, errors @param words
+    label of the weathers' axis"""
     for name, (weathers, shares, errors) in curves.items():
         axes.errorbar(weathers, shares, errors, marker="o", markersize=3, linewidth=1.5, elinewidth=1.0, label=name)
     if logarithmic:
@@ -245,7 +246,7 @@ def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[floa
 
 
 def draw_clutter(axes, plan: Plan, clutter) -> None:
-    """Echoes of surfaces from above, coloured by how often a scan perceives them."""
+    """Draws echoes of surfaces from above, coloured by the share of scans that detect the echo."""
     draw_land(axes, plan)
     draw_airport(axes, plan, "0.8")
     often = clutter["detection_probability"]
@@ -255,7 +256,7 @@ def draw_clutter(axes, plan: Plan, clutter) -> None:
 
 
 def draw_outline(axes, outline) -> None:
-    """Where nothing may stand, in light grey. @param outline a ring (n x 2, m), or several: the outer one and holes"""
+    """Draws in light grey an area where no lidar may stand. @param outline a ring (n x 2, m), or several rings: the outer ring and holes"""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
     paths = []
@@ -267,7 +268,7 @@ def draw_outline(axes, outline) -> None:
 
 
 def draw_sites(axes, sites) -> None:
-    """Candidates by value, where nothing may stand, and the best network."""
+    """Draws candidates by value, areas where no lidar may stand, and the best network."""
     draw_land(axes, sites.plan)
     draw_airport(axes, sites.plan, "0.1")
     for outline, _ in sites.exclusions:
@@ -292,13 +293,13 @@ def draw_sites(axes, sites) -> None:
 
 
 def sites_extent(sites) -> Tuple[float, float, float, float]:
-    """What the map of candidates holds, m."""
+    """Extent of the map of candidates, m."""
     low, high = sites.positions[:, :2].min(axis=0) - AROUND_SITES, sites.positions[:, :2].max(axis=0) + AROUND_SITES
     return low[0], high[0], low[1], high[1]
 
 
 def draw_gain(axes, sites) -> None:
-    """What each more sensor adds."""
+    """Draws the share detected over the number of sensors."""
     sensors, *bars = ([row[name] for row in sites.gain()] for name in ("sensors", "value", "std_error"))
     axes.errorbar(sensors, *bars, marker="o")
     finish(axes, ylim=(0.0, None), xlabel="sensors", ylabel="probability of one scan", xticks=sensors)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a plan of coverage asks for, and the shares of birds that are detected."""
+"""The question that a plan of coverage asks, and the shares of birds that are detected."""
 from __future__ import annotations
 
 import functools
@@ -25,32 +25,32 @@ from ._inputs import sensor_name
 from ._regions import Runway, by_kind, places_by_region, region_heights, region_names
 from ._scores import weighted
 
-HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # m
+HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # default heights of maps, m
 PLACES = 12000
-AROUND_SENSOR = 1500.0  # m, that maps hold to each side
-AROUND_ENDS = 300.0  # m, of runways
-STEP_OF_EXTENT = 100.0  # m
-FLAT = 0.5  # m: z of a ground that counts as 0
-MOST_PIXELS = 100_000_000  # of a map
-BYTES_OF_PLACE = 200  # of a place that is drawn, and of what is found there
+AROUND_SENSOR = 1500.0  # distance that maps show to each side of the sensor, m
+AROUND_ENDS = 300.0  # distance that maps show around the ends of runways, m
+STEP_OF_EXTENT = 100.0  # step to which the extent of maps is rounded, m
+FLAT = 0.5  # absolute z below which the ground counts as 0, m
+MOST_PIXELS = 100_000_000  # greatest number of pixels of a map
+BYTES_OF_PLACE = 200  # memory for a drawn place and its results, bytes
 
 
 class Plan:
-    """What a plan of coverage asks for.
+    """The question that a plan of coverage asks.
 
-    name           of the sensor          heights  of the maps, m
-    scene, sensor  as loaded              runways  in the scene's coordinates
-    coverage       for the maps           regions  Coverage of places drawn in strips and approaches; without runways on the maps
-    members        numbers of the places by strips and approaches     ends  and by each strip and the approach to each runway's end
-    mix            share of each species, the sum 1; maps of reasons are of the first, the greatest
+    name           name of the sensor     heights  heights of the maps, m
+    scene, sensor  loaded from files      runways  in the scene's coordinates
+    coverage       Coverage for the maps  regions  Coverage of places drawn in strips and approaches, or without runways on the maps
+    members, ends  numbers of the places by kind of region (strips, approaches), and by single strip and approach
+    mix            share of each species, with the sum 1; maps of reasons are for the first species, which has the greatest share
     air            words of the plan's weather
-    year           weathers by which sites are ranked, with their shares of the hours; empty where the plan gives none
-    asked          least and greatest height of the places, m, None where the plan has no `heights`: then each region's own
-    ground         z of the ground below the sensor, m, None where there is none
+    year           weathers by which sites are ranked, with their shares of the hours; empty if the plan gives no year
+    asked          least and greatest height of the places, m; None if the plan has no `heights`, so that each region has its own heights
+    ground         z of the ground below the sensor, m; None without a ground
     """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
-        """All that the plan says is checked. `Error` names the plan's file and the member. @param member of the sensor"""
+        """Checks all parts of the plan. `Error` names the plan's file and the member. @param member member of the sensor"""
         self.plan, self.file, self.threads = plan, str(plan.get("file", "plan")), threads
         with naming(f"{self.file}: scene"):
             self.scene = scene or load_scene(plan["scene"])
@@ -71,7 +71,7 @@ class Plan:
                      if part["share"] > 0.0]
         if self.asked and self.asked[0] < self.asked[1]:
             self.settings.setdefault("height_limits", sorted(self.heights))
-        if member == "sensor":  # else they are those of the plan before
+        if member == "sensor":  # other members use these of the first plan
             self._try("coverage")
             for air in self.year:
                 self._try(f"year: {air.name}", **air.settings)
@@ -97,16 +97,16 @@ class Plan:
         self.ground = None if np.isnan(ground) else float(ground)
 
     def _try(self, member: str, **changes: Any) -> None:
-        """`Error` where coverage refuses settings, at one place of an empty scene."""
+        """`Error` if coverage refuses settings at one place of an empty scene."""
         with naming(f"{self.file}: {member}"), warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # they come with the work
+            warnings.simplefilter("ignore")  # warnings are shown during the work
             Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **{**self.settings, **changes}).update()
 
     def air_of(self, words: Sequence[str] = (), **air: Any) -> Dict[str, Any]:
-        """Settings of coverage in a weather: where it says nothing of the visibility, the plan's own; without rain, dry.
+        """Settings of coverage in a weather. Without a word on visibility, the plan's visibility is used; without rain, the air is dry.
 
-        words  as of `--weather`
-        air    settings instead of words, such as rain_rate=0 (mm/h)
+        words  words as for `--weather`
+        air    settings in place of words, such as rain_rate=0 (mm/h)
         """
         default, given = _wrapped.vtkAvianLidarCoverage(), self.plan.get("coverage", {})
         return as_received(self.sensor, {"attenuation_coefficient": given.get("attenuation_coefficient", default.GetAttenuationCoefficient()),
@@ -121,7 +121,7 @@ class Plan:
         return {name: share / total for name, share in sorted(mix.items(), key=lambda item: -item[1]) if share > 0.0}
 
     def _extent(self) -> Tuple[float, float, float, float]:
-        """What maps hold: surroundings of the sensor and of the runways' ends."""
+        """Extent of the maps: surroundings of the sensor and of the runways' ends."""
         x, y, _ = self.sensor.position
         ends = np.array([end for runway in self.runways for end in (runway.start, runway.end)]).reshape(-1, 2)
         low = np.min([(x - AROUND_SENSOR, y - AROUND_SENSOR), *(ends - AROUND_ENDS)], axis=0)
@@ -131,8 +131,8 @@ class Plan:
         return low[0], high[0], low[1], high[1]
 
     def at(self, position: Sequence[float], title: str, seed: Optional[int] = None, **changes: Any) -> Plan:
-        """The same with the sensor elsewhere, on the same maps. @param position m @param title of pictures and tables @param seed
-        of the places, default the same @param changes properties of the sensor"""
+        """The plan with the sensor at another place, on the same maps. @param position m @param title title of pictures and tables @param
+        seed seed of the places, default the same @param changes properties of the sensor"""
         sensor = {**self.plan["sensor"], "name": self.name, **changes, "position": [float(c) for c in position]}
         other = Plan({**self.plan, "extent": self.extent, "seed": self.seed if seed is None else seed, "sensor": sensor}, self.threads, self.scene, "siting")
         other.title = title
@@ -149,17 +149,17 @@ class Plan:
 
     def _runways(self) -> List[Runway]:
         if self.scene.geodetic_origin is None:
-            raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, as runways are given by them")
+            raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, because runways are given in degrees")
         return read_runways(self.plan["runways"], self.scene.geodetic_origin)
 
     def decides(self) -> Any:
-        """All that decides what is found: the plan but for its own name, surfaces, beams and places."""
+        """Everything that decides the results: the plan without its own name, surfaces, beams and places."""
         update(self.scene.tree)
         return ({name: part for name, part in self.plan.items() if name != "file"}, digest_of(self.scene.tree.GetOutput()),
                 digest_of_arrays(self.sensor.beams.data), self.points.tobytes())
 
     def places(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-        """Where shares are of: n x 3, m, and the numbers of those in each strip and the approach to each end."""
+        """The places for shares, n x 3, m, and the numbers of the places in each strip and in the approach to each end."""
         require_memory(BYTES_OF_PLACE * self.count, f"{self.count:,} places", "take fewer")
         if self.runways:
             return places_by_region(self.runways, self.count, seed, self.plan.get("regions"), self.asked, self.spread)
@@ -167,31 +167,31 @@ class Plan:
         return np.random.default_rng(seed).uniform(low, high, (self.count, 3)), {"map": np.arange(self.count)}
 
     def weights(self, points: np.ndarray) -> np.ndarray:
-        """What each place (n x 3) counts for each species: species x places, the sum 1. As in the table."""
+        """The weight of each place (n x 3) for each species, as in the table: species x places, with the sum 1."""
         density = Coverage.strike_height_density(points[:, 2]) if self.regions.strike_height_weights else np.ones(len(points))
         return np.outer(list(self.mix.values()), density / density.sum())
 
     @classmethod
     def all_of(cls, plan: Dict[str, Any], threads: int = 0) -> List[Plan]:
-        """The plan with its sensor, then with each that it compares with."""
+        """The plan with its sensor, then with each sensor for comparison."""
         plans = [cls(plan, threads)]
         place = {name: value for name, value in plan["sensor"].items() if name in ("position", "orientation")}
         for number, other in enumerate(plan.get("compare_with", ())):
             member = f"compare_with[{number}]"
             plans.append(cls({**plan, "sensor": {**place, **other}}, threads, plans[0].scene, member))
             if plans[-1].name in [before.name for before in plans[:-1]]:
-                raise Error(f"{plans[0].file}: {member}: {plans[-1].name!r} is there twice, expected a `name` that differs")
+                raise Error(f"{plans[0].file}: {member}: {plans[-1].name!r} is there twice, expected a different `name`")
         return plans
 
     @property
     def spread_words(self) -> str:
-        """How places are spread over strips and approaches."""
-        return {"distance": "as many on each metre along strips and approaches, as aircraft fly each once",
-                "area": "as many on each square metre of strips and approaches"}[self.spread]
+        """Words on the distribution of places over strips and approaches."""
+        return {"distance": "equally many on each metre along strips and approaches, because aircraft fly each metre once",
+                "area": "equally many on each square metre of strips and approaches"}[self.spread]
 
     @property
     def where(self) -> str:
-        """Of which places the shares are."""
+        """Words on the places of the shares."""
         low, high = min(self.heights), max(self.heights)
         heights = f"{low:g} to {high:g} m" if high > low else f"at {low:g} m"
         if not self.runways:
@@ -203,36 +203,36 @@ class Plan:
         return "in " + " and ".join(f"{words} (to {self.heights_of(kind)[1]:.3g} m high)" for kind, words in there.items())
 
     def heights_of(self, region: str) -> Tuple[float, float]:
-        """Least and greatest height of the places of a region, m; of all for any other name."""
+        """Least and greatest height of the places of a region, m; for any other name, of all places."""
         names = [region] if region in self.members else list(self.members)
         limits = [region_heights(name, self.asked) if self.runways else (min(self.heights), max(self.heights)) for name in names]
         return min(low for low, _ in limits), max(high for _, high in limits)
 
     @property
     def bird(self) -> str:
-        """Whom the plan asks for, in words."""
+        """The bird or birds of the plan, in words."""
         if len(self.mix) == 1:
             return next(iter(self.mix)) or "target"
         return "bird (" + ", ".join(f"{name or 'target'} {100 * share:.3g} %" for name, share in self.mix.items()) + ")"
 
     @property
     def above(self) -> str:
-        """What heights are above."""
+        """The level from which heights are measured, in words."""
         return "ground" if self.ground is not None and abs(self.ground) < FLAT else "the scene's origin"
 
     @property
     def assumed(self) -> Tuple[str, ...]:
-        """Properties of the sensor whose numbers are assumed: by its file, or as the plan sets them."""
+        """Properties of the sensor whose numbers are assumed, by the sensor's file or because the plan sets them."""
         changed = [name for name in self.plan["sensor"] if name not in ("preset", "name", "position", "orientation")]
         return (*self.sensor.beams.fields.get("assumed", ()), *changed)
 
     def map_at(self, height: float) -> Coverage:
-        """Coverage of the plan's extent at a height, m, of the first species."""
+        """Coverage of the plan's extent at a height, m, for the first species."""
         self.coverage.set(bounds=(*self.extent, height, height), species=next(iter(self.mix)))
         return self.coverage
 
     def mixed(self, cover: Coverage, name: str = "detection_probability") -> np.ndarray:
-        """The mean of an array over the species asked for. It leaves the first one."""
+        """The mean of an array over the plan's species. Afterwards `cover` has the first species."""
         total: Any = 0.0
         for species, share in reversed(self.mix.items()):
             cover.species = species
@@ -241,8 +241,8 @@ class Plan:
 
     @functools.cached_property
     def shares(self) -> List[Dict[str, Any]]:
-        """Rows of shares of the regions: those of each species, then those of the mix. Its standard errors are the most that those
-        of the species allow."""
+        """Rows of shares of the regions: rows of each species, then rows of the mix. Standard errors of the mix are upper bounds from the
+        errors of the species."""
         rows = self.regions.table
         return rows + self._of_mix([[row for row in rows if row["species"] == species] for species in self.mix]) * (len(self.mix) > 1)
 
@@ -258,8 +258,8 @@ class Plan:
         return mixed
 
     def in_airs(self, airs: Sequence[Dict[str, Any]]) -> List[List[Dict[str, Any]]]:
-        """For each air the rows of shares of all heights, for the birds asked for: each region, and last all. No line of sight is
-        traced again. @param airs settings of coverage, as of `air_of`"""
+        """For each air, the rows of shares of all heights for the plan's birds: each region, and finally all places. No line of sight is
+        traced again. @param airs settings of coverage, as from `air_of`"""
         regions, found = self.regions, []
         own = {name: getattr(regions, name) for name in ("all_species", "species", *airs[0])}
         regions.all_species = False
@@ -271,7 +271,7 @@ class Plan:
 
     @functools.cached_property
     def by_end(self) -> List[Dict[str, Any]]:
-        """A row for each strip and the approach to each end: the share of all heights, for the birds asked for, with its standard error as
+        """A row for each strip and the approach to each end: the share of all heights for the plan's birds, with the standard error as
         in the table."""
         weights = self.weights(self.points).sum(axis=0)
         values = {name: self.mixed(self.regions, f"{name}_probability") for name in ("detection", "track")}
@@ -283,6 +283,6 @@ class Plan:
 
     @property
     def overall(self) -> Dict[str, Any]:
-        """The row of shares of all places and heights, for the birds asked for."""
+        """The row of shares of all places and heights, for the plan's birds."""
         name = self.bird if len(self.mix) > 1 else next(iter(self.mix))
         return next(row for row in reversed(self.shares) if row["species"] == name and row["height_from"] == -math.inf)

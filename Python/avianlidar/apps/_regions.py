@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runways, the regions along and before them, and places drawn there."""
+"""Runways, the regions along and before runways, and random places in these regions."""
 from __future__ import annotations
 
 import dataclasses
@@ -9,15 +9,15 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-# Places in strips and approaches. Source: none; after obstacle limitation surfaces of ICAO Annex 14, simplified.
-STRIP_HALF_WIDTH = 150.0  # m, to either side of a runway's middle
-STRIP_HEIGHTS = (0.5, 60.0)  # m
-APPROACH_LENGTH = 3000.0  # m, beyond a runway's end
-APPROACH_HALF_WIDTH = (75.0, 0.15)  # m at the end, and how it widens
-APPROACH_HEIGHT = (45.0, 0.0524)  # m at the end, and how it rises (3 degrees)
-APPROACH_LOWEST = 0.02  # of that height
-KINDS = {"strip": "strips", "approach": "approaches"}  # by the first word of a region's name
-SPREADS = ("distance", "area")  # of places over a region
+# Dimensions of strips and approaches: assumed, simplified from obstacle limitation surfaces of ICAO Annex 14.
+STRIP_HALF_WIDTH = 150.0  # distance to either side of a runway's middle, m
+STRIP_HEIGHTS = (0.5, 60.0)  # least and greatest height, m
+APPROACH_LENGTH = 3000.0  # distance beyond a runway's end, m
+APPROACH_HALF_WIDTH = (75.0, 0.15)  # half width at the end, m, and its increase per metre
+APPROACH_HEIGHT = (45.0, 0.0524)  # height at the end, m, and its increase per metre (3 degrees)
+APPROACH_LOWEST = 0.02  # least height as a share of the height
+KINDS = {"strip": "strips", "approach": "approaches"}  # kinds by the first word of a region's name
+SPREADS = ("distance", "area")  # distributions of places over a region
 WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
@@ -30,10 +30,10 @@ class Runway:
     start: Tuple[float, float]
     end: Tuple[float, float]
     width: float
-    displaced: Tuple[float, float] = (0.0, 0.0)  # how far the thresholds lie from the start and the end, m
+    displaced: Tuple[float, float] = (0.0, 0.0)  # displacement of the thresholds at the start and at the end, m
 
     def words(self) -> str:
-        """Its name, length, width and displaced thresholds."""
+        """The name, length, width and displaced thresholds, in words."""
         names = self.name.split("/") if self.name.count("/") == 1 else ("its start", "its end")
         found = [f"of {name} by {away:.0f} m" for name, away in zip(names, self.displaced) if away > 0.0]
         return f"{self.name}: {self.axis()[1]:.0f} m long, {self.width:g} m wide" + (f"; threshold displaced: {', '.join(found)}" if found else "")
@@ -45,7 +45,7 @@ class Runway:
         return way / length, length
 
     def axes(self) -> np.ndarray:
-        """The unit vectors from start to end and to the right of that, 2 x 2."""
+        """The unit vectors from start to end and to the right, 2 x 2."""
         axis, _ = self.axis()
         return np.array([axis, (axis[1], -axis[0])])
 
@@ -56,18 +56,18 @@ class Runway:
 
 
 def rounded(position: Sequence[float]) -> List[str]:
-    """Coordinates in tenths of a metre, more than is known of terrain and maps."""
+    """Coordinates in tenths of a metre, which is finer than the accuracy of terrain and maps."""
     return [f"{round(float(value), 1) + 0.0:.10g}" for value in position]
 
 
 def wind(way: np.ndarray) -> str:
-    """The direction of a way (east, north) by eight winds."""
+    """The direction (east, north) as one of eight winds."""
     return WINDS[round(math.atan2(way[0], way[1]) / (math.pi / 4)) % 8]
 
 
 def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:
-    """The designators of the start and the end of each runway, such as ("08", "26"): that of an end is the one which says in what direction
-    aircraft land there. Where a name does not hold two, ends are called by the wind: ("grass west", "grass east")."""
+    """The designators of the start and the end of each runway, such as ("08", "26"). The designator of an end gives the direction in which
+    aircraft land at this end. Ends of a runway without two designators are named by the wind: ("grass west", "grass east")."""
     names = []
     for runway in runways:
         axis, _ = runway.axis()
@@ -84,7 +84,7 @@ def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:
 
 
 def region_names(runways: Sequence[Runway]) -> Dict[str, List[str]]:
-    """Of strips and approaches, in the order of the runways: "strip" and the runway's name, "approach" and the name of the end."""
+    """Names of strips and approaches, in the order of the runways: "strip" with the runway's name, "approach" with the name of the end."""
     pairs = end_names(runways)
     strips = [f"strip {'/'.join(sorted(pair))}" if all(name in runway.name for name in pair) else f"strip {runway.name}" for runway, pair in zip(runways, pairs)]
     return {"strips": [name if strips.count(name) == 1 else f"{name} ({number})" for number, name in enumerate(strips, 1)],
@@ -92,15 +92,15 @@ def region_names(runways: Sequence[Runway]) -> Dict[str, List[str]]:
 
 
 def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) -> np.ndarray:
-    """The rectangle (4 x 2, m) around a runway where nothing may stand. @param beyond of its ends, m @param beside of its
-    middle, m"""
+    """The rectangle (4 x 2, m) around a runway where no lidar may stand. @param beyond distance beyond the ends, m @param beside distance
+    from the middle, m"""
     axis, across = runway.axes() * [[beyond], [beside]]
     start, end = runway.start - axis, runway.end + axis
     return np.array([start - across, end - across, end + across, start + across])
 
 
 def region_outlines(runways: Sequence[Runway]) -> Dict[str, np.ndarray]:
-    """Each strip and approach from above, 4 x 2, m, by its name."""
+    """Each strip and approach seen from above, 4 x 2, m, by its name."""
     names, found = region_names(runways), {}
     for number, runway in enumerate(runways):
         near, far = np.outer(APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * np.array([0.0, APPROACH_LENGTH]), runway.axes()[1])
@@ -112,7 +112,7 @@ def region_outlines(runways: Sequence[Runway]) -> Dict[str, np.ndarray]:
 
 
 def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> Tuple[float, float]:
-    """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights asked for, if any"""
+    """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights heights of the plan, if any"""
     if heights is not None:
         return heights
     if name == "strips":
@@ -121,7 +121,7 @@ def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> 
 
 
 def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]], spread: str) -> Dict[str, Dict[str, float]]:
-    """The share of the places in each region of each kind; all of them sum to 1."""
+    """The share of the places in each region of each kind, with the sum 1 over all regions."""
     wanted = {"strips": 1.0, "approaches": 1.0} if shares is None else dict(shares)
     if not wanted.keys() <= {"strips", "approaches"}:
         raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
@@ -147,7 +147,8 @@ def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]
 
 
 def _split(count: int, shares: Sequence[float]) -> np.ndarray:
-    """Whole numbers by shares, the sum `count`: what is left goes to the largest remainders, of equal ones to the first."""
+    """Whole numbers in proportion to shares, with the sum `count`. The remainder goes to the largest fractions, the first of equal
+    fractions."""
     total = sum(shares)
     exact = np.array(shares) * (count / total) if total > 0.0 else np.zeros(len(shares))
     numbers = np.floor(exact + 1e-9).astype(int)
@@ -158,7 +159,7 @@ def _split(count: int, shares: Sequence[float]) -> np.ndarray:
 
 def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, Any]] = None,
                      heights: Optional[Tuple[float, float]] = None, spread: str = "distance") -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-    """The same places as `strips_and_approaches`, with the numbers of those in each strip and in the approach to each end."""
+    """The places of `strips_and_approaches`, with the numbers of the places in each strip and in the approach to each end."""
     if count < 2 * len(runways) or not runways:
         raise ValueError(f"count is {count}, expected at least 2 for each of at least one runway")
     if heights is not None and not -np.inf < heights[0] <= heights[1] < np.inf:
@@ -178,7 +179,7 @@ def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 
         else:
             away = random.uniform(0.0, APPROACH_LENGTH, n)
             base, wider = APPROACH_HALF_WIDTH
-            if spread == "area":  # the width of an approach rises evenly with the distance
+            if spread == "area":  # the width of an approach increases linearly with the distance
                 area = away / APPROACH_LENGTH * (base * APPROACH_LENGTH + 0.5 * wider * APPROACH_LENGTH ** 2)
                 away = (np.sqrt(base ** 2 + 2.0 * wider * area) - base) / wider
             aside = random.uniform(-1.0, 1.0, n) * (base + wider * away)
@@ -192,7 +193,7 @@ def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 
 
 
 def by_kind(regions: Mapping[str, np.ndarray]) -> Dict[str, np.ndarray]:
-    """The numbers of all places in strips, of all in approaches, and in other regions. @param regions as of `places_by_region`"""
+    """The numbers of all places in strips, in approaches, and in other regions. @param regions regions as from `places_by_region`"""
     kinds: Dict[str, List[np.ndarray]] = {}
     for name, numbers in regions.items():
         kinds.setdefault(KINDS.get(name.partition(" ")[0], name), []).append(numbers)
@@ -201,14 +202,14 @@ def by_kind(regions: Mapping[str, np.ndarray]) -> Dict[str, np.ndarray]:
 
 def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, Any]] = None,
                           heights: Optional[Tuple[float, float]] = None, spread: str = "distance") -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-    """Places drawn at random, and which lie where: in strips (along each runway, 150 m to either side, 0.5 to 60 m high) and in
-    approaches (beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, 0.02 to 1 of 45 m + 0.0524 d
-    high).
+    """Random places, and the region of each place. Strips lie along each runway, 150 m to either side, 0.5 to 60 m high. Approaches
+    lie beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, from 0.02 times to 1 times 45 m + 0.0524 d
+    high.
 
-    shares   of the places by the name of the region, "strips" and "approaches"; default 1 each. A region without is not there. In place of a
-             number, the shares of single ones by name: {"approaches": {"08": 1}} (`region_names`)
-    heights  least and greatest z of all places, m, in place of the regions' own: evenly between them
-    spread   "distance": as many on each metre along a strip or an approach, and in each of them. "area": as many on each square metre
+    shares   shares of the places by the name of the region, "strips" and "approaches"; default 1 for both. A region without a share is
+             left out. In place of a number: shares of single regions by name, {"approaches": {"08": 1}} (`region_names`)
+    heights  least and greatest z of all places, m, in place of the regions' own heights; evenly distributed
+    spread   "distance": equally many on each metre along strips and approaches. "area": equally many on each square metre
     @return n x 3 coordinates, m; the numbers of the places by the name of the region
     """
     points, regions = places_by_region(runways, count, seed, shares, heights, spread)

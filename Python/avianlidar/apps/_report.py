@@ -28,12 +28,12 @@ from ._regions import rounded
 from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
 from ._tables import embedded, render, write_table
 
-VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # m, of the section on weather
-RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # mm/h
-ANSWERED = 1000.0  # m, a visibility of these whose share is said in a sentence
-BESIDE = (("fog:1000",), ("rain:10",))  # weathers whose best sites are looked for, where the plan gives no year
+VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # visibilities in the section on weather, m
+RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # rain rates, mm/h
+ANSWERED = 1000.0  # visibility whose share is given in a sentence, m
+BESIDE = (("fog:1000",), ("rain:10",))  # weathers for which best sites are searched if the plan gives no year
 
-# Numbers of a sensor that a reader should know: property, words, unit, what one unit of the property is in it.
+# Numbers of a sensor in the table: property, words, unit, factor from the property to the unit.
 COMMON = (("number_of_channels", "beams above one another", "", 1.0), ("azimuth_step", "step in azimuth", "°", 1.0),
           ("rotation_rate", "scans a second", "", 1.0), ("half_beamwidth", "half beamwidth", "mrad", 1e3),
           ("half_beamwidth_across", "half beamwidth across (0: the same)", "mrad", 1e3),
@@ -67,13 +67,13 @@ def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
 
 
 class Report:
-    """Pictures, tables and words of a plan: with the plan's sensor and each that it compares with, where the plan puts them and at
-    the best site of each."""
+    """Pictures, tables and words of a plan: for the plan's sensor and each sensor for comparison, at the place in the plan and at
+    the best site of each sensor."""
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
         self.plan, self.progress = plan, progress
         self.plans = Plan.all_of(plan, threads)
-        self.asked = f"asked for: {self.plans[0].bird} {self.plans[0].where}"  # in every caption
+        self.asked = f"question: {self.plans[0].bird} {self.plans[0].where}"  # part of every caption
         self.scene = load_json(plan["scene"])
         with naming(f"{plan['file']}: tracks"):
             self.tracks = read_card(plan["tracks"]) if "tracks" in plan else None
@@ -90,7 +90,7 @@ class Report:
         return {"source": embedded(file), "alt": alt, "caption": f"{caption}; {self.asked}"}
 
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
-        """Pictures of a sensor somewhere. @param name in the names of files"""
+        """Pictures of a sensor at a place. @param name part of the names of files"""
         names = plan.coverage.status_names
         maps, reasons, size = [], [], pictures.map_size(plan.extent, 3.3)
         for height in plan.heights:
@@ -122,12 +122,12 @@ class Report:
                 folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
                 f"Section along {runway.name} with {plan.title}: at least 0.5 on {percent(float(np.mean(values >= 0.5)))} of it, mean {percent(float(values.mean()))}.",
                 f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
-                f"{pictures.GLIDE_PATH:g} degrees{'; red: the heights asked for' if plan.asked else ''}; heights are stretched",
+                f"{pictures.GLIDE_PATH:g} degrees{'; red: heights of the plan' if plan.asked else ''}; heights are stretched",
                 lambda axes, runway=runway, values=values, extent=extent: pictures.draw_section(axes, plan, runway, values, extent)))
         return found
 
     def _tables(self, views: List[Plan]) -> Dict[str, Any]:
-        """Shares by region and height of the bird, by species, and reasons: rows with a row of shares for each view."""
+        """Shares by region and height of the bird, by species, and by reason: rows with a row of shares for each view."""
         first = views[0]
         bird, shares = first.overall["species"], [plan.shares for plan in views]
 
@@ -140,7 +140,8 @@ class Report:
         everywhere = [row for row in rows if row["region"] == first.overall["region"] and row["all"]]
         rows = [row for row in rows if row["shares"][0]["places"] > 0]
         whole = [(row["region"], row["heights"]) for row in rows if row["all"]]
-        rows = [row for row in rows if row["all"] or (row["region"], row["heights"]) not in whole]  # one band alone
+        # a row for a single band repeats the row for all heights
+        rows = [row for row in rows if row["all"] or (row["region"], row["heights"]) not in whole]
         return {"heights": [row for row in rows if row["species"] == bird],
                 "ends": [{"region": of[0]["region"], "shares": of} for of in zip(*(view.by_end for view in views))] if len(first.ends) > 1 else [],
                 "species": everywhere if len(everywhere) > 1 else [],
@@ -159,7 +160,8 @@ class Report:
         words = "; ".join(f"{row['sensors']}: {percent(row['value'], row['std_error'], sites.plan.count)}" for row in gain)
         pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "
                             f"{place(sites.positions[sites.order[0]])}, with {best[0]['value']}.",
-                            f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light grey: nothing may stand there"),
+                            f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light "
+                            "grey: areas where no lidar may stand"),
                     "curve": ("gain.png", f"Probability of one scan with the best networks of {sites.plan.name}: {words}.",
                               f"{sites.plan.name}: with more sensors; bars: standard error")}
         return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": sites.count_alike(), "edge": sites.at_the_edge,
@@ -174,7 +176,7 @@ class Report:
                    for key, (name, alt, caption) in pictured.items()}}
 
     def _degrees(self, sites: Sites) -> str:
-        """Where on the Earth the best site is."""
+        """Longitude and latitude of the best site."""
         origin = sites.plan.scene.geodetic_origin
         if origin is None:
             return ""
@@ -182,7 +184,7 @@ class Report:
         return f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}"
 
     def _reaches(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
-        """How far the birds of a plan are detected."""
+        """The ranges to which the plan's birds are detected."""
         settings = {name: value for name, value in plan.settings.items() if name not in ("species", "all_species", "height_limits", "clutter")}
         of = {species or "target": reach.within_beams(plan.sensor, species, **settings) for species in plan.mix}
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
@@ -199,11 +201,11 @@ class Report:
                                       lambda axes: pictures.draw_reach(axes, of, several))}
 
     def _weather(self, views: List[Plan], folder: pathlib.Path) -> Dict[str, Any]:
-        """Shares of the places in fog and in rain, and over the plan's year, for each view."""
+        """Shares of the places in fog, in rain, and over the plan's year, for each view."""
         probability = ("detection_probability", "detection_std_error")
         found: Dict[str, Any] = {"beside": views[0].air_of()["visibility"], "weaken": [plan.name for plan in self.plans if not gathers_light(plan.sensor)], "pictures": []}
         table: List[Dict[str, Any]] = []
-        shares, year = [], views[0].year  # by view, then by air
+        shares, year = [], views[0].year  # first index view, second index air
         names = [*(f"visibility {v:.10g} m" for v in VISIBILITIES), *(f"rain {rain:.10g} mm/h" for rain in RAINS), *(air.name for air in year)]
         for view in views:
             rows = view.in_airs([*(view.air_of(visibility=v, air_backscatter=True) for v in VISIBILITIES),
@@ -222,22 +224,22 @@ class Report:
                                                 pictures.draw_weather(axes, curves, words, kind == "visibility")))
             found[kind] = [{"value": value, "shares": of} for value, of in zip(values, zip(*(of[part] for of in shares)))]
         found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*(of[last:] for of in shares)))]
-        # Places are the same in all weathers: the error of the mean is at most the mean of errors.
+        # Places are equal in all weathers, so the error of the mean is at most the mean of the errors.
         found["over_the_year"] = [{"places": of[0]["places"], **{name: sum(air.share * row[name] for air, row in zip(year, of[last:]))
                                                                  for name in probability}} for of in shares]
         found["answered"] = [of[VISIBILITIES.index(ANSWERED)] for of in shares]
         return found
 
     def _weather_words(self, number: int, view: Plan, weather: Dict[str, Any]) -> str:
-        """A sentence on fog, and on the year. @param number of the view"""
+        """A sentence on fog and, if the plan has a year, on the year. @param number number of the view"""
         birds = birds_of(view)
         said = f"At 1\u00a0km visibility one scan of {view.title} detects {share_of(weather['answered'][number])} of {birds} {view.where}."
         if view.year:
-            said += f" Over the year, by the hours of its weather, it is {share_of(weather['over_the_year'][number])}."
+            said += f" Over the year, by the hours of its weather, the share is {share_of(weather['over_the_year'][number])}."
         return said
 
     def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
-        """How high the band must go, with what that would detect."""
+        """The height to which the band must reach, and the share that this band would detect."""
         found = reach.advice(view, max(one.to(0.5) for one in reaches["of"].values()))
         if found:
             low, high = reach.band(view.sensor)
@@ -250,31 +252,31 @@ class Report:
         return found
 
     def _besides(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]]) -> List[str]:
-        """What else there is to say of the best site: how sure it is, and what the plan's own place detects."""
+        """Further sentences on the best site: how sure it is, and what the plan's own place detects."""
         if not site or view is plan:
             return []
         said = [sentence for sentences in how_sure(site) for sentence in sentences]
         if plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
-            said.append(f"Where {who} puts it, {place(plan.sensor.position)}, it is {share_of(plan.overall)}"
-                        f"{', but nothing may stand there' if site['taken'] else ''}.")
+            said.append(f"At the position of {who}, {place(plan.sensor.position)}, the share is {share_of(plan.overall)}"
+                        f"{', but no lidar may stand there' if site['taken'] else ''}.")
         return said
 
     def _first_picture(self, view: Plan, folder: pathlib.Path) -> Dict[str, str]:
-        """The airport with the sensor, all regions that are asked for, and where birds are detected at each height."""
+        """The airport with the sensor, all regions of the plan, and the areas where birds are detected at each height."""
         extent = pictures.answer_extent(view)
         found = pictures.found_at(view, extent)
         seen = "; ".join(f"{height:g} m above {view.above}: half or more on {percent(float(np.mean(classes == 2)))} of the map" for height, classes in found)
         shares = {row["region"]: share_of(row) for row in view.by_end}
-        regions = "; dotted: strips and approaches asked for, with the share detected there" if view.runways else ""
+        regions = "; dotted: the plan's strips and approaches, with the share detected in each" if view.runways else ""
         return self._draw(folder / "answer.png", pictures.map_size(extent, 4.6, 0.0, 0.2 * math.ceil(len(found) / 2) + 0.1),
                           f"Map of the airport with {view.title}, {place(view.sensor.position)}. {view.bird}, {seen}.",
                           f"{view.name} (red triangle), {place(view.sensor.position)}. Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
                           lambda axes: pictures.draw_answer(axes, view, found, extent, shares))
 
     def write(self, file) -> pathlib.Path:
-        """Write the page, and beside it a folder of its name and `_files` with shares.csv, ends.csv, range.csv, weather.csv, pictures and tables of sites.
-        @return that folder"""
+        """Writes the page. Beside the page, a folder with the page's name and `_files` gets shares.csv, ends.csv, range.csv, weather.csv,
+        pictures and tables of sites. @return this folder"""
         file = pathlib.Path(file)
         if file.suffix not in (".html", ".htm") or file.is_dir():
             raise Error(f"{file}: is not the name of a page, expected one that ends in .html")
@@ -284,7 +286,7 @@ class Report:
         return folder
 
     def _page(self, folder: pathlib.Path) -> bytes:
-        """The page; what it is made of is written to the folder."""
+        """The page. Its tables and pictures are written to the folder."""
         first = self.plans[0]
         sited = [self._siting(sites, folder if number == 0 else folder / sites.plan.name) for number, sites in enumerate(self.sites)]
         best = [plan.at(site["first"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES) for plan, site in zip(self.plans, sited) if site["detects"]]

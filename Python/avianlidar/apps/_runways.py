@@ -18,19 +18,20 @@ from ._features import Feature
 from ._gdal import box_of, degrees, form_of, geometry, moved, parts_of
 from ._maps import coordinate_system
 
-NEAR_AERODROME = 3000.0  # m: a runway belongs to the nearest aerodrome within
-ONE_AIRPORT = 6000.0  # m between runways of one airport, where no aerodrome is in the extract
-MODEL_NEAR = 100.0  # m of a model airfield
-ALONG = math.cos(math.radians(10.0))  # of two directions that are the same
-THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: a threshold lies on a runway; nearer to its end it is the end
+NEAR_AERODROME = 3000.0  # greatest distance of a runway from its aerodrome, m
+ONE_AIRPORT = 6000.0  # greatest distance between runways of one airport in an extract without aerodromes, m
+MODEL_NEAR = 100.0  # greatest distance of a runway from the model airfield that it belongs to, m
+ALONG = math.cos(math.radians(10.0))  # cosine of the angle below which two directions are equal
+THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: greatest distance of a threshold beside a runway, and least distance from its end
 
 
 def _axis_of(hull) -> Tuple[np.ndarray, float]:
-    """Ends of the line between the short sides of the smallest rectangle about a convex area, and the rectangle's width. @param hull ogr, m"""
+    """Ends of the line between the short sides of the smallest rectangle around a convex area, and the rectangle's width. @param hull
+    ogr, m"""
     corners = np.array(hull.Boundary().GetPoints())[:, :2]
     ways = np.diff(corners, axis=0)
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
-    axes = np.stack([ways, ways[:, ::-1] * (-1, 1)], axis=1)  # each side's way, and across it
+    axes = np.stack([ways, ways[:, ::-1] * (-1, 1)], axis=1)  # direction of each side, and the perpendicular direction
     turned = axes @ corners.T
     axis = axes[np.argmin(np.ptp(turned, axis=2).prod(axis=1))]
     low, high = (axis @ corners.T).min(axis=1), (axis @ corners.T).max(axis=1)
@@ -40,12 +41,12 @@ def _axis_of(hull) -> Tuple[np.ndarray, float]:
 
 
 def _designators(tags: Dict[str, str]) -> Set[str]:
-    """"09L" and "27R" of "9L/27R"."""
+    """The designators "09L" and "27R" in "9L/27R"."""
     return {word.strip().upper().zfill(3 if word.strip()[-1:].isalpha() else 2) for word in re.split(r"[/;-]", tags.get("ref", "")) if word.strip()}
 
 
 class _Piece:
-    """A way of a runway: its feature, tags, and points (n x 2, m)."""
+    """A way that is part of a runway: its feature, tags, and points (n x 2, m)."""
 
     def __init__(self, feature: Feature, points: np.ndarray, **more: str):
         self.feature, self.tags, self.points = feature, {**more, **feature.tags}, points
@@ -55,7 +56,7 @@ class _Piece:
         self.along = way / self.length
 
     def goes_on(self, other: _Piece, known: Dict[str, Any]) -> bool:
-        """Whether both are of one runway: no other number, in one line, and no further apart than a gap of the map."""
+        """Whether two ways belong to one runway: equal numbers, one line, and at most a gap of the map between the ways."""
         mine, theirs = _designators(self.tags), _designators(other.tags)
         if mine and theirs and not mine & theirs:
             return False
@@ -68,15 +69,15 @@ class _Piece:
 
 
 def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, np.ndarray, List[float]]]:
-    """Runways of pieces: features without a geometry, ends (2 x 2, m), and by how much each end's threshold is displaced, m. The first end is that of the
-    first number of `ref`."""
+    """Runways joined from pieces: features without a geometry, ends (2 x 2, m), and the displacement of each end's threshold, m. The first
+    end belongs to the first number of `ref`."""
     pieces = sorted(pieces, key=lambda one: -one.length)
     fit = np.array([[one.goes_on(other, known) for other in pieces] for one in pieces])
     labels = connected_components(fit)[1] if pieces else fit
     members = sorted((np.flatnonzero(labels == label) for label in np.unique(labels)), key=lambda of: of[-1])
     found = []
     for group in ([pieces[i] for i in of] for of in members):
-        group.sort(key=lambda one: one.is_displaced)  # the longest first
+        group.sort(key=lambda one: one.is_displaced)  # the longest way first
         tags = {name: value for one in reversed(group) for name, value in one.tags.items() if name != "runway"}
         points, along, start = np.concatenate([one.points for one in group]), group[0].along, group[0].points[0]
         number = re.match(r"(\d{1,2})[LCR]?\s*/", tags.get("ref", ""))
@@ -91,7 +92,7 @@ def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, 
 
 
 def _displaced(ends: np.ndarray, by_pieces: List[float], thresholds: List[np.ndarray]) -> List[float]:
-    """By how much each end's threshold is displaced, m, by ways of a runway or by points of thresholds."""
+    """The displacement of each end's threshold, m, from ways of a runway or from points of thresholds."""
     length = float(np.linalg.norm(ends[1] - ends[0]))
     along, found = (ends[1] - ends[0]) / length, list(by_pieces)
     for point in thresholds:
@@ -109,16 +110,17 @@ def _name_of(aerodrome: Feature) -> str:
 
 def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], icao: Optional[str], box: Optional[Sequence[float]]
                    ) -> Tuple[List[Feature], Optional[Feature]]:
-    """The runways of one airport as lines (degrees), and its aerodrome if the extract has it. What is too short for a runway is left out.
-    @param icao its code, if given @param box west, south, east, north, degrees: runways that meet it, if given"""
+    """The runways of one airport as lines (degrees), and its aerodrome, if the extract has one. Ways that are too short for a runway are
+    left out.
+    @param icao code of the airport, if given @param box west, south, east, north, degrees: the runways must meet this box, if given"""
     lines = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "line"]
     areas = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "area"]
     if not lines + areas:
         other = next((f"; left out: {left.reason}" for left in extract.left if left.kind == "runway"), "")
         lost = sum(left.kind == "way" for left in extract.left)
-        other += f"; {lost} ways lack their nodes, which `osmium sort` puts before them" if lost and not other else ""
+        other += f"; {lost} ways lack their nodes; `osmium sort` puts the nodes before the ways" if lost and not other else ""
         if lost and file.suffix.lower() == ".pbf":
-            other += "; if the places of nodes are in the ways, `osmium cat FILE -o FILE.osm` writes an extract that is read"
+            other += "; if the ways contain the coordinates of nodes, `osmium cat FILE -o FILE.osm` writes a suitable extract"
         raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway{other}")
     middle = (lines + areas)[0].shape.Centroid()
     local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
@@ -139,12 +141,12 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         ends, width = _axis_of(hull)
         area = _Piece(one, ends, width=f"{width:.1f}")
         inside = sum(line.Intersection(hull).Length() for piece, line in drawn if abs(piece.along @ area.along) > ALONG)
-        if inside < area.length / 2:  # no line is drawn along it
+        if inside < area.length / 2:  # the area is not along the line
             pieces.append(area)
             extract.features.remove(one)
     models = [moved(one.shape, to_local) for one in extract.models]
     thresholds = [points_of(one.shape)[0] for one in extract.thresholds]
-    runways: List[Tuple[Feature, Any]] = []  # with their lines, m
+    runways: List[Tuple[Feature, Any]] = []  # features with their lines, m
     for one, ends, by_pieces in _joined(pieces, known):
         line = geometry("LineString", ends)
         one.shape = moved(line, to_degrees)
@@ -168,7 +170,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
             code = extract.aerodromes[near].tags.get("icao")
             key: Any = next(number for number, place in enumerate(extract.aerodromes)
                             if number == near or (code and place.tags.get("icao") == code))
-        else:  # by the runways themselves
+        else:  # groups from the distances between runways
             key = next((key for key, members in groups.items() if isinstance(key, str)
                         and min(other.Distance(line) for _, other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
         groups[key].append((one, line))
@@ -181,8 +183,8 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         if not chosen:
             raise Error(f"{file}: holds no airport {icao} with a runway, but: {', '.join(names.values())}")
     elif len(groups) > 1 and box is None:
-        raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; expected one, or --icao CODE or "
-                    "--bounds W S E N to say which")
+        raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; "
+                    "expected one airport, or --icao CODE or --bounds W S E N to choose one")
     for one in (one for key in groups if key not in chosen for one, _ in groups[key]):
         extract.leave(one, "of another airport")
     aerodrome = next((extract.aerodromes[key] for key in chosen if isinstance(key, int)), None)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How well tracks follow what was there: assignment, OSPA, switches, delay, warning, with standard errors. Functions of arrays."""
+"""Scores of tracks compared with true flights: assignment, OSPA, switches, delay, warning, with standard errors. The functions take
+arrays."""
 from __future__ import annotations
 
 import math
@@ -11,22 +12,22 @@ Pairs = List[Tuple[int, int]]
 
 
 class Value(NamedTuple):
-    """A number with its standard error (nan where there is none) and how many it is of."""
+    """A number with its standard error (nan without one) and the number of samples."""
     value: float
     error: float
     number: int
 
 
 class Ospa(NamedTuple):
-    """OSPA distance of two sets, m, and its two parts."""
+    """The OSPA distance of two sets, m, and its two parts."""
     distance: float
     localisation: float
     cardinality: float
 
 
 def assign(distance, cutoff: float) -> Pairs:
-    """Pairs of a row and a column, each in one pair at most, nearer than the cut-off, such that the sum of all distances is least, where
-    what has no partner counts with the cut-off. @param distance n x m"""
+    """Pairs of a row and a column, at most one pair for each, nearer than the cut-off. The sum of all distances is least, where each row
+    or column without a partner counts as the cut-off. @param distance n x m"""
     from scipy.optimize import linear_sum_assignment
     distance = np.asarray(distance, float)
     return [(int(i), int(j)) for i, j in zip(*linear_sum_assignment(np.minimum(distance, cutoff))) if distance[i, j] < cutoff]
@@ -34,8 +35,8 @@ def assign(distance, cutoff: float) -> Pairs:
 
 def follow(distance, truths: Sequence[Hashable], tracks: Sequence[Hashable], cutoff: float,
            before: Mapping[Any, Any]) -> Dict[Any, Any]:
-    """The track of each truth in a scan. A pair of the scan before stays while it is nearer than the cut-off; all others are assigned
-    (Bernardin & Stiefelhagen 2008, CLEAR MOT). @param distance truths x tracks @param before tracks by truth"""
+    """The track of each truth in a scan. A pair of the scan before is kept while it is nearer than the cut-off; all others are assigned
+    again (Bernardin & Stiefelhagen 2008, CLEAR MOT). @param distance truths x tracks @param before tracks by truth"""
     distance = np.array(distance, float).reshape(len(truths), len(tracks))
     row, column = ({name: number for number, name in enumerate(names)} for names in (truths, tracks))
     kept = {truth: track for truth, track in before.items()
@@ -46,9 +47,9 @@ def follow(distance, truths: Sequence[Hashable], tracks: Sequence[Hashable], cut
 
 
 def ospa(distance, cutoff: float, order: float = 2.0) -> Ospa:
-    """Optimal subpattern assignment distance of two sets (Schuhmacher, Vo & Vo 2008, doi:10.1109/TSP.2008.920469, eq. 3): 0 where both are
-    empty, the cut-off where one is. `distance` to the power of the order is the sum of those of its parts. @param distance n x m, of a
-    metric @param order p, 1 or more, finite"""
+    """Optimal subpattern assignment distance of two sets (Schuhmacher, Vo & Vo 2008, doi:10.1109/TSP.2008.920469, eq. 3): 0 if both sets
+    are empty, the cut-off if one set is empty. `distance` to the power of the order is the sum of the parts to that power. @param
+    distance n x m, values of a metric @param order p, 1 or more, finite"""
     if not 0.0 < cutoff < math.inf or not 1.0 <= order <= 20.0:
         raise ValueError(f"cutoff is {cutoff} m and order {order}, expected more than 0 m, and 1 to 20")
     distance = np.asarray(distance, float)
@@ -63,14 +64,14 @@ def ospa(distance, cutoff: float, order: float = 2.0) -> Ospa:
 
 
 def switches(tracks: Sequence[Optional[Hashable]]) -> int:
-    """How often a truth changes from one track to another; None where it has none. @param tracks of its scans"""
+    """Number of changes of a truth from one track to another. @param tracks tracks in the scans of the truth, None without a track"""
     had = [track for track in tracks if track is not None]
     return sum(a != b for a, b in zip(had, had[1:]))
 
 
 def in_wedge(points, threshold, outwards, length: float, half_width: Tuple[float, float], height: Tuple[float, float]) -> np.ndarray:
     """Which points lie below and beside the glide path before a threshold, or in the box over a runway. @param points n x 3, m
-    @param outwards unit vector away from the runway, or along it @param half_width, height m at the threshold, and by how much they grow a
+    @param outwards unit vector away from the runway, or along the runway @param half_width, height m at the threshold, and increase per
     metre outwards"""
     points, (x, y) = np.asarray(points, float).reshape(-1, 3), outwards
     along, aside = ((points[:, :2] - np.asarray(threshold)) @ [[x, y], [y, -x]]).T
@@ -79,20 +80,21 @@ def in_wedge(points, threshold, outwards, length: float, half_width: Tuple[float
 
 
 def entry(times: np.ndarray, inside: np.ndarray) -> float:
-    """The first time inside any of the volumes in which it does not begin; nan without. @param inside volumes x times"""
+    """The first time inside any volume except the volumes in which the bird begins; nan without such a time. @param inside volumes x
+    times"""
     entered = (inside & ~inside[:, :1]).any(axis=0)
     return float(times[np.argmax(entered)]) if entered.any() else math.nan
 
 
 def mean(values) -> Value:
-    """Mean, and its standard error by the spread of the values."""
+    """Mean, and its standard error from the spread of the values."""
     values = np.asarray(values, float)
     count = len(values)
     return Value(float(values.mean()) if count else math.nan, float(values.std(ddof=1)) / math.sqrt(count) if count > 1 else math.nan, count)
 
 
 def weighted(values: np.ndarray, weights: np.ndarray) -> Value:
-    """The weighted mean over places, with the standard error of places drawn at random; nan where nothing counts."""
+    """The weighted mean over places, with the standard error of randomly drawn places; nan if no place has a weight."""
     count, total = len(values), float(weights.sum())
     if not total:
         return Value(math.nan, math.nan, count)
@@ -101,7 +103,7 @@ def weighted(values: np.ndarray, weights: np.ndarray) -> Value:
 
 
 def ratio(parts, wholes) -> Value:
-    """Sum of the parts over the sum of the wholes, with the error by leaving out one bird at a time (jackknife)."""
+    """Sum of the parts over the sum of the wholes, with the error from leaving out one bird at a time (jackknife)."""
     parts, wholes = np.asarray(parts, float), np.asarray(wholes, float)
     parts, wholes = parts[wholes > 0.0], wholes[wholes > 0.0]
     count, part, whole = len(parts), float(parts.sum()), float(wholes.sum())
@@ -110,12 +112,13 @@ def ratio(parts, wholes) -> Value:
 
 
 def share(count: int, of: int) -> Value:
-    """A share. Its error is the standard deviation of what it may be if all shares were as likely before, so that none and all have one, too:
-    of the beta distribution of count + 1 and of - count + 1."""
+    """A share. Its error is the standard deviation of the beta distribution of count + 1 and of - count + 1, which follows from a uniform
+    prior. The error is above 0 also for a share of 0 or 1."""
     p = (count + 1.0) / (of + 2.0)
     return Value(count / of if of else math.nan, math.sqrt(p * (1.0 - p) / (of + 3.0)) if of else math.nan, of)
 
 
 def rate(count: int, time: float) -> Value:
-    """Events a unit of time. Its error is of the gamma distribution of count + 1: that of a Poisson process, and above 0 for no event."""
+    """Events per unit of time. Its error is that of the gamma distribution of count + 1, for a Poisson process; it is above 0 also for no
+    event."""
     return Value(count / time if time > 0.0 else math.nan, math.sqrt(count + 1.0) / time if time > 0.0 else math.nan, count)

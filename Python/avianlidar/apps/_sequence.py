@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Labelled sequences of scans with birds, to train and to test on."""
+"""Labelled sequences of scans with birds, for training and testing."""
 from __future__ import annotations
 
 import collections
@@ -30,15 +30,15 @@ from ._inputs import with_files
 from ._simulation import STATUSES, SUBSETS, TRUTH, Simulation
 
 DONE = "done.json"
-PART = ".part"  # ends the name of a folder that is being written
-FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix, bytes of a point
+PART = ".part"  # suffix of a folder that is being written
+FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix of the files, and bytes for a point
 ALL = (*FOLDERS, ("boxes", ".txt", 1))
-TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # of a whole sequence
-TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # of DONE
+TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # files of a whole sequence
+TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # tables in DONE
 COUNTS = ("scans", "scans_with_birds_seen")
-_AGAIN = "Remove the folder: it is made again"
-_FEWER = "ask for as many scans as there are, or choose another folder"
-SHOWN = 3  # inputs that differ, in an error
+_AGAIN = "Remove the folder, and run again to make a new folder"
+_FEWER = "choose at least as many scans as the folder has, or another folder"
+SHOWN = 3  # number of differing inputs in an error
 CONFIGURATION = "semantic-kitti.yaml"
 Progress = Callable[[int, int, int], None]
 
@@ -51,7 +51,7 @@ class Sequence(Simulation):
     """
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
-        """The files of a sequence; what is in them."""
+        """Writes the files of a sequence. @return a description of the content"""
         for name, _, _ in ALL:
             (folder / name).mkdir(parents=True)
         boxes = Boxes(self.scene.tree.GetOutput(), self.at_rest, self._pose())
@@ -88,11 +88,11 @@ class Sequence(Simulation):
                 "birds_seen_of_subsets": {name: [row[4] for row in seen].count(name) for name in SUBSETS}}
 
     def _inputs(self) -> Dict[str, str]:
-        """All that every file depends on, by name, as it was found: of the scenario, the files that it names, the scene, and each
-        property of sensor and scan whoever sets it."""
+        """Everything that the files depend on, by name, as found: the scenario, the files that the scenario names, the scene, and each
+        property of sensor and scan, whether set or default."""
         scenario = with_files({**self.scenario, "scene": ""}, lambda name: name and hashlib.sha256(read_regular(name)).hexdigest())
         no_bit = ("number_of_threads", "controller", "maximum_cache_size", "batch_collision_detection",
-                  "number_of_revolutions")  # the last one says which scans there are
+                  "number_of_revolutions")  # the number of revolutions decides which scans exist
         parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan", "number_of_scans")},
                  "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.at_rest.beams.data)},
                  "scan": self.scan.properties()}
@@ -100,18 +100,18 @@ class Sequence(Simulation):
         return {"version": __version__, "scene": digest_of(self.scene.tree.GetOutput()), **found}
 
     def decides(self) -> Any:
-        """All that decides which files `write` makes."""
+        """Everything that decides which files `write` makes."""
         return self.scans, sorted(self._inputs().items())
 
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
-        """Make what is missing of `folder`/sequences/NN, then manifest.json and datasheet.md; returns the manifest.
+        """Makes the missing sequences of `folder`/sequences/NN, then manifest.json and datasheet.md. Returns the manifest.
 
-        A sequence has its name only when it is whole. Killed at any moment and started again, the work goes on with the
-        next sequence. More scans add sequences; one that had fewer is made again, with a warning. What another scenario has left
-        there is an error, and so are fewer scans than there are, and files that were changed. Ranks take whole sequences.
+        A sequence gets its name when it is complete, so a killed run can be started again and continues with the next
+        sequence. More scans add sequences; a sequence that had fewer scans is made again, with a warning. Sequences of another scenario,
+        more scans than requested, and changed files are errors. Each rank makes whole sequences.
         semantic-kitti.yaml beside the manifest is the configuration for programs that read SemanticKITTI.
 
-        progress  called with the number of the sequence, its scans done and all of them
+        progress  called with the number of the sequence, its finished scans and all its scans
         """
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
         with only_run(out, ranks, goes_on=True, known=self.decides), ranks.together():
@@ -122,15 +122,15 @@ class Sequence(Simulation):
         home.mkdir(exist_ok=True)
         for folder in sorted(home.glob("[0-9]*")):
             if folder.name.isdigit() and int(folder.name) >= len(self):
-                raise Error(f"{folder}: is there, and number_of_scans is {self.scans}: {_FEWER}")
+                raise Error(f"{folder}: exists, but number_of_scans is {self.scans}: {_FEWER}")
         missing = [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
         mine = missing[ranks.rank::ranks.size]
         self.scans_to_do = sum(len(self.span(k)) for k in mine)
         shorter = [home / f"{k:02d}" for k in missing if (home / f"{k:02d}").exists()]
         if shorter and ranks.rank == 0:
-            warnings.warn(f"{shorter[0]}: has fewer scans than are wanted now, and is made again: flights depend on the length of a "
+            warnings.warn(f"{shorter[0]}: has fewer scans than requested, and is made again, because flights depend on the length of a "
                           "sequence", RuntimeWarning, stacklevel=callers_level())
-        ranks.wait()  # all have looked before anybody adds anything
+        ranks.wait()  # all ranks have read before any rank writes
         if ranks.rank == 0:
             for part in home.glob(f".*{PART}"):
                 shutil.rmtree(part)
@@ -167,42 +167,44 @@ class Sequence(Simulation):
         return manifest
 
     def _inputs_of(self, common: Dict[str, str], number: int, scans: Optional[int] = None) -> Dict[str, str]:
-        """Of a sequence of so many scans, by default those that it has here."""
+        """Inputs of a sequence with a number of scans; default: the scans of the sequence in this scenario."""
         span = self.span(number)
         return {**common, "scans": f"{span.start} to {span.start + scans if scans else span.stop}"}
 
     def _is_there(self, folder: pathlib.Path, number: int, common: Dict[str, str]) -> bool:
-        """False for a sequence that has fewer scans, too; `Error` unless it is whole, made of the same."""
+        """Whether a sequence is complete; also False if it has fewer scans. `Error` if the sequence is damaged or was made from other
+        inputs."""
         if not folder.exists():
             return False
         if not (folder / DONE).exists():
-            raise Error(f"{folder}: is there without {DONE}, so it is not a whole sequence; choose another folder or remove it")
+            raise Error(f"{folder}: has no {DONE}, so the sequence is incomplete; choose another folder or remove this folder")
         content = load_json(folder / DONE)
         known: Dict[str, Any] = content if isinstance(content, dict) else {}
         scans, wanted = known.get("scans"), len(self.span(number))
         scans = scans if isinstance(scans, int) and 0 < scans <= self.length else wanted
         if known.get("identity") != _identity(self._inputs_of(common, number, scans)):
             inputs = self._inputs_of(common, number)
-            raise Error(f"{folder} is of another scenario, scene or version: {_difference(known.get('inputs'), inputs)}; choose another "
-                        "folder or remove it")
+            raise Error(f"{folder} was made from another scenario, scene or version: "
+                        f"{_difference(known.get('inputs'), inputs)}; choose another "
+                        "folder or remove this folder")
         if scans > wanted:
-            raise Error(f"{folder}: has {scans} scans, and number_of_scans is {self.scans}: {_FEWER}")
+            raise Error(f"{folder}: has {scans} scans, but number_of_scans is {self.scans}: {_FEWER}")
         if scans < wanted:
             return False
         wrong = [name for name, keys in zip(TABLES, (map(str, classes_of(self.bird_class)), STATUSES, SUBSETS)) if not isinstance(known.get(name), dict)
                  or not {*known[name]} <= {*keys} or not all(isinstance(count, int) for count in known[name].values())]
         wrong += [name for name in COUNTS if not isinstance(known.get(name), int)]
         if wrong:
-            raise Error(f"{folder / DONE}: {wrong[0]} is missing or no count. {_AGAIN}")
+            raise Error(f"{folder / DONE}: {wrong[0]} is missing or is not a count. {_AGAIN}")
         _check_scans(folder, wanted)
         if known.get("sha256") != _digest(folder):
-            raise Error(f"{folder}: its files are not those that its {DONE} has the sha256 of: something else has changed, added or removed "
-                        f"some. {_AGAIN}")
+            raise Error(f"{folder}: its files differ from the sha256 in its {DONE}: another program has changed, added or removed "
+                        f"files. {_AGAIN}")
         return True
 
 
 def _short(value: Any) -> str:
-    """A value in words that are others for another value, in whatever order its keys are."""
+    """A short text of a value, different for different values and independent of the order of keys."""
     text = json.dumps(value, sort_keys=True)
     return text if len(text) <= 80 else hashlib.sha256(text.encode()).hexdigest()[:32]
 
@@ -212,9 +214,9 @@ def _identity(inputs: Dict[str, str]) -> str:
 
 
 def _difference(before: Any, now: Dict[str, str]) -> str:
-    """Which inputs are others than those that a sequence was made of."""
+    """Words on the inputs that differ from those of a sequence."""
     if not isinstance(before, dict):
-        return "what it was made of is not known"
+        return "the inputs of the sequence are not known"
     names = [name for name in {*before, *now} if before.get(name) != now.get(name)]
     names.sort(key=lambda name: (len(now.get(name, "")), name))  # numbers before checksums
     words = [f"{name} {before.get(name, 'not set')}, now {now.get(name, 'not set')}" for name in names[:SHOWN]]
@@ -222,16 +224,16 @@ def _difference(before: Any, now: Dict[str, str]) -> str:
 
 
 def _check_scans(folder: pathlib.Path, count: int) -> None:
-    """`Error` unless a sequence has all its scans and no more, with a label and a subset for each point."""
+    """`Error` unless a sequence has exactly its scans, with a label and a subset for each point."""
     points = [{file.stem: file.stat().st_size / size for file in (folder / name).glob(f"*{suffix}")} for name, suffix, size in ALL]
     whole = sum(len({of.get(f"{number:06d}", ~i) for i, of in enumerate(points[:len(FOLDERS)])}) == 1 for number in range(count))
     if whole < count or any(len(of) != count for of in points):
-        raise Error(f"{folder}: {whole} of {count} scans are whole, and there are {len(points[0])}: something else has changed files "
-                    f"there. {_AGAIN}")
+        raise Error(f"{folder}: {whole} of {count} scans are complete, and the folder has {len(points[0])}: "
+                    f"another program has changed files in the folder. {_AGAIN}")
 
 
 def _digest(folder: pathlib.Path) -> str:
-    """Of names and contents of all files of a sequence, of those that others have put beside them none."""
+    """Checksum of names and contents of all files of a sequence. Other files beside them are ignored."""
     scans = [path for name, suffix, _ in ALL for path in (folder / name).glob(f"*{suffix}")]
     digest = hashlib.sha256()
     for path in sorted([*scans, *map(folder.joinpath, TEXTS)]):
@@ -240,22 +242,22 @@ def _digest(folder: pathlib.Path) -> str:
 
 
 def _sums(manifest: Dict[str, Any], key: str) -> Counter[str]:
-    """A table of counts, over all sequences."""
+    """The sum of a table of counts over all sequences."""
     return sum((collections.Counter(part[key]) for part in manifest["sequences"].values()), collections.Counter())
 
 
 def datasheet(manifest: Dict[str, Any]) -> str:
-    """What is in a set of sequences, as Markdown."""
+    """The content of a set of sequences, as Markdown."""
     parts = list(manifest["sequences"].values())
     points, statuses, subsets = (_sums(manifest, key) for key in TABLES)
     scans, seen = (sum(part[key] for part in parts) for key in COUNTS)
     scenario = manifest["scenario"]
     classes = classes_of(scenario.get("bird_class", BIRD))
     lines = ["# Data sheet", "", f"{scans} scans of {manifest['beams']} beams in {len(parts)} sequences; avian-lidar "
-             f"{manifest['avian_lidar_version']}. Simulated: nothing here was measured.", "",
+             f"{manifest['avian_lidar_version']}. All scans are simulated; nothing was measured.", "",
              f"Scene {pathlib.Path(scenario['scene']).name}, sensor {scenario['sensor']['preset']}. Birds are seen in "
              f"{seen} scans ({100 * seen / max(scans, 1):.1f} %).", "",
-             f"Weather: {in_words(scenario.get('weather', ())) or 'none but what the settings of scan say'}.", "",
+             f"Weather: {in_words(scenario.get('weather', ())) or 'none, unless the settings of scan give some'}.", "",
              "Assumed: " + ("; ".join(manifest["assumed"]) or "no number of the sensor")
              + "; species, plumage, shapes and flights of birds; sizes of sway and jitter.", "",
              "| class (low 16 bits) | name | points | share |", "|---:|---|---:|---:|"]

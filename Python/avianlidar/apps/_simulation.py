@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scans of a scenario one after the other, with the truth about each bird."""
+"""Scans of a scenario one after the other, with the true state of each bird."""
 from __future__ import annotations
 
 import contextlib
@@ -33,37 +33,37 @@ TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", 
          "first_time_s", "first_x_m", "first_y_m", "first_z_m", "last_time_s", "last_x_m", "last_y_m", "last_z_m",
          "visibility_m", "rain_mm_h", "clear_probability")
 AIR = -2  # object_id of echoes of the air
-WEAK = 0.1  # a bird of a smaller probability of detection is too weak
-LONGEST = 1e9  # s that an object is under way, or sets out later
+WEAK = 0.1  # probability of detection below which a bird counts as too weak
+LONGEST = 1e9  # greatest time of a route and greatest start time of an object, s
 
 
 class Clutter:
-    """The static echoes of every beam, without noise: what a point of the same beam has before or behind it.
+    """The static echoes of every beam, without noise, and the clutter before or behind a point of the same beam.
 
-    A point is in the `sky` if its beam has no static echo; `through_edges` if one lies more than `near` metres before it,
-    so that the beam goes on past an edge; else `near_clutter`.
+    A point is in the subset `sky` if its beam has no static echo; in `through_edges` if a static echo lies more than `near` metres before
+    the point, so that the beam continues past an edge; else in `near_clutter`.
     """
 
     def __init__(self, scan: Scan, near: float):
         echoes = scan.echoes
         order = np.lexsort((echoes["distance_m"], echoes["beam_id"]))
-        order = order[echoes["object_id"][order] != AIR]  # those of the air are not clutter
+        order = order[echoes["object_id"][order] != AIR]  # echoes of the air are not clutter
         self.beams, self.ranges, self.energies = (echoes[name][order] for name in ("beam_id", "distance_m", "energy_received"))
         self.near = near
 
     def look(self, beams, ranges) -> Tuple[np.ndarray, np.ndarray]:
-        """(distance in range to the nearest static echo of the same beam, m, infinite without one; index in SUBSETS)."""
+        """(distance in range to the nearest static echo of the same beam, m, infinite without an echo; index in SUBSETS)."""
         beams, ranges = np.asarray(beams), np.asarray(ranges)
         distance = np.full(len(beams), np.inf)
         begin, end = np.searchsorted(self.beams, beams, "left"), np.searchsorted(self.beams, beams, "right")
         for k in range(int((end - begin).max(initial=0))):
             has = begin + k < end
             distance[has] = np.minimum(distance[has], np.abs(ranges[has] - self.ranges[begin[has] + k]))
-        first = np.append(self.ranges, np.inf)[np.where(begin < end, begin, -1)]  # of each beam
+        first = np.append(self.ranges, np.inf)[np.where(begin < end, begin, -1)]  # first static echo of each beam
         return distance, np.where(ranges - first > self.near, 2, begin < end).astype(np.uint8)
 
     def energy(self, beam: int) -> float:
-        """Of all static echoes of a beam, J."""
+        """Energy of all static echoes of a beam, J."""
         return float(self.energies[slice(*np.searchsorted(self.beams, [beam, beam + 1]))].sum())
 
 
@@ -71,18 +71,18 @@ class Simulation:
     """Birds, objects and scans of a scenario."""
 
     def __init__(self, scenario: Union[str, "os.PathLike[str]", Dict[str, Any]], threads: int = 0, **changes: Any):
-        """A sequence, nothing made yet.
+        """Prepares a scenario without making scans.
 
-        scenario  a file (keys and units: scenario.schema.json), the manifest of another sequence, or what
-                  `read_scenario` gives
-        threads   of this process, 0: all cores
-        changes   of keys of the scenario, for example number_of_scans
+        scenario  a file (keys and units: scenario.schema.json), the manifest of another sequence, or a result of
+                  `read_scenario`
+        threads   number of threads of this process, 0: all cores
+        changes   changes of keys of the scenario, for example number_of_scans
         """
         self.file = "scenario" if isinstance(scenario, dict) else os.fspath(scenario)
         self.scenario = checked({**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}, self.file)
         self.threads = threads
         self.scans = int(self.scenario["number_of_scans"])
-        self.scans_to_do = 0  # of this process, known when `write` has looked
+        self.scans_to_do = 0  # number of scans of this process, known after `write` has read the folder
         self.length, self.seed, self.bird_class = (int(self.scenario.get(name, default)) for name, default in (
             ("scans_per_sequence", 100), ("seed", 0), ("bird_class", BIRD)))
         with naming(self.file):
@@ -106,15 +106,15 @@ class Simulation:
         self.scan.set(report_movers=True)
         media = field_values(self.scene.tree.GetOutput()).get("media", ())
         crowns = [text for text in media if "leaf_area_density" in json.loads(text)]
-        self.clear = self.bare = self.scan  # without air that scatters; without crowns of trees, too
+        self.clear = self.bare = self.scan  # scans without air that scatters, and without crowns of trees
         others = dict(settings)
         if self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0) or len(crowns) < len(media):
             others.update(visibility=0.0, air_backscatter=False, rain_rate=0.0)
             self.clear = self.bare = self._in_media(crowns, others)
         if crowns:
             self.bare = self._in_media([], others)
-        self._moving(0)  # what is wrong with birds and objects is said before the work
-        # Where clutter is, without what differs from scan to scan.
+        self._moving(0)  # errors of birds and objects are raised before the work
+        # Clutter without the effects that differ from scan to scan.
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False
         self.at_rest = Sensor(**sensor)
@@ -123,7 +123,7 @@ class Simulation:
             self.clutter = self._clutter()
 
     def _in_media(self, media: List[str], settings: Dict[str, Any]) -> Scan:
-        """A scan to compare with, of the surfaces of the scene with other media."""
+        """A scan for comparison, of the scene's surfaces with other media."""
         scan = Scan(self.scene, self.sensor, **settings)
         scan.set(report_movers=True, noise=False)
         surfaces = vtkPolyData()
@@ -144,7 +144,7 @@ class Simulation:
         return range(number * self.length, min((number + 1) * self.length, self.scans))
 
     def _moving(self, number: int) -> Tuple[vtkMultiBlockDataSet, Dict[int, str]]:
-        """Birds and other objects under way in a sequence, and the species of the birds by id."""
+        """The moving birds and other objects in a sequence, and the species of the birds by id."""
         scans, rate = self.span(number), self.sensor.rotation_rate
         time = scans.start / rate, scans.stop / rate
         birds, species = self._flights(number, time)
@@ -172,7 +172,7 @@ class Simulation:
         return blocks, species
 
     def _objects(self, begin: float, end: float) -> List[vtkPolyData]:
-        """Other objects under way at some time between, s."""
+        """Other objects that move at some time between begin and end, s."""
         blocks: List[vtkPolyData] = []
         for place, thing in enumerate(self.scenario.get("objects", ())):
             route = np.array(thing["route"], float)
@@ -216,7 +216,7 @@ class Simulation:
         add_array(surface.GetCellData(), "object_id", np.full(surface.GetNumberOfCells(), number, np.int32))
         add_array(surface.GetFieldData(), "object_names", [thing["name"]])
         add_array(surface.GetFieldData(), "object_classes", [thing.get("class", "vehicle")])
-        # It turns where two legs meet: each leg has its own heading, and two poses.
+        # The object turns where two legs meet: each leg has one heading and two poses.
         heading = np.arctan2(legs[:, 0], legs[:, 1])
         turn = np.stack([np.cos(heading / 2), 0 * heading, 0 * heading, -np.sin(heading / 2)], axis=1)
         when = np.repeat(times, 2)[1:-1]
@@ -224,12 +224,12 @@ class Simulation:
         return mover(surface, np.repeat(route, 2, axis=0)[1:-1], when, np.repeat(turn, 2, axis=0))
 
     def frames(self, number: int) -> Iterator[Tuple[int, Scan, Dict[int, str]]]:
-        """The scans of a sequence: (number of the scan, the scan as it is then, species of the birds by id)."""
+        """The scans of a sequence: (number of the scan, the scan in its state at that time, species of the birds by id)."""
         movers, species = self._moving(number)
         scans = [*dict.fromkeys((self.scan, self.clear, self.bare))]
         for scan in scans:
             scan.movers = movers
-        differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams, from scan to scan
+        differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams of rotating prisms differ from scan to scan
         with contextlib.ExitStack() as stack:
             runs = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep) for scan in scans + [self._still] * differ]
             for k in self.span(number):
@@ -240,7 +240,7 @@ class Simulation:
                 yield k, self.scan, species
 
     def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
-        """A row of `TRUTH` for each bird, of the scan as it is now."""
+        """A row of `TRUTH` for each bird, for the current state of the scan."""
         report = Cloud(self.scan.algorithm.GetOutput(2))
         weather = [f"{self.scan.visibility:g}" if self.scan.visibility > 0.0 else "", f"{self.scan.rain_rate:g}"]
         rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0] + [""] * 10 + [*weather, ""] for bird, name in species.items()}
@@ -252,7 +252,7 @@ class Simulation:
         for one, place, distance, subset in zip(report.structured(), report.points, distances, subsets):
             bird, beams, energy, probability, points = (one[name].item() for name in (
                 "object_id", "number_of_beams", "energy_received", "detection_probability", "number_of_echoes"))
-            if bird not in rows:  # another object under way
+            if bird not in rows:  # a moving object that is not a bird
                 continue
             light, chance = without.get(bird, (energy, probability))
             in_gate = self.sensor.minimum_range <= one["distance_m"] <= self.sensor.range_gate
@@ -273,9 +273,9 @@ class Simulation:
         return list(rows.values())
 
     def _pose(self) -> np.ndarray:
-        """3 x 4: from the coordinates of points (x forward, y left, z up) to the scene's."""
+        """The 3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates."""
         place = np.array(self.sensor.position, float)
         ends = mesh(np.vstack([place + axis for axis in np.eye(3)]), [(0, 1, 2)])
         ends.GetFieldData().PassData(self.sensor.beams.data.GetFieldData())
-        right, forward, up = Cloud(ends).coordinates("sensor").T  # of the scene's axes
+        right, forward, up = Cloud(ends).coordinates("sensor").T  # coordinates of the scene's axes in the sensor's frame
         return np.column_stack([forward, -right, up, place])

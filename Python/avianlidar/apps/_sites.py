@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where else lidars could stand: a plan's `siting`, the command `avianlidar siting`."""
+"""Search for sites of lidars: a plan's `siting`, the command `avianlidar siting`."""
 from __future__ import annotations
 
 import csv
@@ -27,29 +27,29 @@ from ._plan import Plan
 from ._regions import by_kind, rounded, runway_outline
 from ._tables import write_sites, write_table
 
-NEAR = 40  # candidates that are best alone: all networks of one to three of these and of the best network are compared
+NEAR = 40  # number of candidates, best alone, whose networks of one to three are compared, together with the members of the best network
 DRAWS = 10
-FEWEST_DRAWS = 10  # that say how sure a winner is
-BEST = 10  # sites whose shares are told
-OTHER_PLACES = 1 << 40  # to a seed: that shares are not of the places by which sites were chosen
-SPACING = 200.0  # m, of the lattice
-HEIGHT_ERROR = 5.0  # m, of buildings; assumed
-AREA_ERROR = 0.2  # of the mean effective area; assumed
+FEWEST_DRAWS = 10  # least number of draws that shows how sure a winner is
+BEST = 10  # number of sites whose shares are shown
+OTHER_PLACES = 1 << 40  # offset of the seed for places that were not used to choose sites
+SPACING = 200.0  # default spacing of the lattice, m
+HEIGHT_ERROR = 5.0  # error of building heights, m; assumed
+AREA_ERROR = 0.2  # relative error of the mean effective area; assumed
 
 Progress = Callable[[str, int, int], Any]
 
 
 @dataclasses.dataclass(frozen=True)
 class Change:
-    """What a draw of other heights, areas or places changes for networks of a size."""
+    """The effect of a draw of other heights, areas or places on networks of one size."""
 
     what: str
     draw: int
-    winner: Network  # its value in this draw
-    value: float  # of the original winner in this draw
+    winner: Network  # best network, with its value in this draw
+    value: float  # value of the original winner in this draw
 
     def is_another(self, networks: List[Network]) -> bool:
-        """Whether the winner is another network than before."""
+        """Whether a different network wins."""
         return sorted(self.winner.sites) != sorted(networks[len(self.winner.sites) - 1].sites)
 
 
@@ -76,28 +76,28 @@ def _read_points(name: str) -> np.ndarray:
 
 
 class Sites:
-    """Candidates of a plan, and what lidars there would detect.
+    """Candidates of a plan, and the shares that lidars at the candidates would detect.
 
     positions  n x 3, m, in the order of the lattice   networks  the best of 1, 2, ... sensors
-    values     weighted share that each detects alone  order     candidates from the best to the worst
-    airs       weathers with their shares of the year  by_air    weighted share that each detects alone in each of these
-    surfaces   of each runway, that masts keep below    pierced   number of candidates left out for each of them, by name
-    told       what the best of them detect, by number, at other places than those by which they were chosen
+    values     weighted share of each candidate alone  order     candidates from the best to the worst
+    airs       weathers with their shares of the year  by_air    weighted share of each candidate alone in each weather
+    surfaces   of each runway, limiting the masts      pierced   number of candidates left out for each kind of surface, by name
+    told       shares of the best candidates, by number, at places that were not used to choose them
 
-    All but positions, airs and surfaces are there after `look`.
+    `look` sets all of these except positions, airs and surfaces.
     """
 
     def __init__(self, plan: Plan, folder=None, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None,
                  beside: Sequence[Sequence[str]] = ()):
-        """The candidates, and all else that the plan says of them, checked; `look` looks from them. `Error` names the plan's
+        """Finds the candidates and checks the plan; `look` computes the shares. `Error` names the plan's
         file and the member.
 
-        folder    keeps each candidate's coverage, so that a stopped run goes on; needed on several ranks
-        progress  called with the name of the work, what is done of it and all of it
-        beside    words of weathers that are looked at, too, and do not count
+        folder    holds each candidate's coverage, so that a stopped run can continue; required on several ranks
+        progress  called with the name of the work, the completed amount and the total amount
+        beside    words of further weathers that are computed but do not count
         """
         if not plan.runways:
-            raise Error(f"{plan.file}: runways: is not in the plan, expected a GeoJSON file, as sites are compared by strips and "
+            raise Error(f"{plan.file}: runways: is missing in the plan, expected a GeoJSON file, because sites are compared by strips and "
                         "approaches")
         self.plan, self.folder, self.ranks, self.progress = plan, folder, ranks or Ranks(), progress
         self.options = plan.plan.get("siting", {})
@@ -123,19 +123,19 @@ class Sites:
             self._keep_below()
         if self.options.get("draws", DRAWS):
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
-                with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will
+                with_other_heights(plan.plan["scene"], copy, lambda: 0.0)  # as `changes` will do
 
     def _keep_below(self) -> None:
-        """Leave out candidates whose masts pierce an obstacle limitation surface."""
+        """Leaves out candidates whose masts pierce an obstacle limitation surface."""
         asked = self.options.get("surfaces", True)
-        self.changed = asked if isinstance(asked, dict) else {}  # of the surfaces
+        self.changed = asked if isinstance(asked, dict) else {}  # changed parts of the surfaces
         self.surfaces = [Surfaces.of(runway, self.plan.scene, self.changed) for runway in self.plan.runways] if asked is not False else []
         found = pierced(self.surfaces, self.positions)
         self.pierced = {name: int(np.count_nonzero(found == number)) for number, name in enumerate(NAMES, 1)
                         if self.surfaces and name in self.surfaces[0].kept}
         if found.all():
-            raise Error(f"the masts of all {len(found)} candidates pierce one ({self._counted()}): take lower masts or wider bounds, change the "
-                        "surfaces, or switch them off (false)")
+            raise Error(f"the masts of all {len(found)} candidates pierce a surface ({self._counted()}): take lower "
+                        "masts or wider bounds, change the surfaces, or switch the surfaces off (false)")
         self.positions = self.positions[found == 0]
 
     def _counted(self) -> str:
@@ -143,26 +143,27 @@ class Sites:
 
     @property
     def kept_surfaces(self) -> str:
-        """Which surfaces masts keep below, by which codes, and how many candidates did not, in words."""
+        """Words on the surfaces above the masts, their code numbers, and the number of candidates that pierce a surface."""
         if not self.pierced:
-            return "none is kept, as the plan switches them off"
+            return "no surface is used, because the plan switches the surfaces off"
         code = "code number" if "code" in self.changed else "code number by its length, assumed:"
         category = self.surfaces[0].category + ("" if "category" in self.changed else " (assumed)")
         changed = [name for name in self.pierced if isinstance(self.changed.get(name), dict)]
         return (f"masts keep below {', '.join(self.pierced)} surfaces of ICAO Annex 14 ({table()['year']}) for {category} approaches, "
                 f"{'; '.join(f'{one.runway.name}: {code} {one.code}' for one in self.surfaces)}"
                 f"{'; the plan changes ' + ', '.join(changed) if changed else ''}; {sum(self.pierced.values())} of "
-                f"{sum(self.pierced.values()) + len(self.positions)} candidates pierced one and are left out ({self._counted()})")
+                f"{sum(self.pierced.values()) + len(self.positions)} candidates pierced a surface and are left out ({self._counted()})")
 
     @property
     def surface_sentence(self) -> str:
-        """What was looked at where a mast may stand, for the first page."""
+        """Sentence on the checks of the place of a mast, for the first page."""
         if not self.pierced:
-            return "It is clear of runways, buildings and what the plan excludes; the plan switches obstacle limitation surfaces off"
+            return "The site is clear of runways, buildings and the plan's exclusions. The plan switches obstacle limitation surfaces off"
         assumed = "" if "category" in self.changed else ", assumed"
-        return (f"It keeps below the {listed(list(self.pierced))} surfaces of ICAO Annex 14 "
-                f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} others pierce ({self._counted()}), and is clear "
-                "of buildings and what the plan excludes")
+        return (f"The mast stays below the {listed(list(self.pierced))} surfaces of ICAO Annex 14 "
+                f"({self.surfaces[0].category} approaches{assumed}), which {sum(self.pierced.values())} other candidates pierce "
+                f"({self._counted()}), and is clear "
+                "of buildings and the plan's exclusions")
 
     def stands_wrong(self, position: Sequence[float]) -> bool:
         """Whether no candidate may stand at a place, m."""
@@ -170,7 +171,7 @@ class Sites:
         return bool(pierced(self.surfaces, place)[0]) or any(is_near(place, outline, margin)[0] for outline, margin in self.exclusions)
 
     def look(self) -> Sites:
-        """Look from all candidates, and compare networks of them. @return this"""
+        """Computes the shares of all candidates, and compares networks. @return this object"""
         self.found, self.weights, self.regions = self._look(self.positions, self.airs, progress=lambda *done: self._tell("sites", *done))
         of_species = self.plan.weights(self.plan.points)
         every = self.found.reshape(len(self.positions), len(self.mix), len(self.airs), -1)
@@ -187,8 +188,8 @@ class Sites:
         return self
 
     def _look_again(self) -> None:
-        """Look from the best sites and networks at other places than those by which they were chosen, with clutter as the plan has it: what is
-        told of them is of these."""
+        """Computes the best sites and networks again, at places that were not used to choose them, and with clutter if the plan has
+        clutter. The reported shares are these."""
         of_air = list(dict.fromkeys(map(int, [self.order[0], *np.argmax(self.by_air, axis=0)])))
         numbers = [*self.order[:BEST], *(site for network in self.networks for site in network.sites), *(site for _, site in self._best_with_masts()), *of_air]
         told = list(dict.fromkeys(map(int, numbers)))
@@ -206,7 +207,7 @@ class Sites:
                                   for network in self.networks]
 
     def share(self, sites: Sequence[int]) -> Tuple[float, float]:
-        """The share of the birds that one scan of at least one of the sites detects, and its standard error. @param sites numbers of the best
+        """The share of the birds that one scan of at least one of the sites detects, and its standard error. @param sites numbers of best
         candidates or of members of networks"""
         missed: np.ndarray = np.prod([1.0 - self.told[int(site)].astype(float) for site in sites], axis=0)
         of_place = self.told_weights.sum(axis=0)
@@ -226,7 +227,7 @@ class Sites:
             return _read_points(self.options["points"])
 
     def _exclusions(self) -> List[Tuple[np.ndarray, float]]:
-        """Outlines (m) where nothing may stand, each with its margin (m)."""
+        """Outlines (m) where no lidar may stand, each with its margin (m)."""
         origin, margin = self.plan.scene.geodetic_origin, float(self.options.get("margin", 0.0))
         with naming(f"{self.plan.file}: runways"):
             outlines = read_outlines(self.plan.plan["runways"], origin, "height")
@@ -239,7 +240,7 @@ class Sites:
         return [(outline, margin) for outline in outlines] + [(runway_outline(r, 0.0, r.width / 2.0), 0.0) for r in self.plan.runways]
 
     def _look(self, positions, airs: Optional[List[Air]] = None, seed: Optional[int] = None, scene=None, progress=None, **settings: Any):
-        """Coverage of sites, weights and regions. @param airs default those that count"""
+        """Coverage of sites, weights and regions. @param airs default: the weathers that count"""
         points, weights, regions = self._draw(seed)
         settings_of = [air.settings for air in airs or [self.airs[i] for i in self.counting]]
         found = look(scene or self.plan.scene, self.plan.sensor, positions, points, list(self.mix), self.folder, self.ranks,
@@ -247,7 +248,7 @@ class Sites:
         return found, weights, regions
 
     def _draw(self, seed: Optional[int] = None):
-        """Places, their weights (species and weathers x places) and regions: those of the plan's table, or others of the same
+        """Places, their weights (species and weathers x places) and regions: those of the plan's table, or other places for the same
         question."""
         points, ends = (self.plan.points, self.plan.ends) if seed is None else self.plan.places(seed)
         shares = np.array([self.airs[i].share for i in self.counting])
@@ -261,7 +262,7 @@ class Sites:
         return [max(pair, key=lambda network: network.value) for pair in zip(own, known or own)]
 
     def changes(self) -> Iterator[Change]:
-        """Whether other networks of the near candidates win if building heights, mean effective areas or places are others:
+        """Tests whether other networks of the near candidates win with other building heights, mean effective areas or places:
         `draws` draws of each, uniform within HEIGHT_ERROR and AREA_ERROR."""
         random = np.random.default_rng(1)
         draws = int(self.options.get("draws", DRAWS))
@@ -279,7 +280,7 @@ class Sites:
                 (f"building heights ±{HEIGHT_ERROR:g} m", {"scene": other}),
                 (f"effective area ±{100 * AREA_ERROR:g} %", {"area_factor": factor}),
                 ("other places", {"seed": self.plan.seed + draw + 1})]
-            if not offsets:  # no height of this scene is read from an attribute
+            if not offsets:  # no building height of this scene is read from an attribute
                 kinds = kinds[1:]
             for k, (what, settings) in enumerate(kinds):
                 found, weights, _ = self._look(self.positions[self.near], **settings)
@@ -289,20 +290,20 @@ class Sites:
                     yield Change(what, draw, winner, value_of(found, weights, [number[s] for s in before.sites]))
 
     def difference(self, site: int) -> Tuple[float, float]:
-        """How much less one of the best sites detects than the first, and the standard error of that, as both see the same places. It may be
-        below 0: these are other places than those by which sites were ranked."""
+        """How much less one of the best sites detects than the first site, and the standard error of the difference at the same places.
+        The difference may be negative, because these places were not used to rank the sites."""
         less = (self.told_weights * (self.told[int(self.order[0])].astype(float) - self.told[site])).sum(axis=0)
         return float(less.sum()), float(np.sqrt(len(less) * np.var(less)))
 
     def count_alike(self) -> int:
-        """The number of other candidates that are as good as the best within twice the standard error, at the places by which they were ranked."""
+        """The number of other candidates within twice the standard error of the best, at the places that were used for ranking."""
         first = self.found[self.order[0]].astype(float)
         all_less = (((first - self.found[site]) * self.weights).sum(axis=0) for site in self.order[1:])
         return sum(bool(less.sum() <= 2.0 * np.sqrt(sum(len(members) * np.var(less[members]) for members in self.regions.values())))
                    for less in all_less)
 
     def rank_of(self, site: int) -> int:
-        """1 for the best candidate."""
+        """The rank of a site, 1 for the best candidate."""
         return int(np.flatnonzero(self.order == site)[0]) + 1
 
     def gain(self) -> List[Dict[str, Any]]:
@@ -314,8 +315,8 @@ class Sites:
                 for n, (value, error), same in zip(self.networks, shares, self.of_same_birds)]
 
     def robustness(self, changes: List[Change]) -> List[Dict[str, Any]]:
-        """A row for each kind of change and number of sensors: draws, how often another network wins, and by how much more at
-        most, as a share of the original winner's value. None for fewer than FEWEST_DRAWS draws: they say nothing."""
+        """A row for each kind of change and number of sensors: draws, how often another network wins, and its greatest lead as a share of
+        the original winner's value. Empty for fewer than FEWEST_DRAWS draws, which would show nothing."""
         alike: Dict[Tuple[str, int], List[Change]] = {}
         for change in changes:
             alike.setdefault((change.what, len(change.winner.sites)), []).append(change)
@@ -325,17 +326,17 @@ class Sites:
 
     @property
     def lattice(self) -> str:
-        """Where candidates are from, in words."""
+        """The origin of the candidates, in words."""
         if "points" in self.options:
             return f"the places of {pathlib.Path(self.options['points']).name}"
         return f"a lattice of {self.options.get('spacing', SPACING):g} m"
 
     def words(self) -> Dict[str, str]:
-        """What the values are of."""
+        """Words on the birds, candidates and conditions of the values."""
         files = [f"the buildings (polygons with a height) of {pathlib.Path(self.plan.plan['runways']).name}",
                  *(f"the polygons of {pathlib.Path(name).name}" for name in self.options.get("exclusions", ()))]
         return {"sensor": self.plan.name, "birds (sizes assumed)": f"{self.plan.bird} {self.plan.where}",
-                "candidates": f"{len(self.positions)}, of {self.lattice}; what stands between them was not looked at",
+                "candidates": f"{len(self.positions)}, of {self.lattice}; places between the candidates were not computed",
                 "masts": ", ".join(f"{mast:g} m" for mast in self.masts) + " above the ground below",
                 **({"weather": "by the year's share of the hours: " + "; ".join(f"{air.name} {100 * air.share:.3g} %" for air in self.plan.year)}
                    if self.plan.year else {"weather": self.airs[0].name} if self.plan.air else {}),
@@ -345,7 +346,7 @@ class Sites:
 
     @property
     def at_the_edge(self) -> bool:
-        """Whether the best candidate lies in an outermost row of the lattice, so that a better one may lie beyond."""
+        """Whether the best candidate lies at the edge of the lattice, so that a better candidate may lie beyond."""
         if "points" in self.options:
             return False
         bounds = np.array(self.options.get("bounds", self.plan.extent)).reshape(2, 2)
@@ -360,11 +361,12 @@ class Sites:
         return [(mast, int(numbers[np.argmax(self.values[numbers])])) for mast, numbers in found if len(numbers)]
 
     def best_by_mast(self) -> List[Dict[str, Any]]:
-        """The best candidate with each mast: its height above the ground, m, the place, m, and its share."""
+        """The best candidate with each mast: height of the mast above the ground, m, place, m, and share."""
         return [{"mast": mast, "position": self.positions[site], "share": self.share([site])} for mast, site in self._best_with_masts()]
 
     def _over_the_year(self, order, species: int, places) -> np.ndarray:
-        """The mean share of some places at each site. @param order of the sites @param species its number @param places numbers"""
+        """The mean share of some places at each site over the year. @param order of the sites @param species number of the species @param
+        places numbers of the places"""
         total = np.zeros(len(order))
         for k, air in enumerate(self.counting):
             of = self.found[:, species * len(self.counting) + k]
@@ -372,13 +374,13 @@ class Sites:
         return total / sum(self.airs[air].share for air in self.counting)
 
     def best_by_air(self) -> List[Dict[str, Any]]:
-        """A row for each weather: the site that is best in it, and what the first of the order detects then."""
+        """A row for each weather: the best site in this weather, and the share of the first site of the order in this weather."""
         return [{"weather": air.name, "share": air.share, "site": int(site), "value": self.told_by_air[int(site)][k],
                  "value of the first": self.told_by_air[int(self.order[0])][k]}
                 for k, (air, site) in enumerate(zip(self.airs, np.argmax(self.by_air, axis=0)))]
 
     def write(self, folder, changes: List[Change]) -> None:
-        """Write sites (CSV, VTP, GeoJSON) in the order of their rank, gain.csv, robustness.csv and pictures of both."""
+        """Writes sites (CSV, VTP, GeoJSON) by rank, gain.csv, robustness.csv, and pictures of sites and gain."""
         folder = pathlib.Path(folder)
         order = self.order
         columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": self.values[order],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the verbs of the command do that make airports, sequences and studies of them."""
+"""The functions of the command's verbs that make airports, sequences and studies."""
 from __future__ import annotations
 
 import contextlib
@@ -30,16 +30,16 @@ from ._tracks import BirdTracks
 
 @contextlib.contextmanager
 def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
-    """Ctrl-C says what is there to go on with. @param what the files of that pattern are"""
+    """Adds to Ctrl-C's message the results that a further run can use. @param what name of the files of the pattern"""
     try:
         yield
     except KeyboardInterrupt:
         count = len(list(folder.glob(pattern)))
-        raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command goes on"] if count else []) from None
+        raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command continues"] if count else []) from None
 
 
 def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
-    """The ranks of a job, and threads for each; ImportError where a job that draws has no Matplotlib."""
+    """The ranks of a job, and the number of threads for each rank; ImportError if a job that draws has no Matplotlib."""
     if draws:
         _pictures.gradient()
     ranks = Ranks(ends_job=True)
@@ -47,7 +47,7 @@ def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
 
 
 def _changes(options) -> Dict[str, Any]:
-    """What options change of a scenario."""
+    """The changes of a scenario that the options give."""
     changes = {"number_of_scans": options.scans, "weather": options.weather}
     return {name: value for name, value in changes.items() if value is not None}
 
@@ -68,7 +68,7 @@ def sequence(options) -> None:
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
         tell(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
-             f"{sum(p['scans_with_birds_seen'] for p in parts)} of them; datasheet.md says more")
+             f"{sum(p['scans_with_birds_seen'] for p in parts)} of these scans; datasheet.md gives details")
 
 
 def track(options) -> None:
@@ -84,7 +84,7 @@ def track(options) -> None:
 
 def bench(options) -> None:
     from ._bench import Bench, verdict
-    _pictures.gradient()  # needs Matplotlib: said before the work
+    _pictures.gradient()  # raises an error without Matplotlib before the work
     found = Bench(options.folders, options.predictions, options.sequences, options.first).write(options.out, bar)
     tell(*(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}" for scored in found),
          f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
@@ -97,17 +97,18 @@ def airport(options) -> None:
         kept = made.write(options.out)
     close_bar()
     for name in kept.edited:
-        warn(f"{options.out / name} was edited and stays as it is; remove it to have it made again")
+        warn(f"{options.out / name} was edited and is kept; remove this file to have it made again")
     buildings = [row for row in made.rows if "height" in row]
     if buildings and all(row.get("height_from") == "assumed" for row in buildings):
-        warn(f"{options.extract} says no height of any building: all are assumed by kind, {options.out / 'assumed.csv'} lists them")
+        warn(f"{options.extract} says no height of any building: all heights are assumed by kind, "
+             f"{options.out / 'assumed.csv'} lists these heights")
     print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
           f"{len(buildings)} {'building' if len(buildings) == 1 else 'buildings'}; README.txt says what is assumed")
     print(counts(made))
 
 
 def _plan(options) -> Dict[str, Any]:
-    """The plan with what options change."""
+    """The plan with the changes that the options give."""
     return read_plan(options.plan, options.weather, getattr(options, "metar", None),
                      **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting", "design")})
 
@@ -123,7 +124,7 @@ def _say_before(plan) -> None:
 def coverage(options) -> None:
     plans = Plan.all_of(_plan(options), options.threads)
     _say_before(plans[0])
-    with only_run(options.out, goes_on=len(plans) > 1):  # maps of a sensor that are whole stay
+    with only_run(options.out, goes_on=len(plans) > 1):  # complete maps of a sensor are kept
         for plan in plans:
             folder = options.out / plan.name if len(plans) > 1 else options.out
             with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
@@ -160,7 +161,7 @@ def _say_sites(sites, changes) -> None:
         print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in {row['another winner']} of "
               f"{row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
     if not rows:
-        print("how sure the winner is was not looked at: fewer draws than that takes")
+        print("how sure the winner is was not computed, because the plan has too few draws")
 
 
 def design(options) -> None:
@@ -195,7 +196,8 @@ def reach(options) -> None:
                       for to, one, error, two in zip(found.ranges, found.one_scan, found.error, found.several_scans)]
     table(rows)
     print(*said, sep="\n")
-    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. In brackets: what the fit of the receiver to its sheet leaves open.")
+    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. In brackets: the interval that the fit "
+          "of the receiver to its data sheet leaves open.")
     if options.out:
         write_table(options.out, curve)
         print(f"{options.out}: the shares by range")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables, sites, and pages of HTML that need no network, as files."""
+"""Files of tables and sites, and pages of HTML that need no network."""
 from __future__ import annotations
 
 import base64
@@ -21,7 +21,7 @@ from ._geojson import to_geodetic
 
 
 def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
-    """Rows of CSV by the names of the columns. @param columns that there must be @param expected what the file should be"""
+    """Rows of CSV by the names of the columns. @param columns required columns @param expected what the file should be"""
     rows = csv.DictReader(io.StringIO(read_regular(file).decode(), newline=""))
     missing = [name for name in columns if name not in (rows.fieldnames or ())]
     if missing:
@@ -30,7 +30,7 @@ def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Di
 
 
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
-    """Write rows as CSV, units in the header."""
+    """Writes rows as CSV, with units in the header."""
     head = [[f"{name} [m]" if name in ("height_from", "height_to") else name for name in rows[0]]] if rows else []
     table = [[f"{value:.6g}" if isinstance(value, float) else value for value in row.values()] for row in rows]
     write_whole(file, as_csv(head + table, "\r\n"))
@@ -38,12 +38,12 @@ def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
 
 def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
                 description: str = "") -> None:
-    """sites.csv and sites.vtp, and sites.geojson where the scene has an origin: a point each, in the order given.
+    """Writes sites.csv and sites.vtp, and sites.geojson if the scene has an origin: one point for each site, in the given order.
 
-    sites    n x 3, m
-    columns  numbers by name, n each
-    origin   latitude, longitude (deg), height (m) of the scene's origin
-    description  in words, of sites.geojson
+    sites        n x 3, m
+    columns      numbers by name, n each
+    origin       latitude, longitude (deg), height (m) of the scene's origin
+    description  description in sites.geojson
     """
     out, data = pathlib.Path(folder), vertices(sites)
     degrees = to_geodetic(sites, origin) if origin is not None else np.empty((0, 3))
@@ -64,12 +64,12 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
 
 
 def embedded(file: pathlib.Path) -> str:
-    """A picture (PNG) as what a page has for its source."""
+    """A picture (PNG) as a source in a page."""
     return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode()
 
 
 def render(template: str, **values: Any) -> bytes:
-    """A page. @param template its file in this folder @param values by their names there; filters begin with `filter_`"""
+    """A page of HTML. @param template file in this folder @param values values by the template's names; filters begin with `filter_`"""
     import jinja2
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)

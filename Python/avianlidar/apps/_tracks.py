@@ -26,16 +26,16 @@ from ._regions import Runway
 from ._inputs import read_scenario
 from ._sequence import Sequence, _identity, _short
 
-CUTOFF = 20.0  # m: a track at this distance from a bird does not count as its track
-ORDER = 2.0  # of OSPA
-FOLLOWED = "followed"  # folder of what was found in sequences
-LEARNING = 20  # scans at the beginning of a sequence of which only clutter is learned
+CUTOFF = 20.0  # m: a track at this distance from a bird is not assigned to the bird
+ORDER = 2.0  # order of OSPA
+FOLLOWED = "followed"  # folder of the results of sequences
+LEARNING = 20  # scans at the beginning of a sequence from which only clutter is learned
 
 Progress = Callable[[str, int, int], Any]
 
 
 class BirdTracks:
-    """Tracks of the birds in labelled sequences, and how well they follow them.
+    """Tracks of the birds in labelled sequences, and scores of these tracks.
 
     >>> tracks = BirdTracks(["build/sequences"], runways="Examples/airport/scene/hongqiao.geojson")   # doctest: +SKIP
     >>> tracks.write("build/tracks")                                                                  # doctest: +SKIP
@@ -44,20 +44,20 @@ class BirdTracks:
     def __init__(self, inputs: Many[Union[str, "os.PathLike[str]"]], runways=None, learning_scans: int = LEARNING, cutoff: float = CUTOFF,
                  order: float = ORDER, clutter: Optional[Dict[str, Any]] = None, tracker: Optional[Dict[str, Any]] = None,
                  sensors: Many[str] = (), threads: int = 0, **changes: Any):
-        """Nothing is done yet.
+        """Checks the inputs and settings; `write` does the work.
 
-        inputs          folders that `Sequence.write` has made, and scenarios, which are made first; compared side by side
-        runways         a GeoJSON file: how long before strip and glide path a bird is tracked
-        learning_scans  at the beginning of a sequence, of which only clutter is learned; they are not scored
-        cutoff          m: a track at this distance from a bird does not count as its track; also of OSPA
-        order           of OSPA
+        inputs          folders that `Sequence.write` has made, and scenarios, whose sequences are made first; inputs are compared
+        runways         a GeoJSON file, for warning times before birds enter a strip or a glide path
+        learning_scans  scans at the beginning of a sequence from which only clutter is learned; these scans are not scored
+        cutoff          m: a track at this distance from a bird is not assigned to the bird; also the cut-off of OSPA
+        order           order of OSPA
         clutter         properties of vtkAvianLidarClutterFilter by name
         tracker         properties of vtkAvianLidarTracker by name
-        sensors         of scenarios, in place of their own: presets, or .lidarsensor.json files
-        threads         of scenarios
-        changes         of scenarios, for example number_of_scans
+        sensors         sensors that replace the sensor of scenarios: presets, or .lidarsensor.json files
+        threads         number of threads for scenarios
+        changes         changes of scenarios, for example number_of_scans
         """
-        scores.ospa(np.zeros((0, 0)), cutoff, order)  # what is wrong is said before the work
+        scores.ospa(np.zeros((0, 0)), cutoff, order)  # raises errors of cutoff and order before the work
         if not isinstance(learning_scans, int) or learning_scans < 0:
             raise ValueError(f"learning_scans is {learning_scans}, expected a whole number from 0 on")
         self.runways = pathlib.Path(runways) if runways else None
@@ -71,7 +71,7 @@ class BirdTracks:
             if given.is_dir():
                 asked = [name for name, value in (("sensors", sensors), *changes.items()) if value]
                 if asked:
-                    raise ValueError(f"{given} holds sequences that are made: {', '.join(asked)} is for scenarios, expected a scenario")
+                    raise ValueError(f"{given} holds finished sequences, but {', '.join(asked)} is for scenarios: expected a scenario")
                 self._add(given.resolve().name, given)
                 continue
             scenario, stem = read_scenario(given), given.name.split(".")[0]
@@ -85,18 +85,20 @@ class BirdTracks:
                 with naming(str(given)):
                     self.made[name] = Sequence(changed, threads=threads, **changes)
         if not self.folders:
-            raise ValueError("no sequences are given, expected a folder or a scenario at least")
+            raise ValueError("no sequences are given, expected at least a folder or a scenario")
 
     def _add(self, name: str, folder: Optional[pathlib.Path]) -> None:
         checked_name(name, "the name of an input")
         if name in self.folders:
-            raise Error(f"the name {name!r} is there twice, expected inputs of different names: their results go to folders of these")
+            raise Error(f"the name {name!r} is there twice, expected inputs of different names, because "
+                        "results are in folders of these names")
         self.folders[name] = folder or pathlib.Path()
 
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
-        """Make scenarios (`folder`/sequences/NAME), follow the birds of each sequence (`folder`/followed/NAME/NN.json), then write card.html, card.csv,
-        card.json, tracks.csv, birds.csv and pictures. What is there of the same files and settings stays. Ranks take whole sequences.
-        @param progress called with what is done, how much of it and of how much @return what card.json holds"""
+        """Makes the sequences of scenarios (`folder`/sequences/NAME), follows the birds of each sequence
+        (`folder`/followed/NAME/NN.json), then writes card.html, card.csv, card.json, tracks.csv, birds.csv and pictures. Results of the
+        same files and settings are kept. Each rank takes whole sequences. @param progress called with the name of the work, the completed
+        amount and the total @return the content of card.json"""
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
         def known() -> Any:
             return (list(self.folders.items()), [(name, made.decides()) for name, made in self.made.items()], self.runways, self.learning, self.cutoff,
@@ -133,7 +135,7 @@ class BirdTracks:
         return card
 
     def _identity(self, of: Input, number: str, chain: Chain, runways: Many[Runway]) -> str:
-        """Of all that decides what is found in a sequence."""
+        """Checksum of everything that decides the results of a sequence."""
         return _identity({"sequence": of.content[number]["sha256"], "inputs": of.content[number]["identity"], "version": __version__,
                           "runways": _short([[r.name, r.start, r.end] for r in runways]), "learning": str(self.learning), "cutoff": repr(self.cutoff),
                           "order": repr(self.order), **chain.properties()})
@@ -142,7 +144,7 @@ class BirdTracks:
         home = of.folder / "sequences" / number
         truth, count = read_truth(home / "truth.csv"), int(of.content[number]["scans"])
         if count <= self.learning:
-            raise Error(f"{home}: has {count} scans, expected more than the {self.learning} of which only clutter is learned")
+            raise Error(f"{home}: has {count} scans, expected more than the {self.learning} scans from which only clutter is learned")
         scorer = Scorer(self.cutoff, self.order, runways)
         shown: Dict[str, Any] = {}
         with chain:

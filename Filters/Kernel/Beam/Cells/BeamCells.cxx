@@ -21,16 +21,17 @@ constexpr std::size_t Patterns = 256; ///< number of jitter patterns
 constexpr int MostLevels = 8;
 constexpr int LevelsOfFoot = 5;
 
-/// Largest m to which a cell with small objects gets more rays before it is divided.
+/// Largest m of a cell with small objects. A cell that needs more rays is divided.
 constexpr int MostBlocksOfCell = 3;
 
 /// A beam with small objects traces at most this number of blocks of rays through the tree, or
-/// PlannedPerUsual times the blocks without them. With a limit of ten times these blocks alone a
-/// goose before a wall of many triangles would err by up to 9 % instead of 6.
+/// PlannedPerUsual times the blocks without small objects. If the limit were ten times these blocks
+/// alone, a goose before a wall of many triangles would err by up to 9 % instead of 6 %.
 constexpr double MostPlannedBlocks = 20000.0;
 constexpr double PlannedPerUsual = 4.0;
 
-/// Areas of objects are counted in parts of a squared half-beamwidth. LargeArea exceeds the disc.
+/// Areas of objects are counted in parts of a squared half-beamwidth. LargeArea exceeds the area of
+/// the disc.
 constexpr double PartsOfArea = 1099511627776.0; // 2^40
 constexpr double LargeArea = 4.0;
 constexpr std::uint64_t LargeParts = std::uint64_t(1) << 42;
@@ -138,7 +139,8 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   }
 }
 
-/// Add an area to an object, often the last one. Integer sums do not depend on the order of areas.
+/// Add an area to an object, often the object added last. Integer sums do not depend on the order
+/// of areas.
 void BeamCells::addToObject(int id, double area)
 {
   if (this->Objects.empty() || id != this->Objects.back().first)
@@ -163,8 +165,8 @@ bool BeamCells::isLarge(int id) const
 
 namespace
 {
-/// True if a surface holds one of seven circles in the disc. @param radius of a circle that is too
-/// large for a small object
+/// True if a surface holds one of seven circles in the disc. @param radius radius of a circle that
+/// is too large for a small object
 bool holdsCircle(const BeamSurface& s, double radius)
 {
   constexpr double out = 0.55;
@@ -234,7 +236,8 @@ void BeamCells::sumObjects()
   this->Objects.resize(last + 1);
 }
 
-/// Share of the beam that an object fills, if too few rays of the grid fall on it; otherwise 0.
+/// Share of the beam that an object fills, if too few rays of the grid fall on the object. The
+/// share is 0 otherwise.
 float BeamCells::smallShareOf(int id) const
 {
   if (this->isLarge(id))
@@ -250,7 +253,8 @@ float BeamCells::smallShareOf(int id) const
     : 0.0f;
 }
 
-/// Set the surfaces in single precision. 1/z is divided by its largest value, so that it is finite.
+/// Set the surfaces in single precision. 1/z is divided by its largest value, so that 1/z is
+/// finite.
 void BeamCells::setSurfaces()
 {
   constexpr float outwards = 1.0f + 1e-6f;
@@ -259,7 +263,7 @@ void BeamCells::setSurfaces()
   this->HasObjects = false;
   this->Surfaces.resize(this->All->size());
   this->MetIn.resize(std::max(this->MetIn.size(), this->Surfaces.size()), 0);
-  constexpr double least = 1e-30; // for the farthest surface, if another one lies at the apex
+  constexpr double least = 1e-30; // value of the farthest surface, if another one is at the apex
   const double scale = this->All->empty()
     ? 1.0
     : std::max(1.0 / this->All->front()->sortInverse, least / this->All->back()->sortInverse);
@@ -365,7 +369,7 @@ void BeamCells::keepSmallObjects(
   }
   this->sumObjects();
   int id = 0;
-  float share = -1.0f; // of object `id`; negative: none yet
+  float share = -1.0f; // share of object `id`; negative before the first object
   const auto isOfLarge = [&](std::uint32_t number)
   {
     if (share < 0.0f || id != idOf(number))
@@ -378,7 +382,8 @@ void BeamCells::keepSmallObjects(
   numbers.erase(std::remove_if(numbers.begin(), numbers.end(), isOfLarge), numbers.end());
 }
 
-/// Place the rays. If small objects need too many, the smallest get no rays of their own.
+/// Place the rays. If small objects need too many rays, the smallest objects get no rays of their
+/// own.
 void BeamCells::planAll()
 {
   const double usual = this->Density.rays() / CellLanes;
@@ -440,7 +445,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
       this->Numbers.push_back(keyAbove(s.other, k));
     }
   }
-  this->Numbers.push_back(keyAbove(NoTriangle, 0xffffffffu)); // read as surface -1
+  this->Numbers.push_back(keyAbove(NoTriangle, 0xffffffffu)); // key that is read as surface -1
   sortKeys(this->Numbers);
   this->OfRays.resize(this->Hits.size());
   auto known = this->Numbers.begin();
@@ -466,7 +471,7 @@ std::unique_ptr<CellSamples> BeamCells::find(const std::uint32_t* triangles)
   return this->TooMany ? nullptr : this->Strips.collect();
 }
 
-/// m of a cell: CellDensity::blocks, or more if small objects in the cell need it.
+/// m of a cell: CellDensity::blocks, or more if small objects in the cell need more rays.
 int BeamCells::blocksFor(const Cell& cell, List list) const
 {
   if (!this->HasObjects)
@@ -484,7 +489,7 @@ int BeamCells::blocksFor(const Cell& cell, List list) const
   return std::max(this->Density.blocks, static_cast<int>(std::ceil(std::sqrt(rays / CellLanes))));
 }
 
-/// True if the middle of a specular lobe lies in a cell or near it.
+/// True if the middle of a specular lobe lies in a cell or near the cell.
 bool BeamCells::mayHoldFoot(const Cell& cell, List list) const
 {
   const double x = cell.x + 0.5 * cell.width;
@@ -547,8 +552,8 @@ void BeamCells::solve(const Cell& cell, List list)
   divides ? this->divide(cell, list) : this->trace(cell, list, std::min(blocks, most));
 }
 
-/// Place the rays of a block of a cell, one in each of sixteen squares. @param pull factor by which
-/// they are drawn towards the corner nearest to the axis; 1: not at all
+/// Place the rays of a block of a cell, one ray in each of sixteen squares. @param pull factor by
+/// which the rays are drawn towards the corner nearest to the axis; 1: not at all
 void BeamCells::place(const Cell& cell, int block, int blocks, float pull, CellRays& rays) const
 {
   std::uint64_t hash = this->Beam + 1;
@@ -602,8 +607,8 @@ void BeamCells::plan(const CellRays& block, double share)
   }
 }
 
-/// Test the rays of a cell against its list. A surface in the list that no ray meets covers about
-/// one ray's share at most, which adds to the variance.
+/// Test the rays of a cell against its list. A surface in the list that no ray meets covers at most
+/// about one ray's share. The variance includes this share.
 void BeamCells::trace(const Cell& cell, List list, int blocks)
 {
   const int count = blocks * blocks;
@@ -612,7 +617,8 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
   float pull = 1.0f;
   if (cell.area < cell.width * cell.width)
   {
-    // The rays in the beam share the cell's area there. If there are none, rays are drawn inwards.
+    // The rays in the beam share the area of the cell's part in the beam. If no ray lies in the
+    // beam, rays are drawn inwards.
     rays = 0.0;
     for (pull = 2.0f; rays == 0.0;)
     {
@@ -629,8 +635,8 @@ void BeamCells::trace(const Cell& cell, List list, int blocks)
   }
   const double share = cell.area / rays * this->ShareOfArea;
   ++this->Traced;
-  std::uint32_t met = 0; // number of surfaces
-  PlanePoint one;        // where a ray meets surface `first`
+  std::uint32_t met = 0; // number of surfaces that rays meet
+  PlanePoint one;        // point where a ray meets surface `first`
   std::int32_t first = -1;
   for (int k = 0; k < count && !this->TooMany; ++k)
   {

@@ -69,7 +69,7 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
   }
   const float half = 0.5f * children.width;
   const Rays zero = hn::Zero(lanes);
-  // Few children keep a surface, as a rule. Four at once need no branch for each child.
+  // Few children keep a surface, as a rule. Four children at once need no branch for each child.
   constexpr int atOnce = 4;
   std::uint32_t nowhere[atOnce];
   std::uint32_t* ends[CellLanes + 1];
@@ -80,7 +80,7 @@ void distributeLanes(const CellSurface* surfaces, const std::uint32_t* list, std
     const CellSurface& s = surfaces[number];
     if (k % 8 == 7 && s.most < leastOf(occluders, groups))
     {
-      break; // as the nearest come first, all others are hidden everywhere
+      break; // surfaces are sorted by range, so all further surfaces are hidden everywhere
     }
     std::uint32_t bits = 0;
     for (int g = 0; g < groups; ++g)
@@ -151,7 +151,7 @@ void seeLanes(
     const CellSurface& s = surfaces[list[k]];
     if (k % 4 == 3 && s.most < leastOf(nearest, groups))
     {
-      break; // as the nearest come first, no ray sees any other
+      break; // surfaces are sorted by range, so no ray sees a further surface
     }
     for (int g = 0; g < groups; ++g)
     {

@@ -33,7 +33,7 @@ AVIANLIDAR_ALWAYS_INLINE double whole(double x)
   return rounded > x ? rounded - 1.0 : rounded;
 }
 
-/// Number of the strip between borders of units, of both kinds, in which a range lies.
+/// Number of the strip in which a range lies, between borders of units of both kinds.
 AVIANLIDAR_ALWAYS_INLINE double unitStrip(const SurfaceStrips& s, double range)
 {
   const double units = (range < s.gate ? range : s.gate) * s.perMetre;
@@ -61,19 +61,19 @@ double numberAt(const SurfaceStrips& s, double range)
 struct Block
 {
   double x[CellLanes], y[CellLanes];
-  double secant[CellLanes], weight[CellLanes]; ///< weights are 0 outside of the beam
+  double secant[CellLanes], weight[CellLanes]; ///< secants and weights; weight 0 outside the beam
   double surface[CellLanes];                   ///< number of the surface; -1: none
   double key[CellLanes];                       ///< key of the strip; -1: none
   double unit[CellLanes];   ///< number that rays of one surface between the same borders share
   double moment[CellLanes]; ///< weight times range
-  double variance[2][CellLanes], moves[2][CellLanes]; ///< against each of two neighbours
+  double variance[2][CellLanes], moves[2][CellLanes]; ///< variances and movable parts by neighbour
   int lone;                                           ///< number of rays without a neighbour
 };
 
 /// Scales and outline of the beam's plane.
 struct PlaneScales
 {
-  double tangent2, flatness2; ///< BeamFrame.h
+  double tangent2, flatness2; ///< BeamFrame::tanHalf squared, and flatness2
   double most;                ///< largest |x| and |y|
   bool isRound;
 };
@@ -124,9 +124,10 @@ AVIANLIDAR_MULTIVERSION void findStrips(const SurfaceStrips& surface, Block& blo
   }
 }
 
-/// Set how each ray differs from its two neighbours in a square of four, which are two strata of
-/// two rays. If one neighbour lies outside of the beam, the other counts twice. @return false, with
-/// nothing set, if all rays meet one strip or nothing and their weights are even
+/// Set how each ray differs from its two neighbours. Four rays in a square are two strata of two
+/// rays. If one neighbour lies outside of the beam, the other neighbour counts twice. @return
+/// false, with nothing set, if the weights are even and all rays meet one strip or all rays meet
+/// nothing
 AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
 {
   int others = 0;
@@ -170,8 +171,8 @@ AVIANLIDAR_MULTIVERSION bool findDifferences(bool uneven, Block& block)
   return true;
 }
 
-/// Add the variance of rays without a neighbour in the beam: of their whole weight, if another ray
-/// of the sixteen meets something else.
+/// Add the variance of rays without a neighbour in the beam. The whole weight of such a ray counts
+/// if another of the sixteen rays meets something else.
 void addLoneRays(Block& block)
 {
   for (int i = 0; i < CellLanes; ++i)
@@ -275,7 +276,7 @@ void RangeStrips::begin(const BeamFrame& frame, const std::vector<const BeamSurf
   this->Used = 0.0;
 }
 
-/// The strips of a surface; null if there are too many.
+/// The strips of a surface; null if the surface has too many strips.
 const SurfaceStrips* RangeStrips::stripsOf(std::uint32_t surface)
 {
   std::uint32_t& place = this->Of[surface];
@@ -312,7 +313,7 @@ const SurfaceStrips* RangeStrips::stripsOf(std::uint32_t surface)
 inline RangeStrips::Strip& RangeStrips::sumOf(double number)
 {
   const auto key = static_cast<std::uint32_t>(number);
-  std::uint32_t& place = this->Places[key]; // may be left from an earlier beam
+  std::uint32_t& place = this->Places[key]; // entry that may be left from an earlier beam
   if (place >= this->Sums.size() || this->Sums[place].key != key)
   {
     place = static_cast<std::uint32_t>(this->Sums.size());
@@ -337,7 +338,7 @@ bool RangeStrips::addWhole(
   const double inverse = s.inverse.at(middle);
   const double secant2 = this->secant2At(middle);
   const double secant = std::sqrt(secant2);
-  const double bend = this->Tangent2 * width; // exceeds the relative change of the secant
+  const double bend = this->Tangent2 * width; // upper bound of the relative change of the secant
   const double first = numberAt(*of, (1.0 - bend) * secant / (inverse + reach));
   const double last =
     inverse > reach ? numberAt(*of, (1.0 + bend) * secant / (inverse - reach)) : Infinity;

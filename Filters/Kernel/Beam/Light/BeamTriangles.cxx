@@ -28,21 +28,21 @@ constexpr std::uint8_t Apart = 9;
 
 struct EightTriangles
 {
-  double corners[9][LaneCount]; ///< a, b, c relative to the apex, m
+  double corners[9][LaneCount]; ///< corners a, b, c relative to the apex, m
   double normal[3][LaneCount];  ///< TrianglePlane::normal
   double onPlane[3][LaneCount]; ///< corner a of the triangle that owns the plane, m
-  double lines[9][LaneCount];   ///< ab, bc, ca; slope 1, positive inside
-  double inverse[3][LaneCount]; ///< 1/z, 1/m
+  double lines[9][LaneCount];   ///< sides ab, bc, ca; slope 1, positive inside
+  double inverse[3][LaneCount]; ///< 1/z on the plane, 1/m
   double mostInverse[LaneCount], leastInverse[LaneCount], height[LaneCount], area[LaneCount];
-  double mostOfPlane[LaneCount]; ///< upper bound of 1/z of the plane in the octagon
-  std::uint64_t crosses[3];      ///< bits of the triangles: side k meets the octagon
-  std::uint64_t enters;          ///< bits: the triangle enters the disc
-  std::uint64_t inside;          ///< bits: the triangle lies inside the disc
+  double mostOfPlane[LaneCount]; ///< upper bound of 1/z of the plane in the octagon, 1/m
+  std::uint64_t crosses[3];      ///< bits of the triangles whose side k meets the octagon
+  std::uint64_t enters;          ///< bits of the triangles that enter the disc
+  std::uint64_t inside;          ///< bits of the triangles that lie inside the disc
 };
 
 struct PlaneAxes
 {
-  Vec3 e1, e2, axis; ///< e1 and e2 times tan(theta0.5)
+  Vec3 e1, e2, axis; ///< axes; e1 and e2 are multiplied by tan(theta0.5)
   double tangent2;
   double perFlatness2; ///< 1/BeamFrame::flatness2
 };
@@ -105,8 +105,8 @@ HWY_INLINE Three edgeOf(const Three& a, const Three& b)
 struct Side
 {
   Eight x, y, z;
-  EightMask crosses; ///< the side meets the octagon
-  EightMask outside; ///< the octagon lies outside of the side
+  EightMask crosses; ///< true where the side meets the octagon
+  EightMask outside; ///< true where the octagon lies outside of the side
 };
 
 HWY_INLINE Side sideOf(const Three& edge, Eight sign, const PlaneAxes& plane)
@@ -147,7 +147,7 @@ HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three
   const Eight half = hn::Sqrt(hn::Max(zero, hn::Sub(all(1.0), hn::Mul(one.z, one.z))));
   const AlongChord a = alongChord(one, two, half);
   const AlongChord b = alongChord(one, three, half);
-  // If they fall in opposite directions, both are positive between their zeros or nowhere.
+  // If a and b fall in opposite directions, both are positive between their zeros or nowhere.
   const Eight between =
     hn::Add(hn::Mul(a.middle, hn::Abs(b.slope)), hn::Mul(b.middle, hn::Abs(a.slope)));
   const EightMask both = hn::Or(hn::Gt(between, zero), hn::Ge(hn::Mul(a.slope, b.slope), zero));
@@ -155,7 +155,7 @@ HWY_INLINE EightMask hasPart(const Side& one, const Side& two, const Side& three
     hn::And(both, hn::And(hn::Gt(a.most, zero), hn::Gt(b.most, zero))));
 }
 
-/// True where a corner lies in the disc. @param z its distance along the axis, m
+/// True where a corner lies in the disc. @param z distance of the corner along the axis, m
 HWY_INLINE EightMask isInDisc(const Three& corner, Eight z, const PlaneAxes& plane)
 {
   const Eight x = dot(corner, plane.e1);
@@ -284,8 +284,8 @@ void BeamTriangles::appendNumbers(std::vector<std::uint32_t>& numbers) const
 
 namespace
 {
-/// TrianglePlane::normal of eight triangles. Compiled for every instruction set, so that std::fma()
-/// is an instruction and not a call.
+/// TrianglePlane::normal of eight triangles. The function is compiled for every instruction set, so
+/// that std::fma() is an instruction and not a call.
 AVIANLIDAR_MULTIVERSION void findNormals(const Corners* planes, EightTriangles& t)
 {
   for (int i = 0; i < LaneCount; ++i)
@@ -298,7 +298,7 @@ AVIANLIDAR_MULTIVERSION void findNormals(const Corners* planes, EightTriangles& 
 }
 }
 
-/// Set up at most LaneCount triangles, and keep those that enter.
+/// Set up at most LaneCount triangles, and keep the triangles that enter the disc.
 void BeamTriangles::setUp(const std::uint32_t* triangles, std::size_t count)
 {
   if (count == 0)
@@ -415,9 +415,9 @@ const std::vector<const BeamSurface*>& BeamTriangles::sort()
   return this->Nearest;
 }
 
-/// Find whether a triangle and the next one form a convex quadrilateral in one plane.
-/// @return three times the number of the common side in the first triangle, plus its number in the
-/// second; or Apart
+/// Find whether a triangle and the next triangle form a convex quadrilateral in one plane.
+/// @return Apart, or three times the number of the common side in the first triangle plus the
+/// number of this side in the second triangle
 std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
 {
   const Corners one = this->Scene.cornersFrom(triangle, Vec3(0.0));
@@ -445,7 +445,7 @@ std::uint8_t BeamTriangles::findJoint(std::uint32_t triangle) const
     const Vec3 own = *p[(i + 2) % 3] - a;
     const Vec3 other = *q[(j + 2) % 3] - a;
     const Vec3 n = glm::cross(side, own);
-    // Corners far from the origin are rounded, but a scene moved there must look as before.
+    // A scene that is moved far from the origin must give the same result in spite of rounding.
     constexpr double flat = 1e-13;
     constexpr double rounding = 1e-15;
     const double longest2 =

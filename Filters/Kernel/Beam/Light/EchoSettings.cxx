@@ -60,7 +60,7 @@ double CellDensity::raysOnObject() const
 
 CellDensity densityOfCells(int raysPerBeam)
 {
-  // A second level is worth its lists from about 1,000 rays on.
+  // From about 1,000 rays on, a second level saves more time than its lists cost.
   constexpr double many = 1000.0;
   const double rays = CellRaysPerRay * raysPerBeam;
   const CellDensity least{ rays < many ? 1 : 2, 1 };

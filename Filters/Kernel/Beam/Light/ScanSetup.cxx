@@ -45,7 +45,7 @@ double perceivableRange(const ScanSetup& setup)
 /// returnBound() at any range.
 double returnBoundAnyRange(const ScanSetup& setup)
 {
-  // Near the lidar an aperture gathers everything.
+  // Near the lidar, an aperture gathers all reflected light.
   const bool gathers = setup.sensor.receiverAperture > 0.0 && setup.largestReflectance > 0.0;
   return gathers ? 1.0 : setup.largestReflectance;
 }
@@ -79,10 +79,10 @@ ModelNeeds needsOf(const ScanSetup& setup)
   ModelNeeds needs;
   needs.perceivableRange = perceivableRange(setup);
   needs.secondaryBound = setup.sensor.pulseEnergy * setup.largestReflectance * once * SurelyAbove;
-  // Longer paths are reflected by that many surfaces before the last one.
+  // On longer paths, `numberOfReflections` surfaces reflect the light before the last surface.
   needs.furtherBound = setup.sensor.pulseEnergy *
     std::pow(setup.largestReflectance, settings.numberOfReflections) * once * SurelyAbove;
-  // Direct echoes, as many as mirror paths, may lose the other half of the tolerance.
+  // Direct echoes may lose the other half of the tolerance.
   const double least = settings.lightEnergyThreshold == LightEnergyThreshold::Limit
     ? setup.sensor.lowerEnergyLimit
     : 0.5 * lightEnergyTolerance(setup);

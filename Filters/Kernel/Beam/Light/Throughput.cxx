@@ -10,7 +10,8 @@ namespace avianlidar
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest)
 {
   const double once = returnBound(setup, nearest);
-  // The reverse path weighs by the density at P2 over the density at P1 (SecondaryReflection.h).
+  // The weight of the reverse path is the density at P2 over the density at P1
+  // (SecondaryReflection.h).
   return setup.sensor.receiverAperture > 0.0
     ? std::min(1.0, once * (1.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
     : once;

@@ -67,7 +67,7 @@ bool ConnectionFinder::findFacing(const BeamSamples& hits, const SampleGeometry&
     return true;
   }
   this->Facing.assign(count * count, 0);
-  // Height of each surface's highest hit above the plane of each.
+  // Height of the highest hit of each surface above the plane of each surface.
   this->Heights.assign(count * count, 0.0);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit)
   {
@@ -115,7 +115,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
   const std::uint32_t rays = beam.samples.rays;
   this->chooseShifts(beam.id, rays, partners);
   this->findPartners(beam.samples, beam.geometry);
-  // With rows of 64 partners the partners of a ray come in the order of path numbers.
+  // Because rows have 64 partners, the partners of a ray come in the order of path numbers.
   const std::uint32_t rows = (partners + 63) / 64;
   std::size_t found = 0;
   for (const std::uint64_t ofRay : this->Partners)
@@ -144,7 +144,7 @@ void ConnectionFinder::find(const SecondaryBeam& beam, std::uint32_t partners)
         const std::uint32_t two = this->HitOfRay[partner];
         if (mayFace(one, two))
         {
-          // A stratum holds at most three rays, and these have consecutive numbers.
+          // A stratum holds at most three rays, with consecutive numbers.
           const bool distant = partner > n + 2 || n > partner + 2;
           connections.add(one, two,
             uniform && distant
@@ -210,12 +210,13 @@ void ConnectionFinder::chooseShifts(std::uint64_t beam, std::uint32_t rays, std:
   }
 }
 
-/// Solid angle that a ray stands for, over the mean of all rays: less where rays are denser.
+/// Solid angle that a ray stands for, over the mean of all rays. The angle is less where rays are
+/// denser.
 double ConnectionFinder::solidAngleShare(const SecondaryBeam& beam, std::uint32_t ray) const
 {
   if (this->Setup.sensor.beamProfile == BeamProfile::Uniform)
   {
-    return 1.0; // for every ray
+    return 1.0; // all rays have the same share
   }
   return 1.0 / this->Shape.density(beam.rays.x[ray], beam.rays.y[ray]);
 }
@@ -254,7 +255,7 @@ AVIANLIDAR_ALWAYS_INLINE double scaleOf(
   return passed > budget ? budget / passed : 1.0;
 }
 
-/// Inputs of the throughputs of connections: connections, samples, their materials.
+/// Inputs of the throughputs of connections: connections, samples, materials of the samples.
 struct ConnectionLanes
 {
   const std::uint32_t *one, *two;
@@ -263,7 +264,7 @@ struct ConnectionLanes
   const double *cosine, *range, *direct;
   MaterialLanes::View material;
   double share;      ///< share of the pulse of each ray
-  double aperture;   ///< m2
+  double aperture;   ///< area of the aperture, m2
   double solidAngle; ///< solid angle of the cone, sr
 };
 

@@ -11,20 +11,21 @@ namespace avianlidar
 {
 namespace
 {
-/// A beam that meets more triangles for each of its samples is not searched on.
+/// Largest number of triangles per sample for which the search of a beam goes on.
 constexpr std::size_t TrianglesPerSample = 2;
 
-/// Surfaces under which the smallest cosine of the cone is less than so much of its axis's are not
-/// bounded.
+/// Least ratio of the smallest cosine of incidence in the cone to the cosine of the cone's axis. A
+/// surface with a smaller ratio is not bounded.
 constexpr double LeastCosine = 0.1;
 
 /// Rounding of the height of a point above a plane, over the farthest coordinate involved.
 constexpr double HeightNoise = 64.0 * RoundOffDouble;
 
-/// Height of a triangle, over the farthest coordinate involved, below which its plane says little.
+/// Height of a triangle, over the farthest coordinate involved, below which its plane is
+/// unreliable.
 constexpr double SliverHeight = 1e-5;
 
-/// Where rounding is far from deciding, over the farthest coordinate involved.
+/// Margin beyond all rounding, over the farthest coordinate involved.
 constexpr double Slack = 1e-9;
 
 double lengthOf(const Vec3& v)
@@ -53,7 +54,7 @@ bool isBeside(const Corners& t, const BeamFrame& frame, double slack)
 }
 }
 
-/// Takes the triangles that the cone may meet.
+/// Collects the triangles that the cone may meet.
 class MirrorPairs::Search
 {
 public:
@@ -121,8 +122,8 @@ private:
 bool MirrorPairs::facing(const Start& start, const BeamFrame& frame, const Corners& corners,
   const TrianglePlane& plane, double reach) const
 {
-  // A part of it before the surface. A hit lies off its triangle by a multiple of HitMargin in the
-  // triangle's own plane (TriangleTest.h).
+  // A part of the triangle must lie before the surface. A hit lies off its triangle by a multiple
+  // of HitMargin in the triangle's own plane (TriangleTest.h).
   const Vec3& n = start.normal;
   const double size = lengthOf(plane.normal);
   const double turned = size > 0.0 ? lengthOf(glm::cross(n, plane.normal)) / size : 1.0;
@@ -136,7 +137,7 @@ bool MirrorPairs::facing(const Start& start, const BeamFrame& frame, const Corne
   {
     return true;
   }
-  // Its plane within reach of the cone before the surface.
+  // The triangle's plane must be within reach of the cone before the surface.
   const Vec3 up = plane.height > 0.0 ? -plane.normal : plane.normal;
   const double down = -glm::dot(up, frame.axis) * frame.cosHalf +
     lengthOf(glm::cross(up, frame.axis)) * frame.sinHalf;
@@ -144,15 +145,15 @@ bool MirrorPairs::facing(const Start& start, const BeamFrame& frame, const Corne
   {
     return false;
   }
-  // Hits before its side that faces the apex.
+  // Some hits must lie before the side of the plane that faces the apex.
   const Vec3 half = 0.5 * start.hits.upper - 0.5 * start.hits.lower;
   return glm::dot(up, start.hits.center()) + glm::dot(glm::abs(up), half) +
     std::fabs(plane.height) >=
     -Slack * reach * size;
 }
 
-/// Set the starts; those that cannot be bounded are paired. @return range, m, beyond which no path
-/// of the others ends
+/// Set the starts, and pair the starts that cannot be bounded. @return range, m, beyond which no
+/// path of the other starts ends
 double MirrorPairs::measure(const SecondaryBeam& beam)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -170,7 +171,7 @@ double MirrorPairs::measure(const SecondaryBeam& beam)
     const Vec3 point = beam.samples.range[hit] * direction;
     const double height = glm::dot(start.normal, point) + start.height;
     const double cosine = -glm::dot(start.normal, direction);
-    // Half the height at which a path of this hit is first looked at.
+    // The search along a path of this hit begins at twice this height.
     start.least =
       std::min(start.least, height + 0.5 * surfaceMargin(beam.samples.range[hit]) * cosine);
     start.off = std::max(start.off, std::fabs(height));

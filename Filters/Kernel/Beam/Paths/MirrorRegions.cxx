@@ -16,13 +16,13 @@ namespace
 /// Largest number of polygons of a beam.
 constexpr std::size_t MostFacets = 1024;
 
-/// Largest number of regions of a surface of which each has samples of its own.
+/// Largest number of regions of a surface for which each region has samples of its own.
 constexpr std::size_t FewRegions = 32;
 
 /// Area, half-beamwidths squared, up to which regions are left out.
 constexpr double LeastRegion = 1e-12;
 
-/// Step, modulo 1, by which consecutive samples stay far apart.
+/// Step, modulo 1, by which consecutive samples are kept far apart.
 constexpr double GoldenRatio = 0.6180339887498949;
 
 /// Number of samples for each ray that would fall in a region.
@@ -38,13 +38,13 @@ PlaneLine operator*(double s, const PlaneLine& a)
   return { s * a.x, s * a.y, s * a.z };
 }
 
-/// 1 for a counterclockwise ring, -1 for a clockwise one.
+/// 1 for a counterclockwise ring, -1 for a clockwise ring.
 double signOf(const PlaneRing& ring)
 {
   return ring.signedArea() < 0.0 ? -1.0 : 1.0;
 }
 
-/// Side of a ring from corner i to the next, positive inside. @param sign signOf() the ring
+/// Side of a ring from corner i to the next corner, positive inside. @param sign signOf() the ring
 PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
 {
   const PlanePoint& a = ring.corners[i];
@@ -54,8 +54,9 @@ PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
   return { x, y, -(x * a.x + y * a.y) };
 }
 
-/// Find the surfaces that may face surface `one`: the box of each has a part before the plane of
-/// the other. @param lanes fillLanes() @param facing set to 1 for these, to 0 for others
+/// Find the surfaces that may face surface `one`: the box of each of the two surfaces has a part
+/// before the plane of the other. @param lanes set by fillLanes() @param facing set to 1 for
+/// surfaces that may face `one`, to 0 for other surfaces
 AVIANLIDAR_MULTIVERSION void findFacing(
   const double* const* lanes, std::size_t count, std::size_t one, double* facing)
 {
@@ -231,7 +232,7 @@ void MirrorRegions::setSurface(Surface& surface) const
     this->Frame.tanHalf * glm::dot(surface.normal, this->Frame.e2),
     glm::dot(surface.normal, this->Frame.axis) };
   surface.mirror = this->Frame.toPlane(surface.normal);
-  if (surface.height > 0.0) // otherwise it is seen edge-on
+  if (surface.height > 0.0) // otherwise the surface is seen edge-on
   {
     surface.inverse = (-1.0 / surface.height) * surface.along;
   }
@@ -264,7 +265,7 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
       this->findRegions(one, this->Surfaces[k]);
     }
   }
-  // If there are many regions, all of them share samples.
+  // If there are many regions, all regions share samples.
   const std::size_t step = this->Regions.size() <= FewRegions ? 1 : this->Regions.size();
   for (std::size_t k = 0; k < this->Regions.size(); k += step)
   {
@@ -273,7 +274,8 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   return this->Sample;
 }
 
-/// Mirror the facets of `two` on the plane of `one`. @return their box; empty: none lies before it
+/// Mirror the facets of `two` on the plane of `one`. @return box of the mirrored facets; empty if
+/// no facet lies before the plane
 MirrorRegions::Box MirrorRegions::mirror(const Surface& one, const Surface& two)
 {
   this->Mirrored.clear();
@@ -338,8 +340,8 @@ void MirrorRegions::findRegions(const Surface& one, const Surface& two)
 
 bool MirrorRegions::imageOf(const Surface& one, const Surface& two, Image& image) const
 {
-  // Mirrored on the plane n . P + h = 0 of the first, the plane of the second is m . P + g = 0, and
-  // the ray d meets it at d/w with w = -m . d/g.
+  // The plane of the first surface is n . P + h = 0. The plane of the second surface, mirrored on
+  // it, is m . P + g = 0. The ray d meets the mirrored plane at d/w with w = -m . d/g.
   const double turn = glm::dot(one.normal, two.normal);
   const double g = two.height - 2.0 * one.height * turn;
   if (!(std::fabs(g) > 1e-12 * (one.height + two.height)))
@@ -356,7 +358,7 @@ bool MirrorRegions::imageOf(const Surface& one, const Surface& two, Image& image
   return true;
 }
 
-/// Find the rays that go from one facet to another. @return false if there are none
+/// Find the rays that go from one facet to another. @return false if there is no such ray
 bool MirrorRegions::cutOut(
   const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const
 {
@@ -372,14 +374,14 @@ bool MirrorRegions::cutOut(
       return false;
     }
   }
-  // The end lies before the first plane, and the start before the second.
+  // The end must lie before the first plane, and the start before the second plane.
   return clipRing(ring, image.w) && clipRing(ring, image.z) &&
     clipRing(ring, first.inverse + -1.0 * image.w) &&
     clipRing(ring, second.along + second.height * first.inverse);
 }
 
-/// Fill regions [first, end) with samples, one in each of equal parts of their area. The parts
-/// follow each other around the first corner of a region, and go on in the next region.
+/// Fill regions [first, end) with samples, one sample in each of equal parts of the regions' area.
+/// The parts follow each other around the first corner of a region, and go on in the next region.
 void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths)
 {
   double area = 0.0;
@@ -447,7 +449,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   this->Drawn += count;
 }
 
-/// Follow a ray over its mirror. @return false if it does not arrive
+/// Follow a ray over its mirror. @return false if the ray does not arrive
 bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPath& path)
 {
   const Surface& one = this->Surfaces[this->Facets[region.one].surface];

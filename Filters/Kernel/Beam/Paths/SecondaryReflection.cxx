@@ -13,8 +13,8 @@ namespace avianlidar
 namespace
 {
 /// Part of the tolerance of the light-energy constraint that mirror paths by regions may lose on
-/// surfaces that are not searched. Paths on searched surfaces may lose as much. Polygons take a
-/// half, connections less than the rest.
+/// surfaces that are not searched. Paths on searched surfaces may lose as much. Polygons may lose a
+/// half, and connections less than the rest.
 constexpr double MirrorPart = 0.125;
 
 double sumOf(const std::vector<double>& values)
@@ -78,7 +78,7 @@ double SecondaryReflection::bound(
       {
         const Reflectance passed =
           reflectanceBound(this->Setup.settings.reflectanceModel, material, samples.cosine[i]);
-        // With an aperture connections and short paths both carry it, at any incidence.
+        // With an aperture, connections and short paths both include matt light, at any incidence.
         const double matt = gathers
           ? 2.0 * (samples.cosine[i] > 0.0 ? passed.diffuse / samples.cosine[i] : 1.0)
           : passed.diffuse;
@@ -129,7 +129,7 @@ SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
   }
   const double reverse = f1 * f2.diffuse * path.back *
     this->Setup.sensor.nearRangeShare(path.rangeOne) * scale * path.weight;
-  // If an aperture gathers nearly all light, both ways together stay within the bound of one.
+  // If an aperture gathers nearly all light, the bound of one way limits the sum of both ways.
   const double within = std::min(1.0, f1 * path.weight / std::max(there + reverse, 1e-300));
   return { within * there, within * reverse };
 }
@@ -222,7 +222,7 @@ double SecondaryReflection::mostOfMirrors(bool byRegions) const
 }
 
 /// Place mirror paths on surfaces whose bound is at least `least`, and find the throughputs. Paths
-/// on other surfaces count as lost even if they are known. @return bound of the lost throughputs
+/// on other surfaces count as lost even if they were found. @return bound of the lost throughputs
 double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least)
 {
   SecondaryTrace& trace = beam.trace;
@@ -410,7 +410,7 @@ bool SecondaryReflection::collect(
   double ofMirrors = threshold;
   if (byRegions)
   {
-    // The paths share the tolerance equally, unless each is compared with the limit.
+    // The paths share the tolerance equally, unless each path is compared with the limit.
     const bool shares =
       threshold > 0.0 && settings.lightEnergyThreshold != LightEnergyThreshold::Limit;
     const double part = MirrorPart * lightEnergyTolerance(this->Setup);
@@ -457,8 +457,8 @@ bool SecondaryReflection::collect(
   return true;
 }
 
-/// Scale the paths of a ray down to its budget, the part of the albedo that the direct echo leaves:
-/// the random weights of its connections may exceed 1 together.
+/// Scale the paths of a ray down to its budget, the part of the albedo that the direct echo leaves.
+/// The random weights of the ray's connections may exceed 1 together.
 void SecondaryReflection::cutToBudget(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths)
 {
   this->Returned.assign(beam.samples.size(), 0.0);

@@ -12,7 +12,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Upper bound of the distance, m, over which a path stays inside the cone; infinity if its
+/// Upper bound of the distance, m, over which a path remains inside the cone; infinity if its
 /// direction lies within the cone, or nearly. @param point start relative to the apex, m
 /// @param range distance of `point` from the apex, m
 double distanceInCone(
@@ -33,7 +33,7 @@ double distanceInCone(
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
-/// End of the path from a hit in a direction; invalid if it is not in the cone or is hidden.
+/// End of the path from a hit in a direction; invalid if the end is outside the cone or hidden.
 Hit pathEnd(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, const Vec3& direction)
 {
@@ -57,7 +57,7 @@ Hit pathEnd(
   const SeenTriangle triangle = seeTriangle(beam.scene, end.triangle, beam.frame.origin);
   if (glm::dot(triangle.normal, direction) >= 0.0)
   {
-    return {}; // it meets the side that faces away from the lidar
+    return {}; // the path meets the side that faces away from the lidar
   }
   const Hit seen = beam.tracer.traceFromApex(point);
   const double range = safeLength(point);
@@ -79,7 +79,8 @@ void traceMirror(
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
   const SeenTriangle end = seeTriangle(beam.scene, found.triangle, beam.frame.origin);
-  // Take the range found, not the plane's: for planes seen edge-on the two differ widely.
+  // The range found is used, not the range of the plane: for planes seen edge-on the two ranges
+  // differ widely.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
   const auto densityAt = [&](const Vec3& p)
@@ -94,7 +95,8 @@ void traceMirror(
     Visibility::Clear });
 }
 
-/// Draw a direction from a surface with a density proportional to its cosine, as matt light has.
+/// Draw a direction from a surface. The density of directions is proportional to the cosine, as for
+/// matt light.
 Vec3 drawDirection(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint64_t number, const Vec3& normal)
 {
@@ -108,7 +110,7 @@ Vec3 drawDirection(
     sine * (std::cos(turn) * e1 + std::sin(turn) * e2) + std::sqrt(1.0 - u[0]) * normal);
 }
 
-/// Trace the k-th direction of a ray, and keep it if its form factor exceeds MostFormFactor.
+/// Trace the k-th direction of a ray, and keep the path if its form factor exceeds MostFormFactor.
 void traceShortPath(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, std::uint32_t k)
 {
@@ -220,7 +222,7 @@ void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, Connecti
   {
     return;
   }
-  beam.trace.shortPaths.clear(); // may be left from stopped work
+  beam.trace.shortPaths.clear(); // paths may be left from stopped work
   const bool any = finder.findFacing(beam.samples, beam.geometry);
   for (std::uint32_t hit = 0; any && hit < beam.samples.size(); ++hit)
   {

@@ -135,7 +135,7 @@ struct MomentLanes
   double *area, *p, *pp, *qq, *qqqq;
 };
 
-/// Add the moments below the line q = a + b p, between each place and the next.
+/// Add the moments below the line q = a + b p, between each place and the next place.
 AVIANLIDAR_MULTIVERSION void addLine(
   const double* places, std::size_t parts, double a, double b, double sign, const MomentLanes& into)
 {

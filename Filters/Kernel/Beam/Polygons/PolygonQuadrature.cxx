@@ -95,7 +95,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   const PlaneLine& w = surface.inverse;
   const double slope = w.slope();
   Bounds bounds{ extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
-  double least = 1.0; // extent across the gradient, times its slope
+  double least = 1.0; // lower end of the extent across the gradient, times the slope
   double most = -1.0;
   for (int i = 0; i < ring.size; ++i)
   {
@@ -127,8 +127,8 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   return bounds;
 }
 
-/// Mark the faintest polygons over many units as dropped, and the next as faint, as long as no unit
-/// loses too much.
+/// Mark the faintest polygons over many units as dropped, and the next polygons as faint, as long
+/// as no unit loses too much.
 void PolygonQuadrature::drop()
 {
   this->Dropped = 0.0;
@@ -237,7 +237,7 @@ double PolygonQuadrature::boundOf(
     const std::size_t node = shares.contribution[s];
     if (node >= energies.size())
     {
-      break; // the other shares are of paths over two reflections
+      break; // the other shares belong to paths over two reflections
     }
     energy += shares.energies[s];
     // The neighbouring nodes belong to the parts beyond the borders.

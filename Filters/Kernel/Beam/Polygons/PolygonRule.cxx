@@ -24,8 +24,8 @@ constexpr double Level = 1e-5;
 constexpr double NoLobe = 42.0;
 constexpr double NothingReturned = 100.0;
 
-/// Rules are taken in beams wider than WideBeam, rad, and for lobes if the squared half-beamwidth
-/// exceeds NarrowLobe times the lobe's squared width.
+/// Rules are used in beams wider than WideBeam, rad. Rules are also used for lobes if the squared
+/// half-beamwidth exceeds NarrowLobe times the lobe's squared width.
 constexpr double WideBeam = 0.02;
 constexpr double NarrowLobe = 0.03;
 
@@ -57,8 +57,9 @@ double fraction(double x)
 }
 
 /// Share of a part's energy that may lie beyond its borders. A chord at a border has the border's
-/// range on average, so that curvature acts in second order; rounding moves all of a part.
-/// @param near, far 1/z at the ends, 1/m @param curved, rounded m @param pulse length, m
+/// range on average, so that curvature acts in second order. Rounding moves the whole part.
+/// @param near, far 1/z at the ends, 1/m @param curved, rounded errors of the range, m @param pulse
+/// length of the pulse, m
 AVIANLIDAR_ALWAYS_INLINE double uncertainOf(
   double near, double far, double curved, double rounded, double pulse)
 {
@@ -98,7 +99,7 @@ PolygonRule::PolygonRule(const ScanSetup& setup)
   const double half = 0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval;
   this->Offsets[0] = fraction(half);
   this->Offsets[1] = fraction(-half);
-  constexpr double same = 1e-9; // in units
+  constexpr double same = 1e-9; // difference, in units
   const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
   this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
   this->Tangent2 = this->Shape.width().tangent * this->Shape.width().tangent;
@@ -158,14 +159,14 @@ double PolygonRule::roundingOf(double height, const Extent& extent) const
   return 32.0 * RoundOffDouble * farthest * farthest / height;
 }
 
-/// True if all polygons of the beam take rules, with a lobe or without.
+/// True if all polygons of the beam use rules, with a lobe or without.
 bool PolygonRule::takesRules() const
 {
   return this->Setup.sensor.beamProfile == BeamProfile::Gaussian ||
     this->Tangent2 > WideBeam * WideBeam;
 }
 
-/// Set the width of the lobe, 0 if it does not matter. @param mostInverse largest 1/z, 1/m
+/// Set the width of the lobe, 0 if the lobe does not matter. @param mostInverse largest 1/z, 1/m
 void PolygonRule::setLobe(double mostInverse)
 {
   Current& now = this->Now;
@@ -235,7 +236,7 @@ void PolygonRule::addUnitBorders()
   }
 }
 
-/// Add the border `to`, and before it as many borders as the change of range and lobe needs.
+/// Add the border `to`. Before `to`, add as many borders as the change of range and lobe needs.
 void PolygonRule::addSmoothBorders(double from, double to)
 {
   const Current& now = this->Now;
@@ -275,7 +276,8 @@ double PolygonRule::uncertainty(double from, double to) const
     now.inverse(to), now.inverse(from), now.curved, now.rounded, this->PulseLength);
 }
 
-/// Share of the pulse on an area of the disc. @param radius2 its squared distance from the axis
+/// Share of the pulse on an area of the disc. @param radius2 squared distance of the area from the
+/// axis
 double PolygonRule::shareOf(double area, double radius2) const
 {
   const double secant2 = 1.0 + this->Tangent2 * radius2;
@@ -283,7 +285,8 @@ double PolygonRule::shareOf(double area, double radius2) const
   return share * rayDensity(this->Shape.profile(), std::min(1.0, radius2));
 }
 
-/// @param range at which its energy arrives, m @param inverse 1 over its own range, 1/m
+/// @param range range at which the node's energy arrives, m @param inverse 1 over the node's own
+/// range, 1/m
 void PolygonRule::addNode(double range, double inverse, double weight, double uncertain)
 {
   BeamSamples& samples = this->Nodes->samples;
@@ -293,7 +296,8 @@ void PolygonRule::addNode(double range, double inverse, double weight, double un
   this->Nodes->uncertain.push_back(uncertain);
 }
 
-/// Place one sample of a part, or two along it, or two more across it if the lobe needs them.
+/// Place one sample of a part, two samples along the part, or two more across the part if the lobe
+/// needs them.
 void PolygonRule::placeNodes(std::size_t part, double uncertain)
 {
   const Current& now = this->Now;
@@ -332,7 +336,7 @@ void PolygonRule::placeNodes(std::size_t part, double uncertain)
     }
     return;
   }
-  // Two values of q^2 with the mean and variance of the part, neither below 0.
+  // Two values of q^2 with the mean and variance of the part. Both values are at least 0.
   const double beside2 = std::max(0.0, this->Parts.qqqq[part] * inverseArea - across * across);
   const double near2 = std::max(0.0, across - std::sqrt(beside2));
   const double far2 = across > near2 ? across + beside2 / (across - near2) : across;
@@ -359,7 +363,8 @@ double PolygonRule::fallOfDisc(bool lobe) const
   return density + (width2 > 0.0 ? this->Tangent2 / width2 : 0.0) + this->Tangent2;
 }
 
-/// Divide a line into pieces within a lobe and beyond it. @param centre of the lobe on that line
+/// Divide a line into pieces within a lobe and beyond the lobe. @param centre of the lobe on that
+/// line
 void PolygonRule::divideAtLobe(
   double from, double to, double centre, std::vector<Piece>& pieces) const
 {
@@ -473,7 +478,7 @@ struct PlainPolygon
 {
   double base, slope, leastInverse, height; ///< see PolygonRule::Current
   double tangent2, shareOfArea;
-  double curved, rounded, pulse; ///< m
+  double curved, rounded, pulse; ///< errors of the range by curvature and rounding, pulse length, m
   const double *borders, *ofUnits;
   const double *area, *p, *pp, *qq;
   double *range, *cosine, *weight, *uncertain; ///< results, by node

@@ -7,7 +7,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Area below which pieces are left out (the disc has pi).
+/// Area below which pieces are left out. The disc has the area pi.
 constexpr double LeastArea = 1e-14;
 
 /// Relative difference of 1/z below which planes are equally near.
@@ -359,11 +359,11 @@ bool PolygonFinder::isNearer(
     inner = &nearer;
     return true;
   }
-  // If they meet in a side alone, one of the two signs is due to rounding.
+  // If the candidates meet in a side alone, one of the two signs is due to rounding.
   return most > -least;
 }
 
-/// Set the circle to the one around the ring's box.
+/// Set the circle to the circle around the ring's box.
 void PolygonFinder::Piece::findCircle(const PlaneRing& ring)
 {
   PlanePoint low = ring.corners[0];

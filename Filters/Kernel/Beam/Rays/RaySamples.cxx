@@ -12,7 +12,7 @@ namespace avianlidar
 {
 namespace
 {
-/// Largest number of surfaces that are found one by one; more are sorted by triangle.
+/// Largest number of surfaces that are found one by one. More surfaces are sorted by triangle.
 constexpr std::size_t MostListed = 24;
 
 /// Find cosines of incidence.
@@ -29,7 +29,7 @@ AVIANLIDAR_MULTIVERSION void cosinesOf(const Vec3& surfaceNormal, const double* 
   }
 }
 
-/// True if all samples lie on the plane of the first.
+/// True if all samples lie on the plane of the first sample.
 bool areCoplanar(const BeamSamples& samples, const SampleGeometry& geometry)
 {
   const std::vector<SampleGeometry::Surface>& surfaces = geometry.surfaces;
@@ -87,7 +87,7 @@ const SeenTriangle& RaySamples::see(std::uint32_t triangle, const Vec3& apex)
   return known.seen;
 }
 
-/// Set the rays and surfaces of the samples, with surfaces in the order of their first rays. Each
+/// Set the rays and surfaces of the samples. Surfaces come in the order of their first rays. Each
 /// pass takes the rays of one surface out of the rays that are left, without a branch.
 void RaySamples::sortBySurface(const std::vector<std::uint32_t>& triangles, BeamSamples& samples)
 {
@@ -127,7 +127,7 @@ void RaySamples::sortBySurface(const std::vector<std::uint32_t>& triangles, Beam
   samples.surfaces.assign(this->Surfaces.begin(), this->Surfaces.end());
 }
 
-/// sortBySurface() for many surfaces, which come in the order of their triangle numbers.
+/// sortBySurface() for many surfaces. The surfaces come in the order of their triangle numbers.
 void RaySamples::sortByTriangle(const std::vector<std::uint32_t>& triangles, BeamSamples& samples)
 {
   samples.surfaces.clear();

@@ -27,7 +27,7 @@ struct BeamBounds
 {
   double gain;   ///< 16 u G, see RayPacketTriangles.h
   double noise;  ///< K u_d
-  double secant; ///< of the half-beamwidth, rounded up
+  double secant; ///< secant of the half-beamwidth, rounded up
 };
 
 AVIANLIDAR_ALWAYS_INLINE double most(double a, double b)
@@ -90,7 +90,7 @@ AVIANLIDAR_MULTIVERSION void seeAll(const ApexCorners& t, const BeamBounds& boun
     const double slope = 128.0 * D * std::sqrt(longest) * (far * std::fabs(inverse)) * secant;
     const double relative = slope * far + 64.0 * D * far * reach;
     const double error = Up * ((8.0 * U + 2.0 * relative) * reach + slope);
-    // 0 also if a value is not a number.
+    // The result is 0 also if a value is not a number.
     const double says =
       (relative < 1e-6 ? 1.0 : 0.0) * (reach > 1e-33 ? 1.0 : 0.0) * (reach < 1e33 ? 1.0 : 0.0);
     r.w[0][i] = static_cast<float>(says > 0.0 ? wx : 0.0);
@@ -133,7 +133,7 @@ void ApexTriangles::begin(const CollisionTree& tree, const BeamFrame& widest)
   this->Used.clear();
 }
 
-/// Error of w for a triangle that takes the plane of another one; 0 for others.
+/// Error of w for a triangle that takes the plane of another triangle; 0 for other triangles.
 float ApexTriangles::errorOfOwner(std::uint32_t position, const float* w) const
 {
   const CollisionTree& tree = *this->Tree;

@@ -10,11 +10,11 @@ namespace avianlidar
 {
 namespace
 {
-/// Boxes with a half diagonal of at most so many half-beamwidths are entry points.
+/// Largest half diagonal of a box that is an entry point, in half-beamwidths.
 constexpr double EntryPointSize = 16.0;
 
-/// Boxes that at most so many clusters of beams meet are entry points: packets end at their nearest
-/// hits, groups cannot.
+/// Largest number of clusters of beams that meet a box that is an entry point. Packets, unlike
+/// groups, end at their nearest hits.
 constexpr int FewBeams = 3;
 
 /// Spread 16 bits to every other bit of 32.
@@ -26,7 +26,7 @@ std::uint32_t spread(std::uint32_t v)
   return (v | v << 1) & 0x55555555u;
 }
 
-/// Descent of a group; the members of an entry are clusters of beams.
+/// Descent of a group. The members of an entry are clusters of beams.
 class EntryPointSearch : public WidePolicy
 {
 public:
@@ -75,7 +75,7 @@ private:
   float EntryPointExtent;
 };
 
-/// Makes entry points of leaves, until these hold too many triangles.
+/// Makes entry points of leaves, until the entry points hold too many triangles.
 class LeafVisitor
 {
 public:

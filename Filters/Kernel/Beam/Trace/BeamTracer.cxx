@@ -66,7 +66,7 @@ const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
   return work.found;
 }
 
-/// Find which rays of the block's one beam hit movers first.
+/// Find the rays of the block's single beam that hit movers before anything else.
 void BeamTracer::traceMoved(const BeamBlock& block)
 {
   BlockRaysWorkspace& work = this->Work->block.rays;
@@ -108,7 +108,7 @@ Hit BeamTracer::traceFrom(const Vec3& origin, const Vec3& direction, double mini
   std::uint32_t ignore, double maximumRange)
 {
   const Vec3 d = unitDirection(direction);
-  // From the apex, ranges must have the same bits as those of the beam's rays.
+  // From the apex, the ranges must equal, bit for bit, the ranges of the beam's rays.
   const double margin = origin == Vec3(0.0) ? beamRayMargin(this->Frame) : 0.0;
   FreeRayVisitor visitor(this->Scene, this->Frame.origin, origin, d, margin);
   visitor.minimum = minimumRange;

@@ -62,7 +62,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
   RayPacket& packet = this->Work.packet;
   packet.beam = &this->Block.frames[b];
   bool any = false;
-  // Packets take whole groups of sixteen, about the same number each.
+  // Packets hold whole groups of sixteen rays, about the same number of groups in each packet.
   const std::size_t packets = (count + RayPacket::Width - 1) / RayPacket::Width;
   const std::size_t groups = (count + PacketGroup - 1) / PacketGroup;
   std::size_t begin = 0;

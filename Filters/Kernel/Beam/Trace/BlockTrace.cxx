@@ -7,10 +7,11 @@ namespace avianlidar
 {
 namespace
 {
-/// Beams of fewer rays form no groups.
+/// Least number of rays of a beam in a group.
 constexpr std::uint32_t FewestRaysInGroup = 8;
 
-/// Beams whose cones meet more triangles are traced ray by ray, which is then faster.
+/// Largest number of triangles against which a beam's rays are tested together. With more
+/// triangles, tracing ray by ray is faster.
 constexpr std::size_t MostPotential = 2048;
 
 class BlockTrace
@@ -74,7 +75,7 @@ private:
   }
 
   /// Fill packets in the order of the scan, where neighbours follow each other. With so few rays
-  /// this is faster than sorting.
+  /// the order of the scan is faster than sorting.
   void consecutive()
   {
     const std::vector<std::uint32_t>& beams = this->Work.beams;

@@ -90,7 +90,7 @@ HWY_INLINE void moveToApex(const Frustum& frustum, const WideNode& node, NearBox
     const Boxes hx = hn::Load(lanes, node.halfX + i);
     const Boxes hy = hn::Load(lanes, node.halfY + i);
     const Boxes hz = hn::Load(lanes, node.halfZ + i);
-    // Summed in pairs to shorten the chain of dependent steps.
+    // Pairs are summed first, to shorten the chain of dependent steps.
     const Boxes size =
       hn::Add(hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hx)), hn::Add(hy, hz));
     const Boxes margin = hn::MulAdd(relative, size, widening);
@@ -275,8 +275,8 @@ HWY_INLINE Rays dot(Rays ax, Rays ay, Rays az, Rays bx, Rays by, Rays bz)
   return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
 }
 
-/// Cones that meet a box, one bit each, by their own planes, then by the tangent plane on the side
-/// of the box's centre and the plane across the axis (see BeamVolumeTest.cxx).
+/// Cones that meet a box, one bit each. The tests use the planes of the cones, the tangent plane on
+/// the side of the box's centre and the plane across the axis (see BeamVolumeTest.cxx).
 HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& boxes, int box)
 {
   const RayTag lanes;
@@ -312,7 +312,7 @@ HWY_INLINE std::uint32_t conesThatMeet(const ConeLanes& cones, const NearBoxes& 
     const Rays sine = hn::Load(lanes, cones.sine + b);
     const Rays cosine = hn::Load(lanes, cones.cosine + b);
     const Rays along = dot(in.x, in.y, in.z, ax, ay, az);
-    // Projected twice, so that the rest is across the axis to the last bits.
+    // The projection is repeated, so that the rest is across the axis to the last bits.
     Rays rx = hn::NegMulAdd(along, ax, in.x);
     Rays ry = hn::NegMulAdd(along, ay, in.y);
     Rays rz = hn::NegMulAdd(along, az, in.z);
@@ -434,8 +434,8 @@ void ConeLanes::add(const BeamFrame* frames, const std::uint32_t* beams, std::si
   {
     this->axis[k][i] = static_cast<float>(middle[k]);
   }
-  // The sine of a sum is at most the sum of the sines, and a chord is longer than the sine of its
-  // angle; 1e-6 covers the rounding of the axis.
+  // The sine of a sum is at most the sum of the sines. A chord is longer than the sine of its
+  // angle. The summand 1e-6 covers the rounding of the axis.
   const double wide = std::sqrt(apart) + frames[beams[0]].sinHalf * (1.0 + 2.0 * HitMarginBeam) +
     2.0 * HitMargin + 1e-6;
   const double widened = std::min(wide, 0.999);
@@ -469,7 +469,8 @@ bool ConeLanes::setFrustum(const WideTree& tree, const Vec3& apex)
     const float u = this->axis[f.axes[1]][i] / depth;
     const float v = this->axis[f.axes[2]][i] / depth;
     // On the plane at depth 1 the cone reaches at most tan(alpha + beta) - tan(alpha) from its
-    // axis. alpha lies between axis and normal, beta is the half-angle; a and b are their tangents.
+    // axis. alpha is the angle between axis and normal. beta is the half-angle. a and b are their
+    // tangents.
     const float a = std::sqrt(u * u + v * v);
     const float b = this->sine[i] / this->cosine[i];
     constexpr float widestSine = 0.99f;

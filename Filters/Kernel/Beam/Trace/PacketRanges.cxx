@@ -42,7 +42,8 @@ RayBits PacketRanges::decide(RayBits rays, std::uint32_t triangle)
   return this->compare(accepted, triangle);
 }
 
-/// Compare a ray whose edge functions were accepted. @return false if it does not hit the triangle
+/// Compare a ray whose edge functions were accepted. @return false if the ray does not hit the
+/// triangle
 bool PacketRanges::compareRay(int ray, std::uint32_t triangle)
 {
   const BeamFrame& frame = this->Packet.frameOf(ray);

@@ -30,7 +30,8 @@ AVIANLIDAR_MULTIVERSION void roundedLanes(
   }
 }
 
-/// Descent of a packet: the members of an entry are rays, its bound is a range over |D|.
+/// Descent of a packet. The members of an entry are rays. The bound of an entry is a range over
+/// |D|.
 class PacketSearch : public WidePolicy
 {
 public:
@@ -43,7 +44,7 @@ public:
   {
   }
 
-  /// Begin a packet. @return false if its rays lie too far apart, or where single precision ends
+  /// Begin a packet. @return false if its rays lie too far apart, or exceed single precision
   bool begin()
   {
     PacketState& s = this->State;

@@ -73,8 +73,8 @@ HWY_INLINE void testRays(const PacketView& view, const TriangleLanes& t, std::ui
     const auto inside = hn::Ge(edge, t.inside);
     const auto sure = hn::And(inside, hn::Gt(low, bestHigh));
     outcome.level |= bitsOf(lanes, hn::And(hn::AndNot(sure, inside), hn::Ge(high, bestLow))) << i;
-    // A ray that is accepted just beside the triangle has the range of a corner, not that of the
-    // plane where it passes.
+    // A ray that is accepted just beside the triangle has the range of a corner, not the range of
+    // the plane.
     outcome.unsure |= bitsOf(lanes, hn::AndNot(inside, near)) << i;
     const RayBits changed = bitsOf(lanes, sure);
     if (changed != 0)

@@ -7,7 +7,8 @@ namespace avianlidar
 {
 namespace
 {
-/// Movers with at most so many triangles get no tree; rays are tested against each triangle.
+/// Largest number of triangles of a mover without a tree. Rays are tested against each of these
+/// triangles.
 constexpr std::size_t FewMoved = 64;
 }
 
