@@ -102,7 +102,3 @@ class Paper(unittest.TestCase):
         file = next((SOURCE / "Testing").rglob(f"{suite}.py"), None)
         return f"def {case}(" in file.read_text(encoding="utf-8") if file else \
             re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}\)", self.kernel, re.M) is not None
-
-
-if __name__ == "__main__":
-    unittest.main()

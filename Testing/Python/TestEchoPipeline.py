@@ -216,7 +216,3 @@ class BeamMap(unittest.TestCase):
             echoes = np.isfinite(found["distance_m"])
             np.testing.assert_array_equal(echoes, np.isin(found["status"], (0, 3)))
             self.assertTrue(echoes.any() and not echoes.all())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import os
 import pathlib
 import struct
 import subprocess
-import unittest
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -311,7 +310,3 @@ class Written(InFolder):
         (warning,) = self.write(data)
         self.assertIn("'x', 'two_words'", warning)
         self.assertEqual((parse()[0]["FIELDS"], points(read(FILE)).tolist()), (["x", "y", "z", "two_words"], [[1, 2, 3]]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import subprocess
-import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -167,7 +166,3 @@ class Written(InFolder):
         add_array(data, "red", np.array([2.0]))
         add_array(data, "rgb", np.array([[1, 2, 3]], dtype="u1"))
         assert_refused(self, self.writer, data, FILE, "the point arrays 'red' and 'rgb' have one name")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 """Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors that name what is
 wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestBadInput's."""
 import itertools
-import unittest
 
 import numpy as np
 import vtk
@@ -212,7 +211,3 @@ class Tracks(InFolder):
                 (polyline(TWO_LINES, TIMES, ["crow"]), "'species' has 1 values"),
                 (numbers, "cell array 'species' is not")):
             self.assert_fails(self.from_lines(data), words)
-
-
-if __name__ == "__main__":
-    unittest.main()
