@@ -333,30 +333,6 @@ TEST(Air, UnitsAreIntegralsOfTheLaw)
   EXPECT_FALSE(filledBy(sensor, { 0.1, 20.0, 0.0 }).fillsScene());
 }
 
-TEST(Air, AFogThatExtinguishesTheBeamCalibratesACeilometer)
-{
-  // Integrated backscatter over r^2: exp(-2 mu R0)/(2 S).
-  Sensor sensor = sensorOf(Search905);
-  sensor.samplingInterval = 1e-10;
-  sensor.pulseWidth = 0.0;
-  sensor.rangeGate = 400.0;
-  for (const double extinction : { 0.05, 0.2 })
-  {
-    BeamAir echo = filledBy(sensor, { extinction, 18.8, 0.0 });
-    const double length = sensor.rangeUnitLength();
-    double all = 0.0;
-    const auto first = static_cast<std::int64_t>(std::ceil(1.0 / length));
-    for (std::int64_t unit = first; unit < echo.units(); ++unit)
-    {
-      const double r = length * static_cast<double>(unit);
-      all +=
-        echo.followed(unit) * r * (r + length) / (sensor.pulseEnergy * sensor.receiverAperture);
-    }
-    const double from = length * static_cast<double>(first);
-    EXPECT_NEAR(all / (std::exp(-2.0 * extinction * from) / (2.0 * 18.8)), 1.0, 1e-3);
-  }
-}
-
 TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
 {
   Sensor sensor = sensorOf(Search905);

@@ -278,21 +278,6 @@ TEST(Tracker, StopsWhereNobodyWaits)
   EXPECT_EQ(tracker.tracks().size(), 1u);
 }
 
-TEST(Tracker, ConfirmsNothingSlowerThanWanted)
-{
-  for (const double speed : { 0.0, 1.9, 2.1 })
-  {
-    TrackerSettings s = settings();
-    s.minimumSpeed = 2.0;
-    Tracker tracker;
-    for (int scan = 0; scan < 20; ++scan)
-    {
-      tracker.update(clustersOf({ Vec3(50.0 + speed * scan, 0.0, 0.0) }, scan), Vec3(0.0), scan, s);
-    }
-    EXPECT_EQ(tracker.tracks().at(0).confirmed, speed > 2.0) << speed;
-  }
-}
-
 TEST(Tracker, ErrorsFollowTheBeam)
 {
   const Cluster one{ { 0.0, 300.0, 400.0 }, 0.0, 0.09, 1 };
