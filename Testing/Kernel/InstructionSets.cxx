@@ -51,13 +51,6 @@ Vec3 unitVector(const Vec3& v)
   return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
 }
 
-void addBeam(ScanBeams& beams, const Vec3& origin, const Vec3& direction)
-{
-  beams.ids.push_back(beams.size());
-  beams.origins.push_back(origin);
-  beams.directions.push_back(unitVector(direction));
-}
-
 /// Boxes on level ground about `at`. Beams in four rows of neighbours meet several of them at once.
 Case street(const std::string& name, const Vec3& at)
 {
@@ -76,7 +69,7 @@ Case street(const std::string& name, const Vec3& at)
   {
     double east = 0.0, north = 0.0;
     lanes::cosSinOfTurns(0.25 * (i / 12) + 0.004 * (i % 12), east, north);
-    addBeam(result.beams, at, { east, north, 0.03 * (i % 4) - 0.03 });
+    addBeam(result.beams, unitVector({ east, north, 0.03 * (i % 4) - 0.03 }), at);
   }
   return result;
 }
@@ -98,7 +91,7 @@ Case ball()
   for (int i = 0; i < 12; ++i)
   {
     const Vec3 from = 25.0 * unitVector(random.inCube(1.0));
-    addBeam(result.beams, from, random.inCube(7.0) - from);
+    addBeam(result.beams, unitVector(random.inCube(7.0) - from), from);
   }
   return result;
 }
@@ -120,7 +113,7 @@ Case slivers()
   }
   for (int i = 0; i < 24; ++i)
   {
-    addBeam(result.beams, Vec3(0.0), { random(-15.0, 15.0), 40.0, random(-0.5, 4.0) });
+    addBeam(result.beams, unitVector({ random(-15.0, 15.0), 40.0, random(-0.5, 4.0) }));
   }
   return result;
 }
@@ -143,7 +136,7 @@ Case room()
     const Vec3 corner(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y,
       i & 4 ? (i & 8 ? half.z : -half.z) : random(-1.5, 1.5));
     const Vec3 from(random(-1.0, 1.0), random(-1.0, 1.0), 0.1);
-    addBeam(result.beams, from, corner + random.inCube(0.2) - from);
+    addBeam(result.beams, unitVector(corner + random.inCube(0.2) - from), from);
   }
   return result;
 }
@@ -175,7 +168,7 @@ Case panes()
   }
   for (int i = 0; i < 40; ++i)
   {
-    addBeam(result.beams, Vec3(0.0), { random(-6.0, 6.0), 50.0, random(-6.0, 6.0) });
+    addBeam(result.beams, unitVector({ random(-6.0, 6.0), 50.0, random(-6.0, 6.0) }));
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include "BirdTestScene.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -257,18 +258,8 @@ TEST(Bird, TablesThatAreWrongSayWhere)
 {
   const std::string header =
     "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n";
-  const auto errorOf = [](const std::string& text) -> std::string
-  {
-    try
-    {
-      readSpecies(text, "own.csv");
-    }
-    catch (const std::runtime_error& error)
-    {
-      return error.what();
-    }
-    return {};
-  };
+  const auto errorOf = [](const std::string& text)
+  { return statistics::errorOf([&]() { readSpecies(text, "own.csv"); }); };
   EXPECT_EQ(errorOf(header + "\n# swifts\nswift,0.04,0.17,0.42,0.016,no,10\n"), "");
   EXPECT_EQ(errorOf("\xEF\xBB\xBF" + header + "swift,0.04,0.17,0.42,0.016,no,10\n"), "");
   const std::pair<std::string, std::string> cases[] = {

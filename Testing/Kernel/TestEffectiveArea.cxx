@@ -4,6 +4,7 @@
 #include "BirdViews.h"
 #include "DetectionLaw.h"
 #include "Search905.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +12,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <random>
 #include <vector>
 
 using namespace birdtest;
+using statistics::meanOf;
 
 namespace
 {
@@ -46,10 +47,6 @@ std::vector<double> detectionByPose(double range, double elevation, bool gliding
   return found;
 }
 
-double meanOf(const std::vector<double>& values)
-{
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 }
 
 TEST(EffectiveArea, OfNothingAndOfALineIsZero)

@@ -68,10 +68,7 @@ TEST(Scan, AnyOrderAndAnyPartsOfTheBeamsGiveTheSameBits)
   const ScanBeams beams = horizon(180, 4);
   const ScanResult whole = runScan(setup, beams);
   std::vector<std::size_t> order(beams.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-  {
-    order[i] = i;
-  }
+  std::iota(order.begin(), order.end(), std::size_t{ 0 });
   std::shuffle(order.begin(), order.end(), std::mt19937_64(3));
   for (std::size_t parts : { 1, 2, 5 })
   {
@@ -79,13 +76,9 @@ TEST(Scan, AnyOrderAndAnyPartsOfTheBeamsGiveTheSameBits)
     std::vector<std::pair<std::uint64_t, Echo>> all;
     for (std::size_t part = 0; part < parts; ++part)
     {
-      ScanBeams some;
-      for (std::size_t i = part; i < order.size(); i += parts)
-      {
-        some.ids.push_back(beams.ids[order[i]]);
-        some.origins.push_back(beams.origins[order[i]]);
-        some.directions.push_back(beams.directions[order[i]]);
-      }
+      const std::size_t begin = order.size() * part / parts;
+      const std::size_t end = order.size() * (part + 1) / parts;
+      const ScanBeams some = chosen(beams, { order.begin() + begin, order.begin() + end });
       const ScanResult result = runScan(setup, some, 2);
       for (std::size_t i = 0; i < result.echoes.size(); ++i)
       {
