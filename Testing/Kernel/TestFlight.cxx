@@ -414,22 +414,6 @@ TEST(Flight, HeadingPitchAndBankFollowFromThePath)
   expectNear(waits.poses[0].orientation * Forward, Vec3(0.0, -1.0, 0.0), 1e-12);
 }
 
-TEST(Flight, TracksOfFiles)
-{
-  const auto flights = readFlights("# radar\n" + Header +
-      "17,herring gull,0,0,0,20\na,crow,5,1,2,3\n17,herring gull,2.5,0,25,20\n\na,crow,6,9,2,3\n",
-    "own.csv", shippedSpecies(), { 0.0, 0.0, 0.0 }, 0);
-  ASSERT_EQ(flights.size(), 2u);
-  EXPECT_EQ(flights[0].number, "17");
-  EXPECT_EQ(flights[1].number, "a");
-  EXPECT_EQ(shippedSpecies()[flights[1].species].name, "crow");
-  ASSERT_EQ(flights[0].poses.size(), 2u);
-  EXPECT_EQ(flights[0].poses[1].time, 2.5);
-  EXPECT_EQ(flights[0].poses[1].position, Vec3(0.0, 25.0, 20.0));
-  expectNear(flights[1].poses[0].orientation * Forward, Vec3(1.0, 0.0, 0.0), 1e-12);
-  EXPECT_NE(flights[0].wingPhase, flights[1].wingPhase);
-}
-
 TEST(Flight, FilesThatAreWrongSayWhere)
 {
   const std::string row = "1,crow,0,0,0,0\n";

@@ -220,39 +220,3 @@ TEST(NoiseBeam, AlmostEveryUnitAlarms)
   EXPECT_EQ(noise.energy(199), 0.0);
   EXPECT_GT(noise.energy(200), 0.0);
 }
-
-TEST(NoiseBeam, EachRevolutionHasItsOwn)
-{
-  const NoisePlan plan = planNoise(photonCounter(6.0, 3.0), true);
-  BeamNoise first;
-  first.begin(plan, 1, 2);
-  for (const std::int32_t revolution : { 1, 4095, 4096, -1, -4096, 2147483647, -2147483647 - 1 })
-  {
-    BeamNoise noise;
-    noise.begin(plan, 1, 2, revolution);
-    BeamNoise again;
-    again.begin(plan, 1, 2, revolution);
-    EXPECT_NE(first.alarms(), noise.alarms()) << revolution;
-    EXPECT_EQ(noise.alarms(), again.alarms()) << revolution;
-    // Correlation of two series of independent numbers: its standard deviation is 1/sqrt(units).
-    double xx = 0.0;
-    double yy = 0.0;
-    double xy = 0.0;
-    for (std::int64_t unit = 0; unit < plan.gateUnits; ++unit)
-    {
-      const double x = first.energy(unit) / plan.photonEnergy - 6.0;
-      const double y = noise.energy(unit) / plan.photonEnergy - 6.0;
-      EXPECT_EQ(noise.energy(unit), again.energy(unit));
-      xx += x * x;
-      yy += y * y;
-      xy += x * y;
-    }
-    const double units = static_cast<double>(plan.gateUnits);
-    EXPECT_LT(std::abs(xy) / std::sqrt(xx * yy), 4.5 / std::sqrt(units)) << revolution;
-  }
-  first.begin(plan, 1, 2, 0);
-  BeamNoise still;
-  still.begin(plan, 1, 2);
-  EXPECT_EQ(first.alarms(), still.alarms());
-  EXPECT_EQ(first.energy(17), still.energy(17));
-}

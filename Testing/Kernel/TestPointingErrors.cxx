@@ -78,26 +78,6 @@ TEST(PointingErrors, TiltHasTheRmsAboutEachAxis)
   }
 }
 
-TEST(PointingErrors, TiltOfOneMastHasTheRmsOverALongTime)
-{
-  // The mean of tones of different frequencies: their squares, to the cross terms of 1e5 periods.
-  const Pointing pointing(sway(0.5, 2.0, 7), Up);
-  statistics::Moments axes[2];
-  double largest = 0.0;
-  for (double time = 0.0; time < 50000.0; time += 0.0837)
-  {
-    const auto tilt = pointing.tilt(time);
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      axes[axis].add(tilt[axis]);
-      largest = std::max(largest, std::abs(tilt[axis]));
-    }
-  }
-  EXPECT_NEAR(axes[0].rms(), 0.5 * RadiansPerDegree, 0.005 * RadiansPerDegree);
-  EXPECT_NEAR(axes[1].rms(), 0.5 * RadiansPerDegree, 0.005 * RadiansPerDegree);
-  EXPECT_LT(largest, std::sqrt(2.0 * SwayTones) * 0.5 * RadiansPerDegree);
-}
-
 TEST(PointingErrors, TiltSwingsNearTheFrequency)
 {
   for (const double frequency : { 0.05, 0.5, 10.0 })

@@ -136,8 +136,10 @@ class Tracks(InFolder):
             self.assertAlmostEqual(np.degrees(field(block, "flap_amplitude")[1]), 35)
 
     def test_trails(self):
-        source = tracks(Pattern=pattern("File"), FileName=self.file(HEADER + ROWS))
+        """Of a file with a comment and an empty line."""
+        source = tracks(Pattern=pattern("File"), FileName=self.file("# radar\n" + HEADER + "\n" + ROWS))
         blocks = movers(source)
+        self.assertNotEqual(*(field(block, "flap_phase")[0] for block in blocks))
         trails = source.GetOutputDataObject(1)
         self.assertEqual(trails.GetNumberOfLines(), 2)
         np.testing.assert_array_equal(vtk_to_numpy(trails.GetPoints().GetData()),
