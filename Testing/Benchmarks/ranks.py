@@ -153,7 +153,7 @@ def main():
         (options.out / f"rank{rank}.json").write_text(json.dumps(found))
         return
     best, loads = measure(options.out.resolve(), options.rounds)
-    print(times_table(best), *results.machine(), f"load before each round: {loads}", sep="\n")
+    print(times_table(best), results.table(["machine", ""], results.machine(), words=True), f"load before each round: {loads}", sep="\n")
 
 
 if __name__ == "__main__":
