@@ -203,22 +203,15 @@ ScanBeams someOf(const ScanBeams& all, std::size_t count)
     return all;
   }
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  std::vector<std::size_t> chosen;
+  std::vector<std::size_t> places;
   for (std::size_t i = 0; i < count; ++i)
   {
     const double place = (static_cast<double>(i) + 0.5) * golden;
-    chosen.push_back(
+    places.push_back(
       static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(all.size())));
   }
-  std::sort(chosen.begin(), chosen.end());
-  ScanBeams some;
-  for (const std::size_t b : chosen)
-  {
-    some.ids.push_back(all.ids[b]);
-    some.origins.push_back(all.origins[b]);
-    some.directions.push_back(all.directions[b]);
-  }
-  return some;
+  std::sort(places.begin(), places.end());
+  return echotest::chosen(all, places);
 }
 
 /// The original method: no acceleration.

@@ -1,18 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What it costs to share a scene between MPI ranks, to trace and to gather.
+"""The table of Documentation/guide/parallel.md: times of tracing and of whole scans on MPI ranks.
 
-    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Benchmarks/ranks.py --page
+    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Testing/Benchmarks/ranks.py
 
-starts itself under `pvbatch --sym` on 1 and 2 ranks of one thread each, in turns, and prints tables;
---page brings the tables into Documentation/guide/parallel.md. Times are the least of all rounds: whatever else the
-machine does only adds to them. Tracing, and the constant of merging and building, are processor time, all else wall
-time. The page says how many rounds there were, and the load before each of them.
+starts itself under `pvbatch --sym` on 1 and 2 ranks of one thread each, in turns, and prints the table, the machine, and
+the load before each round. Times are the least of all rounds: whatever else the machine does only adds to them. Tracing is
+processor time, whole scans are wall time.
 """
 import argparse
 import contextlib
 import json
-import math
 import os
 import pathlib
 import subprocess
@@ -82,53 +80,28 @@ def pipeline(surfaces, own):
     return tree, echo
 
 
-def timed(work):
-    begin = time.perf_counter()
-    work()
-    return time.perf_counter() - begin
-
-
 def work_of_rank(scene):
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
     from vtkmodules.vtkParallelCore import vtkMultiProcessController
     controller = vtkMultiProcessController.GetGlobalController()
     rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
     surfaces = surfaces_of(scene)
-    found = {}
 
-    def least(name, seconds):
-        found[name] = min(found.get(name, math.inf), seconds)
-
-    for _ in range(8):
-        tree, echo = pipeline(surfaces, rank == 0)
-        controller.Barrier()
-        least("share", timed(lambda: tree.UpdatePiece(rank, ranks, 0)))
-        with alone():
-            own = pipeline(surfaces, True)[0]
-            least("merge and build", timed(own.Update))
-            found["triangles"] = own.GetOutput().GetNumberOfCells()
-    echo.UpdatePiece(rank, ranks, 0)
-    for _ in range(3):
-        controller.Barrier()
-        echo.SetSeed(echo.GetSeed() + 1)
-        least("scan", timed(lambda: echo.UpdatePiece(rank, ranks, 0)))
-
-    def gather():
-        if rank:
-            controller.Send(echo.GetOutput(), 0, 77)
-        for other in range(1, ranks if rank == 0 else 0):
-            controller.Receive(vtkPolyData(), other, 77)
-    for _ in range(5):
-        controller.Barrier()
-        least("gather", timed(gather))
-    with alone():  # the processor time of tracing, without the others
-        echo = pipeline(surfaces, True)[1]
+    def least(clock, echo):
+        """Time of a scan of which nothing is known."""
         echo.UpdatePiece(rank, ranks, 0)
+        seconds = []
         for _ in range(3):
+            controller.Barrier()
             echo.SetSeed(echo.GetSeed() + 1)
-            begin = time.process_time()
+            begin = clock()
             echo.UpdatePiece(rank, ranks, 0)
-            least("trace", time.process_time() - begin)
+            seconds.append(clock() - begin)
+        return min(seconds)
+
+    tree, echo = pipeline(surfaces, rank == 0)
+    found = {"scan": least(time.perf_counter, echo), "triangles": tree.GetOutput().GetNumberOfCells()}
+    with alone():  # the processor time of tracing, without the others
+        found["trace"] = least(time.process_time, pipeline(surfaces, True)[1])
     return rank, found
 
 
@@ -156,27 +129,22 @@ def measure(out, rounds):
 
 
 def least_of(one, other):
-    """Times are the least of all rounds, all else is of the last."""
-    return {name: value if name == "triangles" else min(one[name], value) for name, value in other.items()}
+    return {name: min(one[name], value) for name, value in other.items()}
 
 
 def times_table(best):
     rows = []
     for (scene, ranks), found in best.items():
-        serial = best[scene, 1][0]["trace"]
-        ms = {name: 1e3 * max(rank[name] for rank in found)
-              for name in ("merge and build", "share", "trace", "scan", "gather")}
-        rows.append([scene, f"{found[0]['triangles']:,}", ranks, f"{ms['merge and build']:.1f}", f"{ms['share']:.1f}",
-                     f"{ms['trace']:.0f}", f"{1e3 * serial / ms['trace']:.2f}", f"{ms['scan']:.0f}", f"{ms['gather']:.1f}"])
-    return results.table(["scene", "triangles", "ranks", "merge and build alone, ms", "share and build, ms",
-                          "trace, dearest rank, ms", "speed-up", "scan together, ms", "gather, ms"], rows)
+        trace, scan = (1e3 * max(rank[name] for rank in found) for name in ("trace", "scan"))
+        speedup = 1e3 * best[scene, 1][0]["trace"] / trace
+        rows.append([scene, f"{found[0]['triangles']:,}", ranks, f"{trace:.0f}", f"{speedup:.2f}", f"{scan:.0f}"])
+    return results.table(["scene", "triangles", "ranks", "tracing, ms", "speed-up", "whole scan, ms"], rows)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/ranks"), help="folder for results")
     parser.add_argument("--rounds", type=int, default=3, help="each in processes of their own")
-    parser.add_argument("--page", action="store_true", help="bring the tables into the page")
     parser.add_argument("--rank", help=argparse.SUPPRESS)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -185,11 +153,7 @@ def main():
         (options.out / f"rank{rank}.json").write_text(json.dumps(found))
         return
     best, loads = measure(options.out.resolve(), options.rounds)
-    machine = [*results.machine(), ("rounds", len(loads)), ("load before each", ", ".join(f"{load:.1f}" for load in loads))]
-    tables = {"machine": results.table(["machine", ""], machine, words=True), "ranks-times": times_table(best)}
-    print(*tables.values(), sep="\n")
-    if options.page:
-        results.put_into_pages(tables)
+    print(times_table(best), results.table(["machine", ""], results.machine(), words=True), f"load before each round: {loads}", sep="\n")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -121,13 +122,44 @@ inline ScanSetup makeSetup(const Scene& scene, const Sensor& sensor, const EchoS
   return setup;
 }
 
+/// Add a beam with the next id.
+inline void addBeam(ScanBeams& beams, const Vec3& direction, const Vec3& origin = Vec3(0.0))
+{
+  beams.ids.push_back(beams.ids.size());
+  beams.origins.push_back(origin);
+  beams.directions.push_back(direction);
+}
+
 inline ScanBeams oneBeam(const Vec3& direction = { 1.0, 0.0, 0.0 }, const Vec3& origin = Vec3(0.0))
 {
   ScanBeams beams;
-  beams.ids = { 0 };
-  beams.origins = { origin };
-  beams.directions = { direction };
+  addBeam(beams, direction, origin);
   return beams;
+}
+
+/// Beams of these places in the list, as they are.
+inline ScanBeams chosen(const ScanBeams& all, const std::vector<std::size_t>& places)
+{
+  ScanBeams some;
+  for (const std::size_t b : places)
+  {
+    some.ids.push_back(all.ids[b]);
+    some.origins.push_back(all.origins[b]);
+    some.directions.push_back(all.directions[b]);
+    if (!all.times.empty())
+    {
+      some.times.push_back(all.times[b]);
+    }
+  }
+  return some;
+}
+
+/// Places [begin, end).
+inline ScanBeams chosen(const ScanBeams& all, std::size_t begin, std::size_t end)
+{
+  std::vector<std::size_t> places(end - begin);
+  std::iota(places.begin(), places.end(), begin);
+  return chosen(all, places);
 }
 
 /// Beams along x that differ in their ids, so in their rays.
@@ -136,9 +168,7 @@ inline ScanBeams alike(int count)
   ScanBeams beams;
   for (int i = 0; i < count; ++i)
   {
-    beams.ids.push_back(i);
-    beams.origins.emplace_back(0.0);
-    beams.directions.emplace_back(1.0, 0.0, 0.0);
+    addBeam(beams, Vec3(1.0, 0.0, 0.0));
   }
   return beams;
 }

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fixed scenes through the kernel's public doors, every number written with all its bits, for
+// Fixed scenes through the kernel's public doors, every number printed with all its bits, for
 // compare_instruction_sets.py, which runs this program on several processors.
 //
 // Scenes are made without libm, whose results depend on the processor: what differs then differs
 // inside the kernel.
-//
-// usage: avianlidarInstructionSets FILE
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "LaneMath.h"
-#include "SameEchoes.h"
 #include "VolumeTree.h"
 
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
 using namespace echotest;
@@ -43,38 +38,6 @@ const char* instructionSet()
 }
 #endif
 
-/// FNV-1a, of 64-bit words.
-class Fingerprint
-{
-public:
-  void add(std::uint64_t word) { this->Value = (this->Value ^ word) * 1099511628211u; }
-  void add(double value) { this->add(lanes::bitsOf(value)); }
-  std::uint64_t value() const { return this->Value; }
-
-private:
-  std::uint64_t Value = 14695981039346656037u;
-};
-
-/// Equal where libm gives the same bits: glibc has versions of these functions with and without
-/// fused multiply-adds, and takes what the processor has.
-std::uint64_t fingerprintOfLibm()
-{
-  Numbers random(1);
-  Fingerprint result;
-  for (int i = 0; i < 3000; ++i)
-  {
-    volatile double argument = random(0.01, 1.5);
-    const double x = argument;
-    for (double y :
-      { std::sin(x), std::cos(x), std::tan(x), std::exp(-x), std::log(x), std::pow(x, 112.0),
-        std::expm1(-x), std::log1p(-0.5 * x), std::asin(0.6 * x), std::hypot(x, 1.0) })
-    {
-      result.add(y);
-    }
-  }
-  return result.value();
-}
-
 struct Case
 {
   std::string name;
@@ -86,13 +49,6 @@ struct Case
 Vec3 unitVector(const Vec3& v)
 {
   return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
-void addBeam(ScanBeams& beams, const Vec3& origin, const Vec3& direction)
-{
-  beams.ids.push_back(beams.size());
-  beams.origins.push_back(origin);
-  beams.directions.push_back(unitVector(direction));
 }
 
 /// Boxes on level ground about `at`. Beams in four rows of neighbours meet several of them at once.
@@ -113,7 +69,7 @@ Case street(const std::string& name, const Vec3& at)
   {
     double east = 0.0, north = 0.0;
     lanes::cosSinOfTurns(0.25 * (i / 12) + 0.004 * (i % 12), east, north);
-    addBeam(result.beams, at, { east, north, 0.03 * (i % 4) - 0.03 });
+    addBeam(result.beams, unitVector({ east, north, 0.03 * (i % 4) - 0.03 }), at);
   }
   return result;
 }
@@ -135,7 +91,7 @@ Case ball()
   for (int i = 0; i < 12; ++i)
   {
     const Vec3 from = 25.0 * unitVector(random.inCube(1.0));
-    addBeam(result.beams, from, random.inCube(7.0) - from);
+    addBeam(result.beams, unitVector(random.inCube(7.0) - from), from);
   }
   return result;
 }
@@ -157,7 +113,7 @@ Case slivers()
   }
   for (int i = 0; i < 24; ++i)
   {
-    addBeam(result.beams, Vec3(0.0), { random(-15.0, 15.0), 40.0, random(-0.5, 4.0) });
+    addBeam(result.beams, unitVector({ random(-15.0, 15.0), 40.0, random(-0.5, 4.0) }));
   }
   return result;
 }
@@ -180,7 +136,7 @@ Case room()
     const Vec3 corner(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y,
       i & 4 ? (i & 8 ? half.z : -half.z) : random(-1.5, 1.5));
     const Vec3 from(random(-1.0, 1.0), random(-1.0, 1.0), 0.1);
-    addBeam(result.beams, from, corner + random.inCube(0.2) - from);
+    addBeam(result.beams, unitVector(corner + random.inCube(0.2) - from), from);
   }
   return result;
 }
@@ -212,111 +168,63 @@ Case panes()
   }
   for (int i = 0; i < 40; ++i)
   {
-    addBeam(result.beams, Vec3(0.0), { random(-6.0, 6.0), 50.0, random(-6.0, 6.0) });
+    addBeam(result.beams, unitVector({ random(-6.0, 6.0), 50.0, random(-6.0, 6.0) }));
   }
   return result;
 }
 
-class Writer
+/// Whole numbers are compared as they are, the others with a tolerance where libm differs. NaN is
+/// printed without its sign, which says nothing.
+void printRow(std::initializer_list<long long> whole, std::initializer_list<double> real)
 {
-public:
-  explicit Writer(const char* path)
-    : File(std::fopen(path, "w"))
+  for (long long value : whole)
   {
-    if (!this->File)
-    {
-      std::perror(path);
-      std::exit(EXIT_FAILURE);
-    }
+    std::printf("%lld ", value);
   }
-  ~Writer()
+  std::printf("|");
+  for (double value : real)
   {
-    if (std::ferror(this->File) || std::fclose(this->File) != 0)
-    {
-      std::perror("writing");
-      std::abort();
-    }
+    std::printf(" %a", std::isnan(value) ? std::fabs(value) : value);
   }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
+  std::printf("\n");
+}
 
-  void text(const std::string& words) { std::fprintf(this->File, "%s\n", words.c_str()); }
-  /// Whole numbers are compared as they are, the others with a tolerance where libm differs. NaN is
-  /// written without its sign, which says nothing.
-  void row(std::initializer_list<long long> whole, std::initializer_list<double> real)
-  {
-    for (long long value : whole)
-    {
-      std::fprintf(this->File, "%lld ", value);
-    }
-    std::fputc('|', this->File);
-    for (double value : real)
-    {
-      std::fprintf(this->File, " %a", std::isnan(value) ? std::fabs(value) : value);
-    }
-    std::fputc('\n', this->File);
-  }
-
-private:
-  std::FILE* File;
-};
-
-/// The numbers of volumes, all of which are doubles.
-template <class Volume>
-void addNumbers(const std::vector<Volume>& volumes, Fingerprint& all)
+/// FNV-1a of the bytes of elements without padding.
+template <class T>
+void include(std::uint64_t& hash, const std::vector<T>& elements)
 {
-  static_assert(sizeof(Volume) % sizeof(double) == 0, "doubles alone");
-  std::vector<double> numbers(volumes.size() * sizeof(Volume) / sizeof(double));
-  std::memcpy(numbers.data(), volumes.data(), numbers.size() * sizeof(double));
-  for (const double value : numbers)
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(elements.data());
+  for (std::size_t i = 0; i < elements.size() * sizeof(T); ++i)
   {
-    all.add(value);
+    hash = (hash ^ bytes[i]) * 1099511628211u;
   }
 }
 
 /// Trees are the same numbers whatever libm does.
-void writeTrees(Writer& out, const Case& c)
+void printTrees(const Case& c)
 {
+  std::printf("section trees %s: hash\n", c.name.c_str());
   for (int rule = 0; rule < 4; ++rule)
   {
     for (int volume = 0; volume < 3; ++volume)
     {
-      const TreeOptions options{ static_cast<SplitRule>(rule),
-        static_cast<BoundingVolumeType>(volume), 4 };
-      const auto tree = buildVolumeTree(c.scene.mesh, options);
-      Fingerprint all;
+      const auto tree = buildVolumeTree(
+        c.scene.mesh, { static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), 4 });
       const auto binary = volumesOf(*tree);
-      for (const BinaryNode& node : binary->nodes)
-      {
-        all.add(static_cast<std::uint64_t>(node.begin) << 32 | node.count);
-      }
-      for (std::uint32_t value : tree->order)
-      {
-        all.add(static_cast<std::uint64_t>(value));
-      }
-      std::visit([&](const auto& volumes) { addNumbers(volumes, all); }, binary->volumes);
-      for (const WideNode& node : tree->wide.nodes)
-      {
-        for (int lane = 0; lane < WideNode::Width; ++lane)
-        {
-          all.add(static_cast<std::uint64_t>(node.first[lane]) << 32 | node.count[lane]);
-          for (float value : { node.x[lane], node.y[lane], node.z[lane], node.halfX[lane],
-                 node.halfY[lane], node.halfZ[lane] })
-          {
-            all.add(static_cast<double>(value));
-          }
-        }
-      }
-      out.text("section tree " + c.name + " : fingerprint |");
-      out.row({ static_cast<long long>(all.value()) }, {});
+      std::uint64_t hash = 14695981039346656037u;
+      include(hash, binary->nodes);
+      include(hash, tree->order);
+      std::visit([&](const auto& volumes) { include(hash, volumes); }, binary->volumes);
+      include(hash, tree->wide.nodes);
+      printRow({ static_cast<long long>(hash) }, {});
     }
   }
 }
 
-void writeHits(Writer& out, const Case& c, const CollisionTree& tree, std::size_t numberOfRays,
+void printHits(const Case& c, const CollisionTree& tree, std::size_t numberOfRays,
   std::size_t numberOfBeams, TraceMode mode)
 {
-  out.text("section hits " + c.name + " : triangle | range");
+  std::printf("section hits %s: triangle | range\n", c.name.c_str());
   const StrataPartition strata(numberOfRays);
   OneBeamTracer tracer(tree);
   BeamRays rays;
@@ -329,46 +237,46 @@ void writeHits(Writer& out, const Case& c, const CollisionTree& tree, std::size_
     tracer.trace(rays, mode, hits);
     for (const Hit& hit : hits)
     {
-      out.row({ hit.triangle }, { hit.range });
+      printRow({ hit.triangle }, { hit.range });
     }
   }
 }
 
-void writeEchoes(Writer& out, const Case& c, const Sensor& sensor, const EchoSettings& settings)
+void printEchoes(const Case& c, const Sensor& sensor, const EchoSettings& settings)
 {
   const ScanResult result = runScan(makeSetup(c.scene, sensor, settings), c.beams);
-  out.text("section echoes " + c.name +
-    " : beam return returns object material | range energyReceived energy returnEnergy "
-    "energyStdError "
-    "labelShare incidenceAngle secondaryShare");
+  std::printf(
+    "section echoes %s: beam return returns object material | range energyReceived energy "
+    "returnEnergy energyStdError labelShare incidenceAngle secondaryShare\n",
+    c.name.c_str());
   for (std::size_t i = 0; i < result.echoes.size(); ++i)
   {
     const Echo& e = result.echoes[i];
-    out.row({ static_cast<long long>(result.beamOfEcho[i]), e.returnNumber, e.numberOfReturns,
-              e.objectId, e.materialId },
+    printRow({ static_cast<long long>(result.beamOfEcho[i]), e.returnNumber, e.numberOfReturns,
+               e.objectId, e.materialId },
       { e.range, e.energyReceived, e.energy, e.returnEnergy, e.energyStdError, e.labelShare,
         e.incidenceAngle, e.secondaryShare });
   }
-  out.text("section beams " + c.name + " : status rays | range lost");
+  std::printf("section beams %s: status rays | range lost\n", c.name.c_str());
   for (const BeamReport& r : result.reports)
   {
-    out.row({ static_cast<long long>(r.status), static_cast<long long>(r.counters.raysTraced) },
+    printRow({ static_cast<long long>(r.status), static_cast<long long>(r.counters.raysTraced) },
       { r.range, r.lost });
   }
 }
 
 /// Every loop of lighting and receiving: all models, profiles, samplings, noise with and without
 /// alarms, pulses as short as nothing and longer than a range unit.
-void writeScans(Writer& out, const Case& c)
+void printScans(const Case& c)
 {
   Sensor sensor;
   sensor.halfBeamwidth = c.halfBeamwidth;
   sensor.lowerEnergyLimit = 2e-8;
   EchoSettings settings;
   settings.raysPerBeam = 3; // beams of so few rays are traced together
-  writeEchoes(out, c, sensor, settings);
+  printEchoes(c, sensor, settings);
   settings.raysPerBeam = 40;
-  writeEchoes(out, c, sensor, settings);
+  printEchoes(c, sensor, settings);
 
   sensor.beamProfile = BeamProfile::Gaussian;
   sensor.pulseWidth = 12e-9;
@@ -379,7 +287,7 @@ void writeScans(Writer& out, const Case& c)
   settings.attenuationCoefficient = 2e-3;
   settings.lightEnergyConstraint = false;
   settings.returnMode = ReturnMode::RangeUnits;
-  writeEchoes(out, c, sensor, settings);
+  printEchoes(c, sensor, settings);
 
   sensor.pulseWidth = 0.0;
   sensor.noisePhotonRate = 1e9; // 5 photons a unit
@@ -389,11 +297,11 @@ void writeScans(Writer& out, const Case& c)
   settings.reflectanceModel = ReflectanceModel::Microfacet;
   settings.lightEnergyConstraint = true;
   settings.returnMode = ReturnMode::All;
-  writeEchoes(out, c, sensor, settings);
+  printEchoes(c, sensor, settings);
 }
 
 /// Planes that fill beams, of one surface and of several.
-void writeIntegrals(Writer& out)
+void printIntegrals()
 {
   const Case c = panes();
   EchoSettings settings;
@@ -410,39 +318,29 @@ void writeIntegrals(Writer& out)
       sensor.pulseWidth = 2e-9;
       sensor.beamProfile = profile;
       settings.reflectanceModel = model;
-      writeEchoes(out, c, sensor, settings);
+      printEchoes(c, sensor, settings);
     }
   }
 }
 }
 
-int main(int argc, char* argv[])
+int main()
 {
-  if (argc != 2)
-  {
-    std::fprintf(stderr, "usage: %s FILE\n", argv[0]);
-    return EXIT_FAILURE;
-  }
-  Writer out(argv[1]);
-  char libm[17];
-  std::snprintf(libm, sizeof libm, "%016llx", static_cast<unsigned long long>(fingerprintOfLibm()));
-  out.text(std::string("instruction set ") + instructionSet());
-  out.text(std::string("libm ") + libm);
+  std::printf("%s\n", instructionSet());
   for (const Case& c : { street("street", Vec3(0.0)), street("far", Vec3(3.2e5, 4.1e6, 40.0)),
          ball(), slivers(), room() })
   {
-    writeTrees(out, c);
+    printTrees(c);
     const auto tree = buildVolumeTree(c.scene.mesh, TreeOptions{});
     const auto unfolded = buildVolumeTree(
       c.scene.mesh, { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::OBB, 4 });
-    writeHits(out, c, *tree, 1, c.beams.size(), TraceMode::Automatic);
-    writeHits(out, c, *tree, 16, c.beams.size(), TraceMode::Automatic);
-    writeHits(out, c, *tree, 16, c.beams.size(), TraceMode::SingleRays);
-    writeHits(out, c, *unfolded, 16, 12, TraceMode::Automatic);
-    writeHits(out, c, *tree, 100, 12, TraceMode::Automatic);
-    writeHits(out, c, *tree, 1000, 3, TraceMode::Automatic);
-    writeScans(out, c);
+    printHits(c, *tree, 1, c.beams.size(), TraceMode::Automatic);
+    printHits(c, *tree, 16, c.beams.size(), TraceMode::Automatic);
+    printHits(c, *tree, 16, c.beams.size(), TraceMode::SingleRays);
+    printHits(c, *unfolded, 16, 12, TraceMode::Automatic);
+    printHits(c, *tree, 100, 12, TraceMode::Automatic);
+    printHits(c, *tree, 1000, 3, TraceMode::Automatic);
+    printScans(c);
   }
-  writeIntegrals(out);
-  return EXIT_SUCCESS;
+  printIntegrals();
 }

@@ -45,9 +45,7 @@ inline ScanBeams around(unsigned seed, int count)
   for (int i = 0; i < count; ++i)
   {
     const double turn = draw(0.0, 2.0 * Pi);
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(Vec3(std::cos(turn), std::sin(turn), draw(-0.8, 0.8)));
+    addBeam(beams, Vec3(std::cos(turn), std::sin(turn), draw(-0.8, 0.8)));
   }
   return beams;
 }

@@ -5,6 +5,7 @@
 
 #include "Scan.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace echotest
@@ -26,9 +27,15 @@ inline std::size_t firstDifference(const avianlidar::ScanResult& a, const avianl
   return i;
 }
 
+/// Number of echoes from the first one on of which two scans differ.
+inline std::size_t differingEchoes(const avianlidar::ScanResult& a, const avianlidar::ScanResult& b)
+{
+  return std::max(a.echoes.size(), b.echoes.size()) - firstDifference(a, b);
+}
+
 inline bool sameEchoes(const avianlidar::ScanResult& a, const avianlidar::ScanResult& b)
 {
-  return a.echoes.size() == b.echoes.size() && firstDifference(a, b) == a.echoes.size();
+  return differingEchoes(a, b) == 0;
 }
 }
 

@@ -53,10 +53,10 @@ inline ScanBeams horizon(int columns, int channels, const Vec3& origin = Vec3(0.
   {
     const double azimuth = 2.0 * Pi * (i / channels) / columns;
     const double elevation = Degree * (i % channels);
-    beams.ids.push_back(i);
-    beams.origins.push_back(origin);
-    beams.directions.push_back(Vec3(std::sin(azimuth) * std::cos(elevation),
-      std::cos(azimuth) * std::cos(elevation), std::sin(elevation)));
+    addBeam(beams,
+      Vec3(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
+        std::sin(elevation)),
+      origin);
   }
   return beams;
 }

@@ -5,13 +5,13 @@
 #include "Drops.h"
 #include "PhotonReceiver.h"
 #include "Receiver.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <vector>
 
@@ -127,15 +127,6 @@ std::vector<double> pointsOf(
   return counts;
 }
 
-double sum(const std::vector<double>& values)
-{
-  double all = 0.0;
-  for (const double value : values)
-  {
-    all += value;
-  }
-  return all;
-}
 }
 
 TEST(Medium, RainIsThatOfMarshallAndPalmer)
@@ -333,30 +324,6 @@ TEST(Air, UnitsAreIntegralsOfTheLaw)
   EXPECT_FALSE(filledBy(sensor, { 0.1, 20.0, 0.0 }).fillsScene());
 }
 
-TEST(Air, AFogThatExtinguishesTheBeamCalibratesACeilometer)
-{
-  // Integrated backscatter over r^2: exp(-2 mu R0)/(2 S).
-  Sensor sensor = sensorOf(Search905);
-  sensor.samplingInterval = 1e-10;
-  sensor.pulseWidth = 0.0;
-  sensor.rangeGate = 400.0;
-  for (const double extinction : { 0.05, 0.2 })
-  {
-    BeamAir echo = filledBy(sensor, { extinction, 18.8, 0.0 });
-    const double length = sensor.rangeUnitLength();
-    double all = 0.0;
-    const auto first = static_cast<std::int64_t>(std::ceil(1.0 / length));
-    for (std::int64_t unit = first; unit < echo.units(); ++unit)
-    {
-      const double r = length * static_cast<double>(unit);
-      all +=
-        echo.followed(unit) * r * (r + length) / (sensor.pulseEnergy * sensor.receiverAperture);
-    }
-    const double from = length * static_cast<double>(first);
-    EXPECT_NEAR(all / (std::exp(-2.0 * extinction * from) / (2.0 * 18.8)), 1.0, 1e-3);
-  }
-}
-
 TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
 {
   Sensor sensor = sensorOf(Search905);
@@ -370,7 +337,7 @@ TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
   // A threshold that follows leaves all units alike.
   const std::vector<double> follows = pointsOf(sensor, echo, beams);
   const double expected = beams * units * tail(k);
-  EXPECT_NEAR(sum(follows), expected, 3.0 * std::sqrt(expected));
+  EXPECT_NEAR(statistics::sumOf(follows), expected, 3.0 * std::sqrt(expected));
   sensor.thresholdLaw = ThresholdLaw::Fixed;
   std::vector<double> ofAir;
   const std::vector<double> fixed = pointsOf(sensor, echo, beams, &ofAir);
@@ -386,7 +353,7 @@ TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
     variance += beams * p * (1.0 - p);
     last = p > 0.5 ? static_cast<std::size_t>(unit) : last;
   }
-  EXPECT_NEAR(sum(fixed), truth, 3.0 * std::sqrt(variance));
+  EXPECT_NEAR(statistics::sumOf(fixed), truth, 3.0 * std::sqrt(variance));
   EXPECT_NEAR(fixed[last], 0.5 * beams, 0.2 * beams);
   EXPECT_GT(std::count_if(ofAir.begin(), ofAir.end(), [](double share) { return share > 0.5; }),
     0.95 * static_cast<double>(ofAir.size()));
@@ -482,8 +449,10 @@ TEST(Air, RainMakesPointsByItsLaw)
     }
   }
   EXPECT_GT(looked, 150u);
-  EXPECT_GT(sum(points), 20.0 * beams); // a hundred metres of rain are full of points
-  EXPECT_LT(sum({ points.begin() + static_cast<std::ptrdiff_t>(looked), points.end() }), 10.0);
+  EXPECT_GT(statistics::sumOf(points), 20.0 * beams); // a hundred metres of rain are full of points
+  EXPECT_LT(
+    statistics::sumOf({ points.begin() + static_cast<std::ptrdiff_t>(looked), points.end() }),
+    10.0);
 }
 
 TEST(Air, DropsShareTheirPulsesBetweenUnits)

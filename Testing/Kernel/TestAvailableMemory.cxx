@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AvailableMemory.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -43,15 +44,7 @@ private:
 
 std::string messageOf(double count, double bytes)
 {
-  try
-  {
-    requireMemory(count, "beams", bytes);
-  }
-  catch (const MemoryError& error)
-  {
-    return error.what();
-  }
-  return "";
+  return statistics::errorOf([=]() { requireMemory(count, "beams", bytes); });
 }
 }
 

@@ -27,62 +27,37 @@ void roundToSingle(Scene& scene)
 }
 }
 
-TEST(CoincidentFaces, TheLowerNumberIsSeenByRays)
+TEST(CoincidentFaces, TheLowerNumberIsSeenInEveryWay)
 {
-  for (const int parts : { 20, 60 })
+  struct Way
   {
-    for (const CoincidentPlates& pair : pairs(parts))
+    int parts;
+    EchoSettings ofPair, ofSeen;
+    double tolerance;
+    int volumes; ///< of trees
+  };
+  for (const Way& way : { Way{ 20, directSettings(1000), directSettings(1000), 1e-6, 3 },
+         Way{ 60, directSettings(1000), directSettings(1000), 1e-6, 1 },
+         Way{ 20, inCells(), inCells(), 3e-3, 1 }, Way{ 60, inCells(), inCells(), 3e-3, 1 },
+         Way{ 8, inCells(9000), inCells(), 1e-5, 1 } }) // the last integrates polygons
+  {
+    for (const CoincidentPlates& pair : pairs(way.parts))
     {
       for (const bool wallFirst : { true, false })
       {
-        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), directSettings(1000));
+        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), way.ofSeen);
         for (const Vec3& place : { Vec3(0.0), Utm })
         {
-          for (int volume = 0; volume < (parts > 20 ? 1 : 3); ++volume)
+          for (int volume = 0; volume < way.volumes; ++volume)
           {
             TreeOptions options;
             options.boundingVolume = static_cast<BoundingVolumeType>(volume);
-            EXPECT_NEAR(
-              receivedAt(place, pair.scene(wallFirst), directSettings(1000), options) / right, 1.0,
-              1e-6)
-              << parts << ' ' << pair.u.x << ' ' << wallFirst << ' ' << place.x << ' ' << volume;
+            EXPECT_NEAR(receivedAt(place, pair.scene(wallFirst), way.ofPair, options) / right, 1.0,
+              way.tolerance)
+              << way.parts << ' ' << pair.u.x << ' ' << wallFirst << ' ' << place.x << ' '
+              << volume;
           }
         }
-      }
-    }
-  }
-}
-
-TEST(CoincidentFaces, TheLowerNumberIsSeenInCells)
-{
-  for (const int parts : { 20, 60 })
-  {
-    for (const CoincidentPlates& pair : pairs(parts))
-    {
-      for (const bool wallFirst : { true, false })
-      {
-        const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), inCells());
-        for (const Vec3& place : { Vec3(0.0), Utm })
-        {
-          EXPECT_NEAR(receivedAt(place, pair.scene(wallFirst), inCells()) / right, 1.0, 3e-3)
-            << parts << ' ' << pair.u.x << ' ' << wallFirst << ' ' << place.x;
-        }
-      }
-    }
-  }
-}
-
-TEST(CoincidentFaces, TheLowerNumberIsSeenInPolygons)
-{
-  for (const CoincidentPlates& pair : pairs(8))
-  {
-    for (const bool wallFirst : { true, false })
-    {
-      const double right = receivedAt(Vec3(0.0), pair.seen(wallFirst), inCells());
-      for (const Vec3& place : { Vec3(0.0), Utm })
-      {
-        EXPECT_NEAR(receivedAt(place, pair.scene(wallFirst), inCells(9000)) / right, 1.0, 1e-5)
-          << pair.u.x << ' ' << wallFirst << ' ' << place.x;
       }
     }
   }

@@ -2,6 +2,7 @@
 #include "CollisionTree.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
+#include "Statistics.h"
 #include "VolumeTree.h"
 
 #include <gtest/gtest.h>
@@ -108,15 +109,8 @@ void expectWhole(const CollisionTree& tree)
 
 std::string errorOf(const TriangleMesh& mesh)
 {
-  try
-  {
-    buildVolumeTree(std::make_shared<TriangleMesh>(mesh), TreeOptions());
-  }
-  catch (const std::invalid_argument& error)
-  {
-    return error.what();
-  }
-  return {};
+  return statistics::errorOf(
+    [&]() { buildVolumeTree(std::make_shared<TriangleMesh>(mesh), TreeOptions()); });
 }
 }
 

@@ -237,34 +237,6 @@ TEST(Coverage, MoreAreaLightOrBeamsSeeNoLess)
   }
 }
 
-TEST(Coverage, TheSameOnAnyThreadsAndStops)
-{
-  const Site site(town(), search905(), horizon(100, 4));
-  std::vector<Vec3> places;
-  for (int i = 0; i < 30000; ++i)
-  {
-    places.emplace_back(400.0 * std::sin(i), 400.0 * std::cos(1.7 * i), i % 40);
-  }
-  for (std::size_t e = 0; e < site.still.echoes.size(); ++e) // before walls
-  {
-    places.push_back((site.still.echoes[e].range - 0.6) *
-      unitVector(site.beams.directions[site.still.beamOfEcho[e]]));
-  }
-  const auto one = site.look(places, 1);
-  const auto two = site.look(places, 2);
-  std::size_t hidden = 0;
-  for (std::size_t i = 0; i < places.size(); ++i)
-  {
-    ASSERT_EQ(one[i].status, two[i].status);
-    ASSERT_EQ(one[i].isHidden, two[i].isHidden);
-    hidden += one[i].isHidden;
-  }
-  EXPECT_GT(hidden, 1000u);
-  std::vector<CoverageSight> sights(places.size());
-  EXPECT_FALSE(site.coverage.look(
-    at(places), places.size(), 1, [](double done) { return done < 0.3; }, sights.data()));
-}
-
 TEST(Coverage, BeamsOfSeveralOriginsAreRefused)
 {
   ScanBeams beams = horizon(4, 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Means and standard errors against their formulas and repeated draws, and strike heights.
 #include "CoverageShares.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -30,8 +31,7 @@ TEST(CoverageShares, ErrorsOfWeightedMeansAreThoseOfRepeatedDraws)
 {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  double sum = 0.0;
-  double squares = 0.0;
+  statistics::Moments means;
   double errors = 0.0;
   constexpr int repeats = 2000;
   for (int r = 0; r < repeats; ++r)
@@ -42,12 +42,11 @@ TEST(CoverageShares, ErrorsOfWeightedMeansAreThoseOfRepeatedDraws)
       const double x = uniform(random);
       mean.add(0.2 + x, uniform(random) < x ? 1.0 : 0.0);
     }
-    sum += mean.mean();
-    squares += mean.mean() * mean.mean();
+    means.add(mean.mean());
     errors += mean.stdError();
   }
-  const double spread = std::sqrt(squares / repeats - sum * sum / (repeats * repeats));
-  EXPECT_NEAR(sum / repeats, (0.1 + 1.0 / 3.0) / 0.7, 0.003);
+  const double spread = std::sqrt(means.variance());
+  EXPECT_NEAR(means.mean(), (0.1 + 1.0 / 3.0) / 0.7, 0.003);
   EXPECT_NEAR(errors / repeats, spread, 0.06 * spread);
 }
 

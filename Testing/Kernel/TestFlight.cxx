@@ -2,6 +2,7 @@
 // Flights: courses, circles and their poses, flocks against what was measured, tracks of files.
 #include "BirdTestScene.h"
 #include "Flight.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -83,11 +84,10 @@ void expectSameBits(const Flight& a, const Flight& b)
   }
 }
 
-/// Mean and standard deviation of speeds over the airspeed.
-std::array<double, 2> spreadOfSpeeds(const std::vector<Flight>& flights, double airspeed)
+/// Speeds over the airspeed.
+statistics::Moments speedsOf(const std::vector<Flight>& flights, double airspeed)
 {
-  double sum = 0.0;
-  double squares = 0.0;
+  statistics::Moments speeds;
   for (const Flight& flight : flights)
   {
     const Pose& a = flight.poses[0];
@@ -95,11 +95,9 @@ std::array<double, 2> spreadOfSpeeds(const std::vector<Flight>& flights, double 
     const double speed = glm::length(b.position - a.position) / (b.time - a.time) / airspeed;
     EXPECT_GT(speed, 0.7 - 1e-9);
     EXPECT_LT(speed, 1.3 + 1e-9);
-    sum += speed;
-    squares += speed * speed;
+    speeds.add(speed);
   }
-  const double mean = sum / flights.size();
-  return { mean, std::sqrt(squares / flights.size() - mean * mean) };
+  return speeds;
 }
 
 std::vector<double> nearestDistances(const std::vector<Vec3>& places)
@@ -117,16 +115,6 @@ std::vector<double> nearestDistances(const std::vector<Vec3>& places)
   return nearest;
 }
 
-double meanOf(const std::vector<double>& values)
-{
-  double sum = 0.0;
-  for (const double value : values)
-  {
-    sum += value;
-  }
-  return sum / values.size();
-}
-
 /// Root mean squares of the coordinates.
 Vec3 extentOf(const std::vector<Vec3>& places)
 {
@@ -140,15 +128,7 @@ Vec3 extentOf(const std::vector<Vec3>& places)
 
 std::string errorOf(const std::string& text)
 {
-  try
-  {
-    readFlights(text, "own.csv", shippedSpecies(), {}, 0);
-  }
-  catch (const std::runtime_error& error)
-  {
-    return error.what();
-  }
-  return {};
+  return statistics::errorOf([&]() { readFlights(text, "own.csv", shippedSpecies(), {}, 0); });
 }
 
 const std::string Header = "id,species,time,x,y,z\n";
@@ -199,9 +179,9 @@ TEST(Flight, CrossingsAreLevelAndPassTheCenterInTheTimeRange)
   EXPECT_NEAR(times, 25.0, 5.0 * 50.0 / std::sqrt(12.0 * 2000.0));
   EXPECT_NEAR(heights, 80.0, 5.0 * 140.0 / std::sqrt(12.0 * 2000.0));
   EXPECT_LT(glm::length(directions), 5.0 / std::sqrt(2000.0));
-  const auto [mean, spread] = spreadOfSpeeds(flights, 12.5);
-  EXPECT_NEAR(mean, 1.0, 0.012);
-  EXPECT_NEAR(spread, 0.1, 0.01);
+  const statistics::Moments speeds = speedsOf(flights, 12.5);
+  EXPECT_NEAR(speeds.mean(), 1.0, 0.012);
+  EXPECT_NEAR(std::sqrt(speeds.variance()), 0.1, 0.01);
 }
 
 TEST(Flight, CirclesAreBankedForTheirRadiusAndCloselyPosed)
@@ -335,7 +315,7 @@ TEST(Flight, NearestNeighboursInFlocksKeepAWingspanAndDoNotDependOnSize)
       all.insert(all.end(), nearest.begin(), nearest.end());
     }
     EXPECT_LT(*std::min_element(all.begin(), all.end()), 1.2 * span) << birds;
-    means.push_back(meanOf(all));
+    means.push_back(statistics::meanOf(all));
   }
   for (const double mean : means)
   {
@@ -432,22 +412,6 @@ TEST(Flight, HeadingPitchAndBankFollowFromThePath)
     { 3.0, Vec3(0.0, -5.0, 0.0), {} } };
   orientAlongPath(waits);
   expectNear(waits.poses[0].orientation * Forward, Vec3(0.0, -1.0, 0.0), 1e-12);
-}
-
-TEST(Flight, TracksOfFiles)
-{
-  const auto flights = readFlights("# radar\n" + Header +
-      "17,herring gull,0,0,0,20\na,crow,5,1,2,3\n17,herring gull,2.5,0,25,20\n\na,crow,6,9,2,3\n",
-    "own.csv", shippedSpecies(), { 0.0, 0.0, 0.0 }, 0);
-  ASSERT_EQ(flights.size(), 2u);
-  EXPECT_EQ(flights[0].number, "17");
-  EXPECT_EQ(flights[1].number, "a");
-  EXPECT_EQ(shippedSpecies()[flights[1].species].name, "crow");
-  ASSERT_EQ(flights[0].poses.size(), 2u);
-  EXPECT_EQ(flights[0].poses[1].time, 2.5);
-  EXPECT_EQ(flights[0].poses[1].position, Vec3(0.0, 25.0, 20.0));
-  expectNear(flights[1].poses[0].orientation * Forward, Vec3(1.0, 0.0, 0.0), 1e-12);
-  EXPECT_NE(flights[0].wingPhase, flights[1].wingPhase);
 }
 
 TEST(Flight, FilesThatAreWrongSayWhere)

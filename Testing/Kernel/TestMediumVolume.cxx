@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes of media: crossings against midpoints, nested shells, volumes that move, bad ones.
+// Volumes of media: crossings against midpoints, volumes that move, bad ones.
 #include "MediumTestScene.h"
 
 #include <algorithm>
@@ -93,33 +93,6 @@ TEST(MediumVolume, CrossingsAreIntegralsOfTheDensity)
       }
     }
     EXPECT_GT(met, 6);
-  }
-}
-
-TEST(MediumVolume, NestedShellsAndEitherWayOfFacing)
-{
-  MediumVolume mesh = meshOf(boxOf(Vec3(10.0, 0.0, 0.0), Vec3(2.0)));
-  auto inside = std::make_shared<TriangleMesh>(*mesh.surface->mesh);
-  for (auto& triangle : inside->triangles)
-  {
-    std::swap(triangle[1], triangle[2]);
-  }
-  mesh.surface = buildCollisionTree(inside, TreeOptions{}, {}, 1);
-  MediumCrosser crosser;
-  // Along a diagonal of its sides, through an edge, from inside.
-  for (const auto& [from, to, length] : { std::tuple(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 4.0),
-         std::tuple(Vec3(0.0, 0.0, 1e-3), Vec3(1.0, 0.0, 0.0), 4.0),
-         std::tuple(Vec3(10.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), 2.0),
-         std::tuple(Vec3(0.0, 5.0, 0.0), Vec3(1.0, 0.0, 0.0), 0.0) })
-  {
-    std::vector<MediumCrossing> parts;
-    crosser.find(mesh, from, to, 100.0, 0.0, parts);
-    double sum = 0.0;
-    for (const MediumCrossing& part : parts)
-    {
-      sum += part.upTo(100.0);
-    }
-    EXPECT_NEAR(sum, length, 1e-9);
   }
 }
 

@@ -2,14 +2,15 @@
 // Mirror paths by regions bring what mirror paths of rays bring.
 #include "RoomTestScene.h"
 #include "SameEchoes.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 using namespace echotest;
+using statistics::sumOf;
 
 namespace
 {
@@ -34,11 +35,6 @@ EchoSettings mirrorSettings(BeamSampleSource source, int rays)
   settings.lightEnergyConstraint = false;
   settings.returnMode = ReturnMode::RangeUnits;
   return settings;
-}
-
-double sumOf(const std::vector<double>& values)
-{
-  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 /// What the beam along x receives over mirrors, by regions and by rays.

@@ -339,15 +339,8 @@ TEST(MovedBeams, OrderAndPiecesChangeNoBit)
   ScanResult pieces;
   for (std::size_t first = 0; first < beams.size(); first += 37)
   {
-    ScanBeams piece;
-    for (std::size_t b = first; b < std::min(first + 37, beams.size()); ++b)
-    {
-      piece.ids.push_back(beams.ids[b]);
-      piece.origins.push_back(beams.origins[b]);
-      piece.directions.push_back(beams.directions[b]);
-      piece.times.push_back(beams.times[b]);
-    }
-    const ScanResult part = runScan(setup, piece);
+    const ScanResult part =
+      runScan(setup, chosen(beams, first, std::min(first + 37, beams.size())));
     pieces.echoes.insert(pieces.echoes.end(), part.echoes.begin(), part.echoes.end());
     for (const std::size_t b : part.beamOfEcho)
     {

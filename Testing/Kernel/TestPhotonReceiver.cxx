@@ -6,6 +6,7 @@
 #include "PhotonReceiver.h"
 #include "RangeUnits.h"
 #include "Receiver.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -176,20 +177,15 @@ TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
   for (const double electrons : { 1.0, 1000.0, 1e5 })
   {
     const double light = electrons / receiver.electronsPerJoule;
-    double sum = 0.0;
-    double squares = 0.0;
+    statistics::Moments received;
     for (int scan = 0; scan < Scans; ++scan)
     {
       noise.begin(plan, 1, scan);
-      const double received = (light + noise.energy(700, light)) * receiver.electronsPerJoule;
-      sum += received;
-      squares += received * received;
+      received.add((light + noise.energy(700, light)) * receiver.electronsPerJoule);
     }
-    const double mean = sum / Scans;
-    const double variance = squares / Scans - mean * mean;
     const double expected = 3.0 * (electrons + 3525.22) + 60.0 * 60.0;
-    EXPECT_NEAR(mean, electrons, 3.0 * std::sqrt(expected / Scans)) << electrons;
-    EXPECT_NEAR(variance / expected, 1.0, 3.0 * std::sqrt(2.0 / Scans)) << electrons;
+    EXPECT_NEAR(received.mean(), electrons, 3.0 * std::sqrt(expected / Scans)) << electrons;
+    EXPECT_NEAR(received.variance() / expected, 1.0, 3.0 * std::sqrt(2.0 / Scans)) << electrons;
     EXPECT_NEAR(receiver.signalToNoise(electrons), electrons / std::sqrt(expected), 1e-4);
   }
 }

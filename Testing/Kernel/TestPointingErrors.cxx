@@ -2,6 +2,7 @@
 // Mast sway and encoder jitter: their size, spectrum and independence, and what they do to a beam.
 #include "PointingErrors.h"
 #include "ScanPattern.h"
+#include "Statistics.h"
 #include "Vector.h"
 
 #include <gtest/gtest.h>
@@ -34,21 +35,6 @@ PointingErrors jitter(double rms, std::int32_t seed = 0)
   return errors;
 }
 
-struct Moments
-{
-  double count = 0.0;
-  double sum = 0.0;
-  double squares = 0.0;
-  void add(double x)
-  {
-    this->count += 1.0;
-    this->sum += x;
-    this->squares += x * x;
-  }
-  double mean() const { return this->sum / this->count; }
-  double rms() const { return std::sqrt(this->squares / this->count); }
-};
-
 // The beams of a revolution.
 std::vector<Vec3> directionsOf(
   const ScanPattern& pattern, const PointingErrors& errors, int revolution)
@@ -72,7 +58,7 @@ TEST(PointingErrors, TiltHasTheRmsAboutEachAxis)
   const int count = 20000;
   for (const double time : { 0.0, 1.7, -3.0, 1e6 })
   {
-    Moments axes[2];
+    statistics::Moments axes[2];
     double product = 0.0;
     for (int seed = 0; seed < count; ++seed)
     {
@@ -83,33 +69,13 @@ TEST(PointingErrors, TiltHasTheRmsAboutEachAxis)
     }
     const double variance = 0.02 * RadiansPerDegree * 0.02 * RadiansPerDegree;
     const double error = std::sqrt((2.0 - 1.5 / SwayTones) / count) * variance;
-    for (const Moments& axis : axes)
+    for (const statistics::Moments& axis : axes)
     {
       EXPECT_NEAR(axis.squares / count, variance, 3.0 * error);
       EXPECT_NEAR(axis.mean(), 0.0, 3.0 * std::sqrt(variance / count));
     }
     EXPECT_NEAR(product / count, 0.0, 3.0 * variance / std::sqrt(count)); // independent axes
   }
-}
-
-TEST(PointingErrors, TiltOfOneMastHasTheRmsOverALongTime)
-{
-  // The mean of tones of different frequencies: their squares, to the cross terms of 1e5 periods.
-  const Pointing pointing(sway(0.5, 2.0, 7), Up);
-  Moments axes[2];
-  double largest = 0.0;
-  for (double time = 0.0; time < 50000.0; time += 0.0837)
-  {
-    const auto tilt = pointing.tilt(time);
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      axes[axis].add(tilt[axis]);
-      largest = std::max(largest, std::abs(tilt[axis]));
-    }
-  }
-  EXPECT_NEAR(axes[0].rms(), 0.5 * RadiansPerDegree, 0.005 * RadiansPerDegree);
-  EXPECT_NEAR(axes[1].rms(), 0.5 * RadiansPerDegree, 0.005 * RadiansPerDegree);
-  EXPECT_LT(largest, std::sqrt(2.0 * SwayTones) * 0.5 * RadiansPerDegree);
 }
 
 TEST(PointingErrors, TiltSwingsNearTheFrequency)
@@ -146,7 +112,7 @@ TEST(PointingErrors, JitterHasTheRmsAndIsIndependent)
   const Pointing pointing(jitter(0.05), Up);
   const double rms = 0.05 * RadiansPerDegree;
   const int columns = 40000;
-  Moments all;
+  statistics::Moments all;
   double neighbours = 0.0;
   double revolutions = 0.0;
   double fourth = 0.0;

@@ -3,6 +3,7 @@
 #include "CellTestScene.h"
 #include "IntegrationTestScene.h"
 #include "SecondaryTestScene.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -80,9 +81,7 @@ TEST(PolygonPaths, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
   for (const bool after : { false, true })
   {
     ScanBeams beams = after ? oneBeam({ -1.0, 0.0, 0.0 }) : ScanBeams();
-    beams.ids.push_back(1);
-    beams.origins.emplace_back(0.0);
-    beams.directions.emplace_back(1.0, 0.0, 0.0);
+    addBeam(beams, Vec3(1.0, 0.0, 0.0));
     const ScanResult result = runScan(setup, beams);
     ASSERT_EQ(result.echoes.size(), beams.size());
     expectMirrors(result.echoes.back());
@@ -140,8 +139,7 @@ TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
 #else
   constexpr int seeds = 1000;
 #endif
-  double means[3][2] = {};  // of all, and of what came over two reflections
-  double errors[3][2] = {}; // of these means
+  statistics::Moments energies[3][2]; // of all, and of what came over two reflections
   for (int way = 0; way < 3; ++way)
   {
     SCOPED_TRACE(way);
@@ -156,18 +154,15 @@ TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
       ScanResult result;
       simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result);
       ASSERT_EQ(cache.beams[0].direct(), ways[way].direct);
-      const double energies[] = { receivedFrom(result), secondaryOf(result) };
-      for (int k = 0; k < 2; ++k)
-      {
-        means[way][k] += energies[k] / seeds;
-        errors[way][k] += energies[k] * energies[k] / seeds;
-      }
+      energies[way][0].add(receivedFrom(result));
+      energies[way][1].add(secondaryOf(result));
     }
     for (int k = 0; k < 2; ++k)
     {
-      errors[way][k] = std::sqrt((errors[way][k] - means[way][k] * means[way][k]) / seeds);
-      EXPECT_NEAR(means[way][k], means[0][k], 4.0 * std::hypot(errors[way][k], errors[0][k])) << k;
-      EXPECT_LT(errors[way][k], 1.5 / std::sqrt(double(seeds)) * means[way][1]) << k;
+      const statistics::Moments& rays = energies[0][k];
+      const statistics::Moments& these = energies[way][k];
+      EXPECT_NEAR(these.mean(), rays.mean(), 4.0 * std::hypot(these.error(), rays.error())) << k;
+      EXPECT_LT(these.error(), 1.5 / std::sqrt(double(seeds)) * energies[way][1].mean()) << k;
     }
   }
 }

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a receiver makes of ranges: standard deviation, walk, quantum; off by default.
-#include "EchoTestScene.h"
+// What a receiver makes of ranges: standard deviation, walk, quantum. Scans are
+// TestRangeNoise.py's.
 #include "RangeErrors.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 using namespace avianlidar;
-using namespace echotest;
 
 namespace
 {
@@ -84,36 +82,4 @@ TEST(RangeErrors, WalkAndQuantum)
   EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, 1.0), 0.0);
   sensor.rangeQuantum = 1e-310; // multiples of it would overflow
   EXPECT_NE(checkSensor(sensor).find("range_quantum"), std::string::npos);
-}
-
-TEST(RangeErrors, OfAScan)
-{
-  // A wall; beams that differ by noise alone.
-  Scene scene;
-  scene.plate({ 100.0, 0.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, Material());
-  Sensor sensor = photons();
-  const auto rangesOf = [&](bool noise, std::int32_t seed)
-  {
-    EchoSettings settings;
-    settings.noise = noise;
-    settings.seed = seed;
-    settings.numberOfReflections = 1;
-    std::vector<double> ranges;
-    for (const Echo& echo : runScan(makeSetup(scene, sensor, settings), alike(2000)).echoes)
-    {
-      if (echo.objectId >= 0)
-      {
-        ranges.push_back(echo.range);
-      }
-    }
-    EXPECT_EQ(ranges.size(), 2000u);
-    return ranges;
-  };
-  const std::vector<double> exact = rangesOf(true, 0);
-  EXPECT_EQ(std::set<double>(exact.begin(), exact.end()).size(), 1u);
-  sensor.rangeNoiseFloor = 0.2;
-  const std::vector<double> noisy = rangesOf(true, 0);
-  EXPECT_EQ(noisy, rangesOf(true, 0));
-  EXPECT_NE(noisy, rangesOf(true, 1));
-  EXPECT_EQ(exact, rangesOf(false, 0));
 }

@@ -237,29 +237,3 @@ TEST(RayPacket, ScenesFarAwayTinyAndHuge)
     }
   }
 }
-
-TEST(RayPacket, AnyVolumeAnyFillAndRaysInAllDirections)
-{
-  Numbers random(7);
-  const TriangleMesh mesh = randomTriangles(random, 500, 30.0, 8.0);
-  std::vector<BeamFrame> frames;
-  for (int b = 0; b < 200; ++b)
-  {
-    frames.push_back(makeBeamFrame(Vec3(1.0, 2.0, 3.0), random.direction(), 5.6e-3));
-  }
-  const std::vector<Ray> rays = raysOf(random, frames, 2);
-  for (const auto volume :
-    { BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere })
-  {
-    expectSameHits("volume " + std::to_string(static_cast<int>(volume)), mesh, frames, rays, 0.3,
-      RayPacket::Width, { SplitRule::SurfaceAreaHeuristic, volume, 4 });
-  }
-  const std::vector<BeamFrame> neighbours =
-    window(Vec3(1.0, 2.0, 3.0), random.direction(), 8, 8, 0.02, 0.01);
-  const std::vector<Ray> close = raysOf(random, neighbours, 3);
-  for (const int fill : { 1, 2, 15, 16, 17, 33, RayPacket::Width })
-  {
-    expectSameHits("fill " + std::to_string(fill), mesh, neighbours, close, 0.3, fill,
-      { SplitRule::Halves, BoundingVolumeType::AABB, fill % 2 == 0 ? 40 : 1 });
-  }
-}

@@ -199,7 +199,8 @@ TEST(ScanPattern, TheNextPulseEndsTheUnambiguousRange)
   EXPECT_TRUE(std::isinf(pulseInterval(p)));
 }
 
-// What is not finite in any property is refused by TestBadInput.py.
+// What is not finite in any property is refused by TestBadInput.py. Azimuths and times of each
+// channel are TestPhotonReceiver.py's.
 TEST(ScanPattern, BadValuesAreNamed)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -243,26 +244,6 @@ TEST(ScanPattern, ColumnFilledToTheLastFiringIsGood)
   ScanPattern p;
   p.firingInterval = 1.0 / (960 * 0.5) / 16;
   EXPECT_TRUE(checkPattern(p).empty()) << checkPattern(p);
-}
-
-TEST(ScanPattern, ChannelsMayHaveAzimuthsAndTimesOfTheirOwn)
-{
-  ScanPattern pattern;
-  pattern.elevations = { -1.0, 2.0, 0.5 };
-  pattern.azimuthStep = 10.0;
-  pattern.azimuthOffsets = { 1.5, -1.5, 0.0 };
-  pattern.firingTimes = { 0.0, 2e-3, 1e-3 };
-  ASSERT_EQ(checkPattern(pattern), "");
-  const ScanGenerator scan(pattern);
-  for (std::int64_t i = 0; i < scan.size(); ++i)
-  {
-    const ScanBeam beam = scan.beam(i);
-    const int channel = static_cast<int>(i % 3);
-    const double azimuth = 10.0 * static_cast<double>(i / 3) + pattern.azimuthOffsets[channel];
-    EXPECT_NEAR(std::remainder(beam.azimuth - azimuth, 360.0), 0.0, 1e-12);
-    EXPECT_NEAR(beam.time, (i / 3) * 2.0 / 36.0 + pattern.firingTimes[channel], 1e-12);
-    EXPECT_EQ(beam.elevation, pattern.elevations[channel]);
-  }
 }
 
 TEST(ScanPattern, BlankedSectorsHaveNoBeams)

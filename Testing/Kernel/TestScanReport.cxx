@@ -44,9 +44,7 @@ TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
   for (const Vec3& d :
     { Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(-1, 0, 0), Vec3(0, -1, 0), Vec3(0, 1, 0) })
   {
-    beams.ids.push_back(beams.ids.size());
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(d);
+    addBeam(beams, d);
   }
   const ScanResult result = runScan(makeSetup(scene, Sensor{}, usual()), beams);
   const BeamStatus expected[] = { BeamStatus::Saturated, BeamStatus::NoSurface,

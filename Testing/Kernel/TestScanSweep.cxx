@@ -5,21 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 using namespace echotest;
 
 namespace
 {
-ScanBeams part(const ScanBeams& all, std::size_t begin, std::size_t end)
-{
-  ScanBeams some;
-  some.ids.assign(all.ids.begin() + begin, all.ids.begin() + end);
-  some.origins.assign(all.origins.begin() + begin, all.origins.begin() + end);
-  some.directions.assign(all.directions.begin() + begin, all.directions.begin() + end);
-  return some;
-}
-
 struct Sweep
 {
   ScanSetup setup = makeSetup(town(), Sensor{}, usual());
@@ -37,7 +26,7 @@ struct Sweep
   /// Rays traced for beams [begin, end).
   std::uint64_t show(std::size_t begin, std::size_t end)
   {
-    const ScanBeams beams = part(this->all, begin, end);
+    const ScanBeams beams = chosen(this->all, begin, end);
     EXPECT_TRUE(simulateScan(this->setup, beams, 2, this->cache, this->maximum, {}, this->result));
     expectSame(this->result, runScan(this->setup, beams));
     return this->result.raysTraced;

@@ -46,9 +46,7 @@ ScanBeams fan()
   ScanBeams beams;
   for (int i = 0; i < 40; ++i)
   {
-    beams.ids.push_back(i);
-    beams.origins.push_back(Vec3(0.0));
-    beams.directions.push_back(Vec3(1.0, 0.002 * (i % 8 - 4), 0.002 * (i / 8 - 2)));
+    addBeam(beams, Vec3(1.0, 0.002 * (i % 8 - 4), 0.002 * (i / 8 - 2)));
   }
   return beams;
 }

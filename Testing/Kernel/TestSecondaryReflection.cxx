@@ -5,6 +5,7 @@
 
 #include "OneBeamTracer.h"
 #include "SecondaryReflection.h"
+#include "Statistics.h"
 #include "VolumeTree.h"
 
 #include <gtest/gtest.h>
@@ -39,25 +40,15 @@ TEST(SecondaryReflection, OneSpecularPath)
 
 namespace
 {
-struct Mean
+statistics::Moments secondaryOfSeeds(ScanSetup setup, int seeds)
 {
-  double value = 0.0;
-  double error = 0.0; ///< its standard error, from the spread over seeds
-};
-
-Mean meanSecondary(ScanSetup setup, int seeds)
-{
-  double sum = 0.0;
-  double squares = 0.0;
+  statistics::Moments energies;
   for (int seed = 0; seed < seeds; ++seed)
   {
     setup.settings.seed = seed;
-    const double energy = secondaryOf(runScan(setup, oneBeam()));
-    sum += energy;
-    squares += energy * energy;
+    energies.add(secondaryOf(runScan(setup, oneBeam())));
   }
-  const double mean = sum / seeds;
-  return { mean, std::sqrt((squares / seeds - mean * mean) / (seeds - 1)) };
+  return energies;
 }
 }
 
@@ -83,11 +74,11 @@ TEST(SecondaryReflection, DiffuseConnectionsOfAnOpenV)
     {
       EchoSettings settings = secondarySettings(rays, connections);
       settings.sampling = sampling;
-      const Mean mean =
-        meanSecondary(makeSetup(scene, openSensor(), settings), std::max(seeds / fewer, 4));
+      const statistics::Moments energies =
+        secondaryOfSeeds(makeSetup(scene, openSensor(), settings), std::max(seeds / fewer, 4));
       const double allowed = sampling == Sampling::MonteCarlo ? 2.0 * precision : precision;
-      EXPECT_LT(mean.error, std::sqrt(fewer) * allowed * exact) << rays;
-      EXPECT_NEAR(mean.value, exact, 4.0 * mean.error) << rays;
+      EXPECT_LT(energies.error(), std::sqrt(fewer) * allowed * exact) << rays;
+      EXPECT_NEAR(energies.mean(), exact, 4.0 * energies.error()) << rays;
     }
   }
 }
@@ -251,9 +242,9 @@ TEST(SecondaryReflection, CornersOfMattWallsAreNotCut)
   {
     const ScanSetup setup =
       makeSetup(corner(matt, matt), gatheringSensor(), secondarySettings(rays, connections));
-    const Mean mean = meanSecondary(setup, seeds);
-    EXPECT_LT(mean.error, 0.01 * 9.491e-12) << rays;
-    EXPECT_NEAR(mean.value, 9.491e-12, 4.0 * mean.error) << rays;
+    const statistics::Moments energies = secondaryOfSeeds(setup, seeds);
+    EXPECT_LT(energies.error(), 0.01 * 9.491e-12) << rays;
+    EXPECT_NEAR(energies.mean(), 9.491e-12, 4.0 * energies.error()) << rays;
   }
 }
 

@@ -128,30 +128,6 @@ TEST(TriangleTest, RangesAreThoseOfThePlane)
   EXPECT_DOUBLE_EQ(rangeAlong(t, 0.5 * (t.a + t.b)), std::sqrt(125.0));
 }
 
-TEST(TriangleTest, SeenEdgeOnIsNoHit)
-{
-  // In the planes of the coordinates, around the apex, and a scaled copy: the plane holds the apex
-  // exactly.
-  const Corners wall{ { 5, 0, -1 }, { 15, 0, -1 }, { 5, 0, 4 } };
-  const Corners floor{ { -5, -5, 0 }, { 5, -5, 0 }, { 0, 5, 0 } };
-  const Corners oblique{ { 1, 2, 3 }, { 2, 4, 6 }, { 3, 5, 4 } };
-  for (const Corners& t : { wall, floor, oblique })
-  {
-    EXPECT_EQ(planeOf(t).height, 0.0);
-    for (const Vec3& towards : { t.a, t.b, t.c, t.a + t.b + t.c, t.a + 3.0 * t.b })
-    {
-      EXPECT_EQ(rangeAlong(t, towards), NoRange);
-      const BeamFrame frame = makeBeamFrame(Vec3(0.0), towards + Vec3(0.01, 0.02, 0.0), 0.1);
-      const Vec3 p = frame.toPlane(towards);
-      const double x = p.x / p.z;
-      const double y = p.y / p.z;
-      const Vec3 d = unitDirection(frame.direction(x, y));
-      EXPECT_TRUE(!beamRayAccepted(BeamPlaneMap(frame), t, x, y) ||
-        rangeOf(t, planeOf(t), d, beamRayMargin(frame)) == NoRange);
-    }
-  }
-}
-
 TEST(TriangleTest, DegenerateTrianglesAreNeverHit)
 {
   Numbers random(93);
@@ -256,21 +232,6 @@ TEST(TriangleTest, NeedlesAreNotHitBeyondTheirEnds)
     const Vec3 d = unitDirection(frame.direction(p.x / p.z, p.y / p.z));
     EXPECT_TRUE(!beamRayAccepted(BeamPlaneMap(frame), t, p.x / p.z, p.y / p.z) ||
       rangeOf(t, planeOf(t), d, beamRayMargin(frame)) == NoRange);
-  }
-}
-
-TEST(TriangleTest, BatchAndSingleRayAgree)
-{
-  Numbers random(95);
-  for (int i = 0; i < 100000; ++i)
-  {
-    const Corners t = someTriangle(random);
-    const BeamFrame frame = makeBeamFrame(Vec3(0.0), t.a + t.b + t.c, random.logUniform(1e-6, 1.0));
-    const BeamPlaneMap map(frame);
-    BeamTriangle triangle;
-    const bool seen = triangle.set(map, t);
-    const auto [x, y] = random.inDisc();
-    ASSERT_EQ(seen && triangle.accepts(x, y), beamRayAccepted(map, t, x, y));
   }
 }
 

@@ -184,7 +184,3 @@ class Advice(unittest.TestCase):
         with contextlib.redirect_stderr(io.StringIO()) as error:
             self.assertEqual(_command.main(["advise", str(SCENE), "-o", str(OUTPUT / "advice.las")]), 2)
         self.assertIn("advice is not written as .las", error.getvalue())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -655,7 +655,3 @@ class RealAirports(unittest.TestCase):
         self.assertGreater(plan_area(found["18L/36R"][1]), 57.6 * 3398)
         self.assertNotIn("says no height", words)
         self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
-
-
-if __name__ == "__main__":
-    unittest.main()

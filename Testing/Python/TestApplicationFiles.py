@@ -402,7 +402,3 @@ class FullDisk(Applications):
             self.assertFalse(there.exists())
             subprocess.run(["gdalinfo", "-stats", str(file)], check=True, capture_output=True)
             self.assertIn(f"STATISTICS_MEAN\">{value:g}", there.read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 """What each class reads and each of its properties, with wrong values: one error that names the input and the quantity, empty
 outputs, and the next good input gives what it gave before. What is legal but suspicious is a warning, once."""
 import os
-import unittest
 from xml.etree import ElementTree
 
 import numpy as np
@@ -441,7 +440,3 @@ class Cells(Faults):
         mass.SetInputData(tree.GetOutput())
         self.assertEqual(tree.GetOutput().GetNumberOfPolys(), 3)
         self.assertAlmostEqual(mass.GetSurfaceArea(), 10.0, delta=1e-12)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -108,7 +108,3 @@ class Echoes(unittest.TestCase):
             distances = array(image.GetOutput(), "distance_m")
             seen = len(set(array(echo.GetOutput(), "beam_id")))
             self.assertEqual((len(distances), np.isfinite(distances).sum()), (360, seen))
-
-
-if __name__ == "__main__":
-    unittest.main()

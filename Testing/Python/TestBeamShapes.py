@@ -50,7 +50,3 @@ class BeamShapes(unittest.TestCase):
                        "source": "made"} for name, value in fields.items()}}), encoding="utf-8")
             read = al.Sensor(file).beams.fields
             self.assertEqual({name: float(read[name]) for name in SHAPE}, fields)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -142,7 +142,3 @@ class Settings(unittest.TestCase):
             view.Update()
             self.assertIn(f"BeamId is {beam}, expected the beam_id of a beam of input port 0 (beams)", said.errors[0])
             self.assertEqual(view.GetOutputDataObject(2).GetNumberOfRows(), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -204,7 +204,3 @@ class Files(unittest.TestCase):
             self.assertFalse((OUTPUT / "out-wrong").exists())
         with self.assertRaisesRegex(al.Error, "two are called wrong"):
             Bench([self.home], [wrong, wrong])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The bird source: names and materials of its parts, where its wings and its bill point, species of one's own, errors
 that name the property, and a lidar that sees it and says what it is. Shapes and areas are TestBird's (kernel)."""
-import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -65,7 +64,3 @@ class Bird(InFolder):
         self.assertEqual(echoes.fields["object_names"][1], "Canada goose")
         # With the paper's receiver it is too faint.
         self.assertEqual(Scan(scene, Sensor("Airport16"), noise=False).echoes.number_of_points, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

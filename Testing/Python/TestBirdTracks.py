@@ -257,7 +257,3 @@ class Files(unittest.TestCase):
             self.assertFalse((self.home / "bad").exists())
         with self.assertRaisesRegex(ValueError, "no sequences"):
             al.BirdTracks([])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -105,7 +105,3 @@ class TestBoxes(unittest.TestCase):
                     seen, near = seen + len(ours), near + np.count_nonzero(far < 4)
             self.assertGreater(seen, 10)
             self.assertGreater(near, 0.9 * seen)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -150,7 +150,3 @@ class BadInput(unittest.TestCase):
             self.assertEqual(comparison.GetOutputDataObject(port).GetNumberOfPoints(), 0)
         for getter in (*FIELDS.values(), *CHAMFER.values()):
             self.assertTrue(math.isnan(getattr(comparison, getter)()), getter)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -277,7 +277,3 @@ class BadInput(unittest.TestCase):
         self.assertEqual(len(stream.give(cloud(np.zeros((0, 3)), time=4))[0]), 0)  # a scan without points is one
         found, _ = stream.give(cloud(HERE, time=5))
         self.assertAlmostEqual(found[0], share([1, 1, 1, 1, 0]), 12)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -261,7 +261,3 @@ class Surroundings(unittest.TestCase):
         text, code = from_terminal(self, ["bash", "--norc", "-i"], typed=line, start_new_session=True)
         self.assertEqual(code, 0)
         self.assertIn("<range_gate=800>", text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -356,7 +356,3 @@ class Work(unittest.TestCase):
                 with self.assertRaisesRegex(al.Error, words):
                     al.Coverage(scene, sensor, places=grid).update()
         self.assertEqual(al.Coverage(scene, sensor, places=vtkImageData(), **TARGET)["status"].size, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

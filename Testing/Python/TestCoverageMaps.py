@@ -86,7 +86,3 @@ class Maps(unittest.TestCase):
             there = osr.CoordinateTransformation(degrees, system)
             found = [there.TransformPoint(lon, lat)[:2] for lon, lat, _ in siting.to_geodetic(points, origin)]
             np.testing.assert_allclose(found, points[:, :2], atol=0.012)
-
-
-if __name__ == "__main__":
-    unittest.main()

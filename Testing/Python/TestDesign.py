@@ -286,7 +286,3 @@ class Wrong(unittest.TestCase):
         with self.assertRaisesRegex(Error, "design.scenario: has the scene .*other.lidarscene.json, expected the scene of the plan"):
             study_of(where, {"measure": "tracked", "scenario": "other.scenario.json"})
         self.assertFalse((where / "out").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

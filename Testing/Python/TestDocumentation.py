@@ -71,7 +71,7 @@ class Paper(unittest.TestCase):
     def setUpClass(cls):
         cls.text = verdicts.PAGE.read_text(encoding="utf-8")
         cls.rows = verdicts.rows_of(cls.text)
-        cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing" / "Kernel").glob("*.*"))
+        cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing").rglob("Test*.cxx"))
 
     def test_rows_are_numbered_and_short(self):
         self.assertEqual([row[0] for row in self.rows], [str(number + 1) for number in range(len(self.rows))])
@@ -98,11 +98,7 @@ class Paper(unittest.TestCase):
                 self.assertTrue(self.is_there(*name.split(".")), (number, name))
 
     def is_there(self, suite, case):
-        """`TestX.test_y` of Python or `Suite.Case` of the kernel."""
+        """`TestX.test_y` of Python or `Suite.Case` of C++."""
         file = next((SOURCE / "Testing").rglob(f"{suite}.py"), None)
         return f"def {case}(" in file.read_text(encoding="utf-8") if file else \
             re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}\)", self.kernel, re.M) is not None
-
-
-if __name__ == "__main__":
-    unittest.main()

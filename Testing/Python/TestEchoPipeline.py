@@ -171,6 +171,12 @@ class TreeDisplay(unittest.TestCase):
                         np.testing.assert_allclose(np.linalg.norm(points - center, axis=1), radius, rtol=1e-9)
                         held |= np.linalg.norm(scene - center, axis=1) < radius * (1 + 1e-6)
                 self.assertTrue(held.all())
+                if corners == 8: # The faces of a box look outwards, and none is twisted: they enclose what its edges span.
+                    quads = numpy_support.vtk_to_numpy(shown.GetPolys().GetConnectivityArray()).reshape(-1, 4)
+                    a, b, c, d = np.moveaxis(volumes.reshape(-1, 3)[quads], 1, 0)
+                    enclosed = ((a + b + c + d) * np.cross(c - a, d - b)).sum(axis=1).reshape(-1, 6).sum(axis=1) / 24
+                    edges = volumes[:, [1, 2, 4]] - volumes[:, :1]
+                    np.testing.assert_allclose(enclosed, np.abs(np.linalg.det(edges)), rtol=1e-6)
                 if (volume, level) == (0, 0):
                     np.testing.assert_allclose(shown.GetBounds(), tree.GetOutput().GetBounds(), rtol=1e-6)
 
@@ -216,7 +222,3 @@ class BeamMap(unittest.TestCase):
             echoes = np.isfinite(found["distance_m"])
             np.testing.assert_array_equal(echoes, np.isin(found["status"], (0, 3)))
             self.assertTrue(echoes.any() and not echoes.all())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -99,7 +99,3 @@ class Arguments(unittest.TestCase):
         with self.assertRaisesRegex(SystemExit, r"\A.*README.md: (is not JSON|.*No suitable reader).*\Z"):  # Python prints it, returns 1
             airport.main(["--no-pictures", "--scene", page, "--out", str(out)])
         self.assertFalse(out.exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -133,7 +133,3 @@ class Corridor(unittest.TestCase):
 
     def test_numbers_of_the_page(self):
         et.assert_documented(self, et.read_table(self.folder + "/table.md"), "corridor")
-
-
-if __name__ == "__main__":
-    unittest.main()

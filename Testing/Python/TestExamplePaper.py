@@ -207,7 +207,3 @@ class Protocol(unittest.TestCase):
             for row, text in rows.items():
                 found, wanted = float(table[column][row].split()[0]), float(text.split()[0])
                 self.assertAlmostEqual(found, wanted, delta=0.003 + 0.03 * wanted, msg=(column, row))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -32,7 +32,3 @@ class Pictures(unittest.TestCase):
         folder = et.folder("ExamplePicturesBirds")
         birds_over_airport.main(["--scans", "2", "--shown", "2", "--out", folder])
         compare(os.path.join(folder, "from-above.png"), "ExampleBirds-from-above.png", THRESHOLD)
-
-
-if __name__ == "__main__":
-    unittest.main()

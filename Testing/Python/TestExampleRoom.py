@@ -109,7 +109,3 @@ class OtherSensors(unittest.TestCase):
                 self.assertGreaterEqual(scan.answered.sum(), answers * al.load_cloud(file).number_of_points)
                 if columns:
                     np.testing.assert_allclose(np.diff(scan.rings()), columns, rtol=0.01)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -44,7 +44,3 @@ class Trade(unittest.TestCase):
         self.assertLessEqual(set(trade_grid.PRESETS), {row["setting"] for row in rows})
         for kind in trade_results.KINDS:
             self.assertGreater(sum(int(row[f"on the front of {kind} [1]"]) for row in rows), 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -426,7 +426,3 @@ class Surveyed(unittest.TestCase):
             (ta.FOLDER / name).write_text(text)
             with self.assertRaisesRegex(RuntimeError, words):
                 obstacles.read_obstacles(ta.FOLDER / name, KNOWN)
-
-
-if __name__ == "__main__":
-    unittest.main()

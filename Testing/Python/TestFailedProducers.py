@@ -2,7 +2,6 @@
 """What follows an execution that failed or was stopped: whoever is updated next says so, by the input port and the first error, and
 has no output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView has it."""
 import os
-import unittest
 
 import numpy as np
 import vtk
@@ -350,7 +349,3 @@ class Producers(InFolder):
             self.assertGreater(len(seen), 5)
             for file in os.listdir():
                 os.remove(file)
-
-
-if __name__ == "__main__":
-    unittest.main()

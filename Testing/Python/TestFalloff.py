@@ -67,7 +67,3 @@ class Planes(unittest.TestCase):
                     self.assertLess(every[1], 0.1)
                     self.assertAlmostEqual(model[0], 2.0, delta=0.1)
                 self.assertTrue((pathlib.Path(folder) / "falloff-planes.md").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

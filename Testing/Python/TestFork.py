@@ -72,7 +72,3 @@ class TestFork(unittest.TestCase):
     def test_a_child_forks(self):
         expected = work(3)
         self.assertEqual(in_child(send_from_a_grandchild, 3), (expected, expected))
-
-
-if __name__ == "__main__":
-    unittest.main()

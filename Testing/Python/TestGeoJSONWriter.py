@@ -6,7 +6,6 @@ import io
 import json
 import pathlib
 import subprocess
-import unittest
 
 import numpy as np
 
@@ -114,7 +113,3 @@ class TestGeoJSONWriter(InFolder):
             data = echoes()
             change(data)
             assert_refused(self, self.writer, data, FILE, words)
-
-
-if __name__ == "__main__":
-    unittest.main()

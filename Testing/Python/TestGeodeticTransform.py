@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites, and
-bad input. Round trips, poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values
+bad input. Poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values
 in TestBadInput.py.
 
 Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and the
@@ -141,7 +141,3 @@ class Behaviour(unittest.TestCase):
                 output, messages = run(data, **properties)
                 self.assertTrue(any(text in said for said in messages.errors), messages.all())
                 self.assertEqual(output.GetNumberOfPoints(), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

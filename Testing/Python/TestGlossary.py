@@ -96,7 +96,3 @@ class Glossary(unittest.TestCase):
             self.assertEqual(unit, there.get(name, unit), name)
         for name in GLOSSARY:
             self.assertTrue(name in there or name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES), name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -196,7 +196,3 @@ class Pictures(unittest.TestCase):
         data = cloud([(0, 1, 0), (1, 1, 0)])
         add_array(data, "object_id", np.array([-1, 3], np.int32))
         self.assertEqual(al.Cloud(data).plot_map("object_id").collections[0].get_array().mask.tolist(), [True, False])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -199,7 +199,3 @@ class Stopping(unittest.TestCase):
             self.signalled(number, lambda number, _, heard=heard: heard.append(number))
             self.assertEqual(heard, [number])
             self.assertGreater(self.scan.algorithm.GetOutput().GetNumberOfPoints(), 100)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -263,7 +263,3 @@ class NothingToSee(unittest.TestCase):
         self.assertRegex(" ".join(said(lambda: scan["energy"])), "^no echoes of")
         scan.sensor.position = (0, 0, -40)
         self.assertRegex(" ".join(said(scan.update)), r"^the sensor at \(0, 0, -40\) m")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -292,7 +292,3 @@ class Docstrings(unittest.TestCase):
             self.assertEqual(result.failed, 0, module)
             tried += result.attempted
         self.assertGreater(tried, 15)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -54,7 +54,3 @@ class Packages(unittest.TestCase):
         self.assertEqual(code, 0)
         for words in (DOWNLOAD, "Get:1 a", "Unpacking a"):
             self.assertIn(words, text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -75,7 +75,3 @@ class Installed(unittest.TestCase):
             for one in beside:
                 installed = PREFIX / one.relative_to(BUILD)
                 self.assertTrue(installed.exists() and (one == file or installed.read_bytes() == one.read_bytes()), installed)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import os
 import pathlib
 import re
 import subprocess
-import unittest
 
 import numpy as np
 
@@ -132,7 +131,3 @@ class TestKITTIWriter(InFolder):
             self.writer.SetLabelSource(source)
             assert_refused(self, self.writer, data, FILE, words)
             self.assertFalse(os.path.exists(LABELS))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -139,7 +139,3 @@ class TestWithout(InFolder):
             struct.pack_into("<Q", whole, 247, count)
             save(whole)
             self.assertIn(words, read_error(LAZ))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -129,7 +129,3 @@ class Command(InFolder):
                 self.run_it(file)
             self.assertRegex(str(caught.exception), f"{words}.*{file.name}|{file.name}.*{words}")
             self.assertFalse((self.folder / "out").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

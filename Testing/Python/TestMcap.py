@@ -156,7 +156,3 @@ class TestMcap(unittest.TestCase):
         refused("000001.bin: has 15 bytes")
         (self.sequence / "calib.txt").unlink()
         refused("calib.txt")
-
-
-if __name__ == "__main__":
-    unittest.main()

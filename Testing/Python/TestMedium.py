@@ -186,7 +186,3 @@ class SceneFiles(InFolder):
             with self.subTest(part), self.assertRaises(al.Error) as raised:
                 al.Scene(str(self.scene([one])))
             self.assertIn(part, str(raised.exception))
-
-
-if __name__ == "__main__":
-    unittest.main()

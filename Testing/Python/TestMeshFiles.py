@@ -282,7 +282,3 @@ class MeshFiles(InFolder):
         self.assert_refused(self.read("large.obj", text), "there is not enough memory for it")
         os.environ.update(AVIANLIDAR_MESH_GIGABYTES="2")
         self.assertEqual(self.read("large.obj").block("Box").GetNumberOfCells(), faces)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -133,7 +133,3 @@ class ModelNotes(unittest.TestCase):
             notes = notes_of(echo)
             for name, text in expected.items():
                 self.assertRegex(notes["note_" + name], "^" + text, name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -75,7 +75,3 @@ class ToTheLetter(unittest.TestCase):
         self.assertTrue(((one > mean) & (one < whole)).all())
         # Each of many targets in whole: more than there is.
         self.assertEqual([beams[0].beyond[name] > 0 for name in sr.READINGS], [False, False, False, True])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -208,7 +208,3 @@ class Movers(unittest.TestCase):
                 named.GetBlock(0).GetFieldData().AddArray(array)
             echoes = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=named).echoes
             self.assertEqual(list(echoes.fields["object_names"]), ["house 0", "house 1", "house 2", "visitor"])
-
-
-if __name__ == "__main__":
-    unittest.main()

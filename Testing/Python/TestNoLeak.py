@@ -190,7 +190,3 @@ class NoLeak(unittest.TestCase):
 
     def test_clutter_and_drops(self):
         self.check(self.rain, np.flatnonzero(self.rain.kind == 80), np.flatnonzero(self.rain.kind == 1))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -43,7 +43,3 @@ class Notebook(unittest.TestCase):
             self.assertEqual((OUT / f"{name}.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(len(re.findall(r'<img [^>]*src="data:image/png;base64,', page)), 3)
         self.assertEqual(re.findall(r'(?:src|href)="https?://[^"]*\.(?:js|css)[^"]*"', page), [])  # no network
-
-
-if __name__ == "__main__":
-    unittest.main()

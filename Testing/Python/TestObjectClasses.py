@@ -2,7 +2,6 @@
 """Classes of objects go with their objects: through scenes put together from several producers, new numbers, the
 collision tree and the echo filter, to the labels of a file."""
 
-import unittest
 
 import numpy as np
 import vtk
@@ -102,7 +101,3 @@ class ObjectClasses(InFolder):
         self.assertTrue(given(al.vtkAvianLidarKITTIWriter(), InputData=echoes, FileName="a.bin").Write())
         labels = np.fromfile("a.label", dtype="<u4")
         self.assertEqual((labels & 0xFFFF).tolist(), [{0: 50, 1: 99, 2: 40}[i] for i in array(echoes, "object_id")])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,7 +10,6 @@ import socket
 import stat
 import subprocess
 import sys
-import unittest
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, _writers, vtkAvianLidar as wrapped
@@ -281,7 +280,3 @@ class Pairs(Written):
                     self.assert_old()
                 else:
                     self.assertNotEqual((self.folder / "echoes.label").read_bytes(), b"old")
-
-
-if __name__ == "__main__":
-    unittest.main()

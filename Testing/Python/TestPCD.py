@@ -6,7 +6,6 @@ import os
 import pathlib
 import struct
 import subprocess
-import unittest
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -320,7 +319,3 @@ class Written(InFolder):
         for c in range(3):
             np.testing.assert_array_equal(array(got, f"velocity_{c}"), velocity[:, c])
             self.assertEqual(unit(got, f"velocity_{c}"), "m/s")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import subprocess
-import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -168,7 +167,3 @@ class Written(InFolder):
         add_array(data, "rgb", np.array([[1, 2, 3]], dtype="u1"))
         (said,) = write(self.writer, data, FILE)
         self.assertIn("is without the point arrays 'a_b', 'rgb'", said)
-
-
-if __name__ == "__main__":
-    unittest.main()

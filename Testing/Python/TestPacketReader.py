@@ -262,7 +262,3 @@ class TestPacketReader(InFolder):
                 write(content)
                 self.assertIn(words, read_error(FILE))
         self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -194,7 +194,3 @@ class Receiver(unittest.TestCase):
         for bad in ((0.0, 0.1), (200.0, 1.5), (200.0, 0.1, -1.0), (float("nan"), 0.1), (4000.0, 0.1, 1.0)):
             sensor.algorithm.SetLimitsFromDataSheet(*bad)
         self.assertAlmostEqual(sensor.lower_energy_limit / energy, 1, delta=1e-12)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -273,7 +273,3 @@ class TestPointCloudReader(InFolder):
                 turn = array(data, "azimuth")[far] - array(data, "file_azimuth")[far]
                 turn = (turn - np.median(turn) + 18000) % 36000 - 18000
                 self.assertLess(np.percentile(np.abs(turn), 95), 20)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -152,7 +152,3 @@ class BadFiles(unittest.TestCase):
                 file.write_text(json.dumps({**good, "values": values}), encoding="utf-8")
                 with self.assertRaisesRegex(al.Error, "bad.lidarsensor.json(.|\n)*" + re.escape(words)):
                     al.Sensor(file).beams
-
-
-if __name__ == "__main__":
-    unittest.main()

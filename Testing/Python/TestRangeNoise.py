@@ -70,7 +70,3 @@ class RangeNoise(unittest.TestCase):
         late = 2.0 * echoes.fields["lower_energy_limit"] / echoes["energy_received"]
         self.assertLess(np.abs(echoes["distance_m"] / 0.1 - np.round(echoes["distance_m"] / 0.1)).max(), 1e-9)
         np.testing.assert_allclose(echoes["distance_m"], WALL - places[echoes["beam_id"]] + late, atol=0.1)
-
-
-if __name__ == "__main__":
-    unittest.main()

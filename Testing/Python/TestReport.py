@@ -136,7 +136,3 @@ class Page(unittest.TestCase):
         for mast, share in re.findall(r"([0-9]+) m: ([0-9.]+) ± [0-9.]+.% at", self.text):
             best = positions[positions[:, 2] == float(mast)][np.argmax(values[positions[:, 2] == float(mast)])]
             self.assertAlmostEqual(0.01 * float(share), shares(best, True).mean(), delta=5.1e-3)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -150,7 +150,3 @@ class Less(unittest.TestCase):
         sensor = al.Sensor(channel_elevations=[-2.0, 6.0], number_of_channels=2, position=(0, 0, 30))
         row, = reach.heights_in_band(types.SimpleNamespace(sensor=sensor), [10.0], 600.0)
         self.assertAlmostEqual(row["from"], 20 / math.tan(math.radians(2.0)), delta=1e-9)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -367,7 +367,3 @@ class SceneObjects(unittest.TestCase):
         self.save("many.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"usemtl m{i}\nf 1 2 3\n" for i in range(13)))
         scene = self.read({"file": "many.obj"}, silent=False, material_map={})
         self.assertIn(" and 3 more: taken as Wall", scene.warnings[0])
-
-
-if __name__ == "__main__":
-    unittest.main()

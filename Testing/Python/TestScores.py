@@ -129,7 +129,3 @@ class Errors(unittest.TestCase):
         for nothing in (scores.share(0, 0), scores.mean([]), scores.ratio([], []), scores.ratio([0.0], [0.0]), scores.rate(0, 0.0)):
             self.assertTrue(math.isnan(nothing.value) and math.isnan(nothing.error))
         self.assertTrue(math.isnan(scores.mean([1.0]).error))
-
-
-if __name__ == "__main__":
-    unittest.main()

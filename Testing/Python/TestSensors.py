@@ -257,7 +257,3 @@ class Reader(unittest.TestCase):
             reader.Update()
             self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 28928))
             self.assertEqual(reader.GetPosition(), (1, 2, 3))
-
-
-if __name__ == "__main__":
-    unittest.main()

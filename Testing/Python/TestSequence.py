@@ -330,7 +330,3 @@ class Command(unittest.TestCase):
         bare = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         done = subprocess.run([str(launcher), "--help"], capture_output=True, text=True, check=True, env=bare)
         self.assertRegex(done.stdout, "examples:\n  avianlidar scan")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import ast
 import os
 import pathlib
 import shutil
-import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -122,7 +121,3 @@ class Sequence(InFolder):
         classes = next(ast.literal_eval(node.value) for node in macro.body
                        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "CLASSES")
         self.assertEqual(classes, {label: (one.name, one.color[::-1]) for label, one in _labels.CLASSES.items()})
-
-
-if __name__ == "__main__":
-    unittest.main()

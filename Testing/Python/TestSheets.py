@@ -133,7 +133,3 @@ class Sheets(unittest.TestCase):
             of = al.Sensor(fitted)
             self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)
             self.assertEqual((of.description["sheet"]["bar"] < 0.01, len(of.description["sheet"]["residuals"])), (True, 4))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -108,7 +108,3 @@ class ShippedScene(unittest.TestCase):
         offset = abs(along[0] * -ends[0][1] - along[1] * -ends[0][0])
         self.assertLess(offset, 57.6 / 2)
         self.assertLess(abs(np.linalg.norm(ends[0]) - np.linalg.norm(ends[1])), 50)
-
-
-if __name__ == "__main__":
-    unittest.main()

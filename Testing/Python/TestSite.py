@@ -36,7 +36,3 @@ class Site(unittest.TestCase):
         for file in SITE.rglob("*.html"):
             if file.name not in ("index.html", "README.html", "genindex.html", "py-modindex.html", "search.html"):
                 self.assertIn(file.resolve().as_uri(), menu)
-
-
-if __name__ == "__main__":
-    unittest.main()

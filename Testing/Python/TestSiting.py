@@ -475,7 +475,3 @@ class BadInput(unittest.TestCase):
                 ("weights", lambda: siting.search(found, weights[:1], 2)), ("count", lambda: siting.exhaustive(found, weights, 4))):
             with self.assertRaisesRegex((ValueError, al.Error), words):
                 work()
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Text that is not UTF-8 or holds a NUL, in files and in their names: no message is lost, no name is cut, and Python reads them all."""
 import os
-import unittest
 import warnings
 
 import vtk
@@ -104,7 +103,3 @@ class Texts(InFolder):
         (self.folder / "a.obj").write_bytes(TRIANGLE + b"f 1 2 3\n")
         with self.assertRaisesRegex(al.Error, "objects\\[0\\].file.*NUL"):
             al.load_scene(self.scene('{"file": "a.obj\\u0000b.obj"}'))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -174,7 +174,3 @@ class MovingScene(unittest.TestCase):
                     at(echo, float(time))
                 self.assertEqual(moving.asked, asked)
                 self.assertAlmostEqual(self.distance(echo.GetOutput()), 50 + asked[-1], places=1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 """Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors that name what is
 wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestBadInput's."""
 import itertools
-import unittest
 
 import numpy as np
 import vtk
@@ -137,8 +136,10 @@ class Tracks(InFolder):
             self.assertAlmostEqual(np.degrees(field(block, "flap_amplitude")[1]), 35)
 
     def test_trails(self):
-        source = tracks(Pattern=pattern("File"), FileName=self.file(HEADER + ROWS))
+        """Of a file with a comment and an empty line."""
+        source = tracks(Pattern=pattern("File"), FileName=self.file("# radar\n" + HEADER + "\n" + ROWS))
         blocks = movers(source)
+        self.assertNotEqual(*(field(block, "flap_phase")[0] for block in blocks))
         trails = source.GetOutputDataObject(1)
         self.assertEqual(trails.GetNumberOfLines(), 2)
         np.testing.assert_array_equal(vtk_to_numpy(trails.GetPoints().GetData()),
@@ -212,7 +213,3 @@ class Tracks(InFolder):
                 (polyline(TWO_LINES, TIMES, ["crow"]), "'species' has 1 values"),
                 (numbers, "cell array 'species' is not")):
             self.assert_fails(self.from_lines(data), words)
-
-
-if __name__ == "__main__":
-    unittest.main()

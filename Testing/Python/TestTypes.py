@@ -57,7 +57,3 @@ class Types(unittest.TestCase):
         for number, (line, words) in enumerate(BAD, first):
             self.assertTrue(any(re.search(rf"program\.py:{number}: error: .*{words}", one) for one in found), line)
         self.assertRegex(run.stdout, "checked [2-9][0-9] source files")
-
-
-if __name__ == "__main__":
-    unittest.main()

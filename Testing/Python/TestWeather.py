@@ -173,7 +173,3 @@ class Mie(unittest.TestCase):
     def test_droplets_return_what_ceilometers_found(self):
         for fog in others.FOGS:
             self.assertAlmostEqual(others.ratio_of_fog(fog) / RATIO, 1, delta=0.1, msg=fog)
-
-
-if __name__ == "__main__":
-    unittest.main()

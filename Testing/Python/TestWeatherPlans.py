@@ -222,7 +222,3 @@ EGLL 010220Z NIL=
         by_option = read_plan(plan("metar", year=YEAR), metar=HERE / "few.txt")
         self.assertEqual(by_file["year"], [{"weather": ["fog:500"], "share": 0.25}, {"weather": ["haze:23000"], "share": 0.75}])
         self.assertEqual(by_option["year"], by_file["year"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -100,7 +100,3 @@ class Sequences(unittest.TestCase):
         over = self.scenario("over", weather=["rain:3"], scan={"visibility": 9000})
         self.assertEqual(main(["sequence", str(over), "-o", str(self.home / "over"), "--weather", "fog:400"]), 0)
         np.testing.assert_array_equal(labels_of(self.home / "over"), labels_of(self.home / "fog"))
-
-
-if __name__ == "__main__":
-    unittest.main()

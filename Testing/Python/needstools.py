@@ -11,7 +11,7 @@ BEAM, NOISE, BEYOND = 2, 4, 8
 FIELDS = ("lower_energy_limit", "pulse_energy", "noise_modelled", "noise_bound", "secondary_reflections_modelled",
           "perceivable_range", "skipped_energy_bound", "missed_detail_energy", "light_energy_constraint_bound",
           "attenuation_coefficient", "rays_per_beam", "beam_samples", "full_model")
-OUT = pathlib.Path(sys.argv[0]).stem  # folder of what the examples leave, one for each test
+OUT = pathlib.Path(sys.argv[-1]).stem  # folder of what the examples leave, one for each test
 
 
 class Found:

@@ -30,7 +30,7 @@ def quick(pictures=False):
 
 
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
-HERE = pathlib.Path(exampletools.OUTPUT) / pathlib.Path(sys.argv[0]).stem  # of the test
+HERE = pathlib.Path(exampletools.OUTPUT) / pathlib.Path(sys.argv[-1]).stem  # of the test
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False, "all_species": False}  # m2: quicker than birds
 STEP = 1.5  # degrees, few beams
 SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": STEP}

@@ -182,8 +182,6 @@ TEST(StabilityBeam, PulseEnergies)
 TEST(StabilityBeam, NumbersOfRays)
 {
   Worst relative;
-  Worst halfCovered;
-  std::size_t wrong = 0;
   for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
   {
     for (const int rays : { 1, 2, 3, 4, 5, 7, 8, 33, 100, 101, 999, 10001, 1000000 })
@@ -194,25 +192,8 @@ TEST(StabilityBeam, NumbersOfRays)
       const Echo echo = onlyEcho(wall(100.0, { 0.146, 0.0, 0.0 }), sensor, settings);
       const double right = Qs * 0.146 * std::pow(std::cos(0.5 * sensor.halfBeamwidth), 2);
       relative.see(std::fabs(echo.returnEnergy / right - 1.0));
-      wrong += std::isnan(echo.energyStdError) != (rays < 8);
-      // Half of the beam is covered.
-      Scene half;
-      half.plate(
-        Vec3(100.0, 50.0, 0.0), Vec3(0.0, 50.0, 0.0), Vec3(0.0, 0.0, 50.0), { 0.146, 0.0, 0.0 });
-      if (rays > 1)
-      {
-        const ScanResult result = runScan(makeSetup(half, sensor, settings), oneBeam());
-        const double energy = result.echoes.empty() ? 0.0 : result.echoes[0].returnEnergy;
-        const double deviation = Qs * 0.146 * 0.5 / std::sqrt(rays);
-        halfCovered.see(std::fabs(energy - 2.627979397e-5) / deviation);
-      }
     }
   }
   record({ "Rays per beam", "1 to 1e6, odd and even, both samplings", "rays",
     "relative error of energy, wall at normal incidence (t^2/4 is 8e-6)", 8e-6, relative.value() });
-  record({ "Rays per beam", "2 to 1e6, half of the beam covered", "rays",
-    "error of energy in standard deviations of plain Monte Carlo", 4.5, halfCovered.value() });
-  record({ "Rays per beam", "1 to 1e6", "rays",
-    "standard errors that are NaN from 8 rays on, or a number below", 0.0,
-    static_cast<double>(wrong) });
 }

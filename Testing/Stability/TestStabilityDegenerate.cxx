@@ -25,20 +25,6 @@ EchoSettings quiet()
   return settings;
 }
 
-std::size_t echoesThatDiffer(const ScanResult& a, const ScanResult& b)
-{
-  std::size_t differing = a.echoes.size() != b.echoes.size();
-  for (std::size_t i = 0; i < std::min(a.echoes.size(), b.echoes.size()); ++i)
-  {
-    const Echo& x = a.echoes[i];
-    const Echo& y = b.echoes[i];
-    differing += !(sameBits(x.range, y.range) && sameBits(x.energyReceived, y.energyReceived) &&
-      sameBits(x.returnEnergy, y.returnEnergy) && x.objectId == y.objectId &&
-      sameBits(x.incidenceAngle, y.incidenceAngle) && sameBits(x.secondaryShare, y.secondaryShare));
-  }
-  return differing;
-}
-
 /// Number of echoes of `a` without a counterpart in the same beam of `b`: none nearer than `unit`,
 /// or an energy of the strongest range unit that differs by more than three stated standard errors.
 std::size_t echoesThatDisagree(const ScanResult& a, const ScanResult& b, double unit)
@@ -187,7 +173,7 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
   const auto differing = [&](const Scene& scene)
   {
     return static_cast<double>(
-      echoesThatDiffer(usually, runScan(makeSetup(scene, sensor, settings), beams)));
+      differingEchoes(usually, runScan(makeSetup(scene, sensor, settings), beams)));
   };
   const std::string promise = "echoes, with two reflections, that change by a bit";
   const std::string limits = "share of echoes, with two reflections, that change by more than "
@@ -211,38 +197,6 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
     { "Duplicated, zero-area", "every triangle three more times, and three without area beside it",
       "rays", promise, 0.0, differing(more) });
   record({ "Inverted", "every triangle turned over", "rays", promise, 0.0, differing(turned) });
-}
-
-TEST(StabilityDegenerate, FacesThatCoincide)
-{
-  // Every face a second time as another object of another material: the lower number is seen.
-  const Scene plain = town();
-  Scene twice = plain;
-  twice.mesh = std::make_shared<TriangleMesh>(*plain.mesh);
-  for (std::size_t i = 0; i < plain.mesh->size(); ++i)
-  {
-    twice.mesh->triangles.push_back(plain.mesh->triangles[i]);
-    twice.materials.push_back(Metal);
-    twice.objects.push_back(1000);
-  }
-  const ScanBeams beams = horizon(180, 4);
-  Sensor sensor;
-  sensor.lowerEnergyLimit = 1e-8;
-  std::size_t hidden = 0;
-  std::size_t echoes = 0;
-  for (const BeamSampleSource source : { BeamSampleSource::Rays, BeamSampleSource::Cells })
-  {
-    EchoSettings settings = quiet();
-    settings.beamSamples = source;
-    for (const Echo& echo : runScan(makeSetup(twice, sensor, settings), beams).echoes)
-    {
-      ++echoes;
-      hidden += echo.objectId == 1000;
-    }
-  }
-  ASSERT_GT(echoes, 400u);
-  record({ "Coincident faces", "every face twice, of two objects and materials", "both",
-    "echoes of the object with the higher id", 0.0, static_cast<double>(hidden) });
 }
 
 TEST(StabilityDegenerate, WideBeamOnASlantedWall)
@@ -337,8 +291,7 @@ TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
         settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
         const ScanResult without = runScan(makeSetup(bare, Sensor(), settings), beams);
         echoes += without.echoes.size();
-        differing +=
-          echoesThatDiffer(without, runScan(makeSetup(scene, Sensor(), settings), beams));
+        differing += differingEchoes(without, runScan(makeSetup(scene, Sensor(), settings), beams));
       }
     }
   }

@@ -80,9 +80,7 @@ ScanBeams beamsOf(const World& world)
   const Vec3 directions[] = { world.direction, { 1.0, -0.19, 0.0 }, { 1.0, 0.2, 0.01 } };
   for (const Vec3& direction : directions)
   {
-    beams.ids.push_back(beams.ids.size());
-    beams.origins.push_back(world.position);
-    beams.directions.push_back(unitVector(direction)); // as they are read
+    addBeam(beams, unitVector(direction), world.position); // as they are read
   }
   return beams;
 }

@@ -9,7 +9,7 @@
  * Source: Philox4x32-10 (Salmon et al., SC'11), written out for SIMD loops.
  * Differs: doubles are odd multiples of 2^-53, so they are never 0 or 1.
  * Valid: all seeds, beams and indices; with a revolution, index < 2^52 and purpose < 4096.
- * Test: TestRandom.cxx (the authors' known answers; their library Random123).
+ * Test: TestRandom.cxx (the authors' library Random123).
  */
 #ifndef avianlidar_Random_h
 #define avianlidar_Random_h

@@ -12,7 +12,7 @@
  * Source: Jonker and Volgenant, as above.
  * Differs: Dijkstra's algorithm with a heap serves every row. Columns are not reduced first.
  * Valid: finite costs of any sign. The order of the input decides among several best assignments.
- * Test: TestAssignment.cxx against brute force, TestTracker.py against SciPy.
+ * Test: TestTracker.py against SciPy.
  */
 #ifndef avianlidar_Assignment_h
 #define avianlidar_Assignment_h

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sums, means and their errors, and the message of an exception.
+#ifndef Statistics_h
+#define Statistics_h
+
+#include <cmath>
+#include <exception>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace statistics
+{
+inline double sumOf(const std::vector<double>& values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+inline double meanOf(const std::vector<double>& values)
+{
+  return sumOf(values) / static_cast<double>(values.size());
+}
+
+/// Numbers that come one after the other.
+struct Moments
+{
+  double count = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+
+  void add(double x)
+  {
+    this->count += 1.0;
+    this->sum += x;
+    this->squares += x * x;
+  }
+  double mean() const { return this->sum / this->count; }
+  double variance() const { return this->squares / this->count - this->mean() * this->mean(); }
+  double rms() const { return std::sqrt(this->squares / this->count); }
+  /// Standard error of the mean.
+  double error() const { return std::sqrt(this->variance() / (this->count - 1.0)); }
+};
+
+/// What the exception says that a call throws; empty without one.
+template <class Call>
+std::string errorOf(Call&& call)
+{
+  try
+  {
+    call();
+  }
+  catch (const std::exception& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+}
+
+#endif
