@@ -5,9 +5,8 @@ include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSources.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
-  NOWRAP_HEADERS Filters/vtkAvianLidarErrorsAsData.h
+  NOWRAP_HEADERS Filters/vtkAvianLidarProperties.h
     Filters/vtkAvianLidarSensorPresets.h
-    Filters/vtkAvianLidarFilePath.h
   SOURCES ${private_sources})
 
 # Data files that are built in, as text.

@@ -99,9 +99,6 @@ vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarBeamSource::~vtkAvianLidarBeamSource() = default;
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& preset)
 {
   bool changed = false;

@@ -57,9 +57,6 @@ vtkAvianLidarBirdSource::vtkAvianLidarBirdSource()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarBirdSource::~vtkAvianLidarBirdSource() = default;
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarBirdSource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {

@@ -209,7 +209,6 @@ vtkCxxSetObjectMacro(vtkAvianLidarCloudComparison, Controller, vtkMultiProcessCo
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
-  : ChamferAlpha(1.0)
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(Ports);

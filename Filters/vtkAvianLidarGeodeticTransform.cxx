@@ -226,20 +226,6 @@ private:
 vtkStandardNewMacro(vtkAvianLidarGeodeticTransform);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarGeodeticTransform::vtkAvianLidarGeodeticTransform()
-  : SourceFrame(FRAME_ENU)
-  , TargetFrame(FRAME_GEODETIC)
-  , MovePoints(false)
-  , UseFieldDataOrigin(true)
-  , Origin{ 0.0, 0.0, 0.0 }
-  , UTMZone(0)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarGeodeticTransform::~vtkAvianLidarGeodeticTransform() = default;
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarGeodeticTransform::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");

@@ -61,17 +61,10 @@ vtkStandardNewMacro(vtkAvianLidarHSBColorMap);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarHSBColorMap::vtkAvianLidarHSBColorMap()
-  : UseFieldDataRange(true)
-  , EnergyRange{ 2e-6, 6.25e-5 }
-  , Executed(false)
-  , LastLimits{ 2e-6, 6.25e-5 }
 {
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, Arrays::Energy.name);
 }
-
-//------------------------------------------------------------------------------
-vtkAvianLidarHSBColorMap::~vtkAvianLidarHSBColorMap() = default;
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])

@@ -297,12 +297,6 @@ void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDa
 vtkStandardNewMacro(vtkAvianLidarMaterial);
 
 //------------------------------------------------------------------------------
-vtkAvianLidarMaterial::vtkAvianLidarMaterial() = default;
-
-//------------------------------------------------------------------------------
-vtkAvianLidarMaterial::~vtkAvianLidarMaterial() = default;
-
-//------------------------------------------------------------------------------
 const char* vtkAvianLidarMaterial::GetMaterialName(int material)
 {
   const Materials::NamedMaterial* named = Named(material);

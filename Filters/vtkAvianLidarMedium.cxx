@@ -48,12 +48,6 @@ avianlidar::Json Triple(const double (&v)[3])
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarMedium::vtkAvianLidarMedium() = default;
-
-//------------------------------------------------------------------------------
-vtkAvianLidarMedium::~vtkAvianLidarMedium() = default;
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarMedium::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);

@@ -38,8 +38,8 @@
 #ifndef vtkAvianLidarRangeImage_h
 #define vtkAvianLidarRangeImage_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkImageAlgorithm.h"
 
 #include <string>
@@ -55,19 +55,19 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Number of columns, for beams that are not from a beam source. Default 0: automatic. */
+  /// Number of columns, for beams that are not from a beam source. Default 0: automatic.
   vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
   vtkGetMacro(Columns, int);
   ///@}
 
   ///@{
-  /** Number of rows, for beams that are not from a beam source. Default 0: automatic. */
+  /// Number of rows, for beams that are not from a beam source. Default 0: automatic.
   vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
   vtkGetMacro(Rows, int);
   ///@}
 
   ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
+  /// Processes that may work together; null: only this one. Default: the global controller.
   void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}

@@ -441,9 +441,6 @@ vtkAvianLidarTracks::vtkAvianLidarTracks()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarTracks::~vtkAvianLidarTracks() = default;
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarTracks::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
