@@ -372,6 +372,8 @@ private:
   vtkAvianLidarBeamSource(const vtkAvianLidarBeamSource&) = delete;
   void operator=(const vtkAvianLidarBeamSource&) = delete;
 
+  bool HasChannelElevation(int index);
+  bool IsGood(const char* what, const std::string& error);
   void TakeProperties(const vtkAvianLidarBeamSource& preset);
   void TakePreset(const char* name);
   std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);

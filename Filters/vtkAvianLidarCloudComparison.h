@@ -38,7 +38,6 @@
 #include "vtkPassInputTypeAlgorithm.h"
 
 class vtkFieldData;
-class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCloudComparison : public vtkPassInputTypeAlgorithm
 {
@@ -70,11 +69,8 @@ public:
   /// Alpha of the Chamfer distance, 1/m, 1e-6 to 1e6. Default 1 (assumed, for scans in metres).
   vtkAvianLidarPropertyMacro(ChamferAlpha, double, 1.0);
 
-  ///@{
   /// Processes that may work together; null: only this one. Default: the global controller.
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -85,10 +81,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarCloudComparison(const vtkAvianLidarCloudComparison&) = delete;

@@ -50,7 +50,6 @@
 
 class vtkDataObject;
 class vtkFieldData;
-class vtkMultiProcessController;
 class vtkPointSet;
 class vtkPolyData;
 
@@ -95,11 +94,8 @@ public:
   /// Empty the memory, for a new stream whose first scan may have any time.
   void Forget();
 
-  ///@{
   /// Processes that may work together; null: only this one. Default: the global controller.
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -111,18 +107,15 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarClutterFilter(const vtkAvianLidarClutterFilter&) = delete;
   void operator=(const vtkAvianLidarClutterFilter&) = delete;
 
   struct Memory;
-  std::string CheckProperties() const;
-  std::string Advance(vtkDataObject* cloud, vtkPolyData* table, Memory& memory);
+  void CheckProperties() const;
+  void Advance(vtkDataObject* cloud, vtkPolyData* table, Memory& memory);
   void Classify(
     const Memory& memory, const std::vector<std::uint64_t>& keys, vtkPointSet* output) const;
   void AddSettings(const Memory& memory, vtkFieldData* fields) const;

@@ -6,6 +6,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
@@ -26,7 +27,7 @@
 #include <utility>
 
 vtkStandardNewMacro(vtkAvianLidarCollisionTree);
-vtkCxxSetObjectMacro(vtkAvianLidarCollisionTree, Controller, vtkMultiProcessController);
+vtkAvianLidarCxxControllerMacro(vtkAvianLidarCollisionTree);
 vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
 
 struct vtkAvianLidarCollisionTree::vtkInternals
@@ -70,35 +71,18 @@ int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarCollisionTree::CheckOptions() const
+void vtkAvianLidarCollisionTree::CheckOptions() const
 {
-  if (this->Preset != PRESET_CUSTOM)
+  using avianlidar::rangeError;
+  vtkAvianLidarRequire(
+    rangeError("Preset", this->Preset, PRESET_CUSTOM, PRESET_PAPER, "0 (custom) or 1 (paper)"));
+  if (this->Preset == PRESET_CUSTOM)
   {
-    return this->Preset == PRESET_PAPER
-      ? std::string()
-      : avianlidar::valueError("Preset", this->Preset, "0 (custom) or 1 (paper)");
+    vtkAvianLidarRequire(rangeError("SplitRule", this->SplitRule, 0, 3, "0 to 3"));
+    vtkAvianLidarRequire(rangeError("BoundingVolume", this->BoundingVolume, 0, 3, "0 to 3"));
+    vtkAvianLidarRequire(
+      rangeError("MaximumLeafSize", this->MaximumLeafSize, 1, VTK_INT_MAX, "at least 1"));
   }
-  if (this->SplitRule < SPLIT_RULE_HALVES || this->SplitRule > SPLIT_RULE_SURFACE_AREA_HEURISTIC)
-  {
-    return avianlidar::valueError("SplitRule", this->SplitRule, "0 to 3");
-  }
-  if (this->BoundingVolume < BOUNDING_VOLUME_AABB ||
-    this->BoundingVolume > BOUNDING_VOLUME_BINARY_AABB)
-  {
-    return avianlidar::valueError("BoundingVolume", this->BoundingVolume, "0 to 3");
-  }
-  if (this->MaximumLeafSize < 1)
-  {
-    return avianlidar::valueError("MaximumLeafSize", this->MaximumLeafSize, "at least 1");
-  }
-  return {};
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarCollisionTree::ModifyRequest(vtkInformation* request, int when)
-{
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
 }
 
 //------------------------------------------------------------------------------
@@ -126,7 +110,7 @@ void vtkAvianLidarCollisionTree::MergeSurfaces(
     [this]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      return this->CheckOptions();
+      this->CheckOptions();
     });
   in.Surfaces = in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces);
   const vtkAvianLidarSurfaces& merged = *in.Surfaces;

@@ -42,12 +42,10 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
-#include <string> // For error texts
 
 class vtkAvianLidarRanks;
 class vtkDataObject;
 class vtkInformationObjectBaseKey;
-class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCollisionTree : public vtkPolyDataAlgorithm
 {
@@ -133,11 +131,8 @@ public:
   /// Key under which the information of the field array `tree_checksum` holds the tree.
   static vtkInformationObjectBaseKey* COLLISION_TREE();
 
-  ///@{
   /// Processes that may work together; null: only this one. Default: the global controller.
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -146,10 +141,7 @@ protected:
   ~vtkAvianLidarCollisionTree() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;
@@ -160,7 +152,7 @@ private:
   void MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);
 
-  std::string CheckOptions() const;
+  void CheckOptions() const;
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -164,10 +164,10 @@ private:
   // Passes of an execution, as in the superclass.
   void PrepareTargets(const vtkAvianLidarRanks& ranks);
   void PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
-  void View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);
+  void View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter);
   void Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);
 
-  std::string CheckTarget() const;
+  void CheckTarget() const;
   void MakeFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 
   struct vtkTargets;

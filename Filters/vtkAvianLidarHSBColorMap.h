@@ -67,8 +67,8 @@ private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;
   void operator=(const vtkAvianLidarHSBColorMap&) = delete;
 
-  // Finds the limits in use. Returns an error text if the limits are bad, else an empty string.
-  std::string FindLimits(vtkPointSet* input, double limits[2]);
+  // Finds the limits in use. Throws std::runtime_error if they are bad.
+  void FindLimits(vtkPointSet* input, double limits[2]);
 
   bool Executed = false;
   double LastLimits[2] = { 2e-6, 6.25e-5 };

@@ -11,6 +11,9 @@
 
 #include <string> // For names of files
 
+class vtkInformation;
+class vtkMultiProcessController;
+
 /// Declares a property of any type.
 #define vtkAvianLidarPropertyMacro(name, type, ...) \
   vtkSetMacro(name, type);                          \
@@ -55,6 +58,18 @@ public:
 protected:                                                         \
   std::string name;                                                \
                                                                    \
+public:
+
+/// Declares Controller, of a filter whose ranks work together, and ModifyRequest(), which updates
+/// the inputs of all ranks. vtkAvianLidarCxxControllerMacro() defines both.
+#define vtkAvianLidarControllerMacro()                           \
+  void SetController(vtkMultiProcessController* controller);     \
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);      \
+                                                                 \
+protected:                                                       \
+  int ModifyRequest(vtkInformation* request, int when) override; \
+  vtkMultiProcessController* Controller = nullptr;               \
+                                                                 \
 public:
 
 /// Declares ErrorsAsData, which every algorithm of the module has. If ErrorsAsData is on, an

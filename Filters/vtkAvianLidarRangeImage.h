@@ -42,9 +42,6 @@
 #include "vtkAvianLidarProperties.h"
 #include "vtkImageAlgorithm.h"
 
-#include <string>
-
-class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarRangeImage : public vtkImageAlgorithm
@@ -66,11 +63,8 @@ public:
   vtkGetMacro(Rows, int);
   ///@}
 
-  ///@{
   /// Processes that may work together; null: only this one. Default: the global controller.
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -81,19 +75,17 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int Columns = 0;
   int Rows = 0;
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;
   void operator=(const vtkAvianLidarRangeImage&) = delete;
 
   bool SizeIsGiven() const { return this->Columns > 0 && this->Rows > 0; }
-  std::string MakeImage(
+  void MakeImage(
     vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info);
 };
 

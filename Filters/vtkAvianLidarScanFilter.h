@@ -22,7 +22,6 @@
 
 class vtkAvianLidarRanks;
 class vtkDataObject;
-class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarScanFilter : public vtkPolyDataAlgorithm
 {
@@ -244,11 +243,8 @@ public:
   /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
   double GetNumberOfBytesSent() const;
 
-  ///@{
   /// Processes that may work together; null: only this one. Default: the global controller.
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -259,20 +255,17 @@ protected:
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   // Adds the media of the surfaces to the scan, and all air to the field data.
-  std::string PlaceMedia();
+  void PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
   // Passes of an execution, which all ranks make together; a failure on one rank throws on all.
   void PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   void PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-
-  vtkMultiProcessController* Controller = nullptr;
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
@@ -282,8 +275,7 @@ private:
   void operator=(const vtkAvianLidarScanFilter&) = delete;
 
   std::string MissingInput();
-  std::string PrepareSettings();
-  std::string CheckUnits() const;
+  void PrepareSettings();
   void SummarizeSurfaces(vtkDataObject* input, bool warn);
   void FindTree(vtkDataObject* input);
 };

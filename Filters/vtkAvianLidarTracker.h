@@ -43,9 +43,7 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
-#include <string> // For messages
 
-class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarTracker : public vtkPolyDataAlgorithm
@@ -128,11 +126,8 @@ public:
   /// Empty the memory: the next cloud counts as the first, and ids begin at 0.
   void Reset();
 
-  ///@{
   /// Processes that may work together; null: only this one. Default: the global controller.
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -142,16 +137,13 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarTracker(const vtkAvianLidarTracker&) = delete;
   void operator=(const vtkAvianLidarTracker&) = delete;
 
-  std::string CheckSettings() const;
+  void CheckSettings() const;
   void FillOutputs(bool hasTracks, vtkPolyData* input, const int* trackOfPoint,
     vtkInformationVector* outputVector) const;
 

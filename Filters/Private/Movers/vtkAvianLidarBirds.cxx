@@ -6,6 +6,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -32,18 +33,12 @@ vtkSmartPointer<vtkIntArray> Constant(const Arrays::Name& name, vtkIdType count,
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarBirds::TextOf(const char* property, const std::string& file)
 {
-  const std::string irregular = avianlidar::whyNotRegular(file);
-  if (!irregular.empty())
-  {
-    throw std::runtime_error(std::string(property) + " " + file + ": " + irregular);
-  }
+  const std::string name = std::string(property) + " " + file;
+  vtkAvianLidarRequire(avianlidar::whyNotRegular(file), name + ": ");
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream)
-  {
-    throw std::runtime_error(std::string(property) + " " + file + " cannot be read");
-  }
+  vtkAvianLidarRequire(stream ? "" : name + " cannot be read");
   return text.str();
 }
 
@@ -76,10 +71,7 @@ catch (const std::runtime_error& error)
 //------------------------------------------------------------------------------
 void vtkAvianLidarBirds::CheckReflectance(double reflectance)
 {
-  if (!(reflectance >= 0.0) || !(reflectance <= 1.0))
-  {
-    throw std::runtime_error(avianlidar::valueError("Reflectance", reflectance, "0 to 1"));
-  }
+  vtkAvianLidarRequire(avianlidar::rangeError("Reflectance", reflectance, 0.0, 1.0, "0 to 1"));
 }
 
 //------------------------------------------------------------------------------

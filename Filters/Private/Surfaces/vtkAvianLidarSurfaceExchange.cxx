@@ -3,6 +3,7 @@
 
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaceState.h"
@@ -256,7 +257,7 @@ try
   }
   std::shared_ptr<const vtkAvianLidarSurfaces> result = known;
   ranks.Together(self,
-    [&]() -> std::string
+    [&]()
     {
       if (scene.changed)
       {
@@ -264,7 +265,7 @@ try
             ? vtkAvianLidarSurfaces::Merge(input, known.get(), share)
             : vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, known.get(), share, false));
       }
-      return result->problem.empty() ? "" : what + result->problem;
+      vtkAvianLidarRequire(result->problem, what);
     });
   return result;
 }
@@ -292,12 +293,9 @@ void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkA
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());
       vtkAvianLidarScene::Detach(scene.fields); // it cannot be sent
-      if (problem.empty())
-      {
-        lists.push_back(ListOf(scene.leaves, scene.fields));
-        hash = HashOf(lists);
-      }
-      return problem.empty() ? problem : what + problem;
+      vtkAvianLidarRequire(problem, what);
+      lists.push_back(ListOf(scene.leaves, scene.fields));
+      hash = HashOf(lists);
     });
   const bool same = ranks.Same(hash);
   if (same)
@@ -343,7 +341,7 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
           }
         }
       }
-      return wrong.empty() ? wrong : what + wrong;
+      vtkAvianLidarRequire(wrong, what);
     });
   ranks.Broadcast(scene.fields, fieldOwner, this->BytesSent);
   for (auto next = parts.begin(); next != parts.end();)
