@@ -6,7 +6,6 @@ include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
   NOWRAP_HEADERS Filters/vtkAvianLidarProperties.h
-    Filters/vtkAvianLidarSensorPresets.h
   SOURCES ${private_sources})
 
 # Data files that are built in, as text.

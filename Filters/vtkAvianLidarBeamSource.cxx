@@ -81,13 +81,6 @@ std::string NameProperties(const std::string& error)
   }
   return result;
 }
-
-void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* values, int components)
-{
-  auto array = Arrays::Make<vtkDoubleArray>(name, 1, components);
-  array->SetTypedTuple(0, values);
-  fields->AddArray(array);
-}
 }
 
 vtkStandardNewMacro(vtkAvianLidarBeamSource);
@@ -479,8 +472,8 @@ void vtkAvianLidarBeamSource::vtkInternals::RequireProperties(const Source& self
 void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   const Source& self, int revolution, vtkFieldData* fields)
 {
-  SetVector(fields, Arrays::Position, self.Position, 3);
-  SetVector(fields, Arrays::Orientation, self.Orientation, 3);
+  Arrays::SetFieldVector(fields, Arrays::Position, self.Position, 3);
+  Arrays::SetFieldVector(fields, Arrays::Orientation, self.Orientation, 3);
   if (!self.Table)
   {
     Arrays::SetFieldInteger(
@@ -494,7 +487,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
     }
     if (self.GetNumberOfPrisms() == 0)
     {
-      SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
+      Arrays::SetFieldVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
     }
   }
   Arrays::SetFieldInteger(fields, Arrays::BeamOutline, self.BeamOutline);

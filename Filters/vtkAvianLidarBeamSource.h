@@ -39,7 +39,6 @@
 
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkAvianLidarProperties.h"
-#include "vtkAvianLidarSensorPresets.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <functional> // For std::function
@@ -50,6 +49,14 @@
 
 class vtkPolyData;
 struct vtkAvianLidarSensorFile;
+
+/// Declares the setter of a built-in sensor, which is a file in Filters/Sensors.
+#define vtkAvianLidarPresetMacro(name) \
+  void SetPresetTo##name()             \
+  {                                    \
+    this->TakePreset(#name);           \
+  }
+
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
 public:
@@ -85,7 +92,24 @@ public:
   /// Set all properties but ErrorsAsData to the values of a built-in sensor's file in
   /// Filters/Sensors. A property that is not in the file gets its default
   /// (Documentation/reference/sensor-files.md).
-  vtkAvianLidarSensorPresetsMacro();
+  vtkAvianLidarPresetMacro(Airport16);
+  vtkAvianLidarPresetMacro(Airport32);
+  vtkAvianLidarPresetMacro(CorridorC16);
+  vtkAvianLidarPresetMacro(Search905);
+  vtkAvianLidarPresetMacro(Search1550);
+  vtkAvianLidarPresetMacro(Automotive16);
+  vtkAvianLidarPresetMacro(VLP16);
+  vtkAvianLidarPresetMacro(VLP32C);
+  vtkAvianLidarPresetMacro(HDL32E);
+  vtkAvianLidarPresetMacro(Pandar40P);
+  vtkAvianLidarPresetMacro(PandarXT32);
+  vtkAvianLidarPresetMacro(OS1_64);
+  vtkAvianLidarPresetMacro(Helios16P);
+  vtkAvianLidarPresetMacro(OS0_128);
+  vtkAvianLidarPresetMacro(OS2_128);
+  vtkAvianLidarPresetMacro(Mid40);
+  vtkAvianLidarPresetMacro(Avia);
+  vtkAvianLidarPresetMacro(Mid360);
   ///@}
 
   /// Take only the values without a setter from a built-in sensor: tables, prisms, the names of

@@ -6,15 +6,14 @@
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScanStream.h"
 
-#include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
@@ -28,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -164,12 +162,6 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
   auto points = Arrays::MakePoints(size);
   auto persistence = Arrays::Make<vtkDoubleArray>(Arrays::ClutterProbability, size);
   auto indices = Arrays::Make<vtkIntArray>(Arrays::ClutterCell, size, 3);
-  vtkNew<vtkIdTypeArray> offsets;
-  vtkNew<vtkIdTypeArray> vertices;
-  Arrays::SetTuples(offsets.Get(), size + 1);
-  Arrays::SetTuples(vertices.Get(), size);
-  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + size + 1, vtkIdType(0));
-  std::iota(vertices->GetPointer(0), vertices->GetPointer(0) + size, vtkIdType(0));
   for (vtkIdType i = 0; i < size; ++i)
   {
     const auto k = static_cast<std::size_t>(i);
@@ -181,10 +173,8 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
     indices->SetTypedComponent(i, 1, cell.elevation);
     indices->SetTypedComponent(i, 2, cell.range);
   }
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(offsets.Get(), vertices.Get());
   output->SetPoints(points);
-  output->SetVerts(cells);
+  output->SetVerts(vtkAvianLidarMakeCells(size, 1));
   output->GetPointData()->AddArray(persistence);
   output->GetPointData()->AddArray(indices);
 }
@@ -352,9 +342,7 @@ void vtkAvianLidarClutterFilter::AddSettings(const Memory& memory, vtkFieldData*
   {
     Arrays::SetFieldInteger(fields, name, value);
   }
-  auto position = Arrays::Make<vtkDoubleArray>(Arrays::Position, 1, 3);
-  std::copy(memory.Of.Position, memory.Of.Position + 3, position->GetPointer(0));
-  fields->AddArray(position);
+  Arrays::SetFieldVector(fields, Arrays::Position, memory.Of.Position);
 }
 
 //------------------------------------------------------------------------------

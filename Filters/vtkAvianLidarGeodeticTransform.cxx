@@ -14,7 +14,6 @@
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -125,16 +124,12 @@ private:
       this->FindOrigin(fields, origin);
       this->Geodesy.setOrigin(origin[0], origin[1], origin[2]);
       zone = automatic ? GeodeticFrame::zoneOf(origin[0], origin[1]) : zone;
-      auto array = Arrays::Make<vtkDoubleArray>(Arrays::GeodeticOrigin, 1, 3);
-      array->SetTypedTuple(0, origin);
-      output->AddArray(array);
+      Arrays::SetFieldVector(output, Arrays::GeodeticOrigin, origin);
     }
     if (this->Uses(Frame::UTM))
     {
       this->Geodesy.setZone(zone);
-      auto array = Arrays::Make<vtkIntArray>(Arrays::UTMZone, 1);
-      array->SetValue(0, zone);
-      output->AddArray(array);
+      Arrays::SetFieldInteger(output, Arrays::UTMZone, zone);
     }
   }
 

@@ -150,20 +150,14 @@ std::vector<std::string> MaterialNames(
   return names;
 }
 
-void SetConstant(vtkPolyData* data, const Arrays::Name& name, int value)
-{
-  auto array = Arrays::Make<vtkIntArray>(name, data->GetNumberOfCells());
-  array->FillValue(value);
-  data->GetCellData()->AddArray(array);
-}
-
 void AssignMaterial(const Assignment& what, vtkFieldData* whole, vtkPolyData* output)
 {
   vtkFieldData* fields = output->GetFieldData();
   const std::vector<std::string> names = MaterialNames(fields, whole, what.MaterialName);
   const auto index = std::find(names.begin(), names.end(), what.MaterialName) - names.begin();
   Arrays::SetFieldStrings(fields, Arrays::MaterialNames, names);
-  SetConstant(output, Arrays::MaterialId, static_cast<int>(index));
+  output->GetCellData()->AddArray(
+    Arrays::Constant(Arrays::MaterialId, output->GetNumberOfCells(), static_cast<int>(index)));
   Materials::AddCoefficients(output->GetCellData(), output->GetNumberOfCells(),
     [&](vtkIdType) -> const avianlidar::Material& { return *what.Coefficients; });
 }
@@ -185,7 +179,8 @@ void AssignObject(
   if (oneObject || !output->GetCellData()->GetArray(Arrays::ObjectId.name))
   {
     const int known = what.ObjectId >= 0 ? what.ObjectId : FirstObjectId(output);
-    SetConstant(output, Arrays::ObjectId, known >= 0 ? known : number);
+    output->GetCellData()->AddArray(
+      Arrays::Constant(Arrays::ObjectId, output->GetNumberOfCells(), known >= 0 ? known : number));
   }
   const std::vector<std::string> classes = StringsOf(fields, Arrays::ObjectClasses);
   if (oneObject && classes.size() > 1)

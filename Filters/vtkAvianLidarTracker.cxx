@@ -519,9 +519,7 @@ void vtkAvianLidarTracker::FillOutputs(bool hasTracks, vtkPolyData* input, const
     }
     Arrays::SetFieldValue(fields, HalfBeamwidthName, facts.HalfBeamwidth);
     Arrays::SetFieldValue(fields, Arrays::Time, time);
-    auto sensor = Arrays::Make<vtkDoubleArray>(SensorPositionName, 1, 3);
-    sensor->SetTypedTuple(0, facts.Sensor);
-    fields->AddArray(sensor);
+    Arrays::SetFieldVector(fields, SensorPositionName, facts.Sensor);
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
   }
 }

@@ -238,8 +238,8 @@ private:
 };
 
 /// Where the points are to go: the frame, with its origin and zone, and the output's system.
-Frame Place(vtkPointSet* input, int system, int zone, const std::function<void(std::string)>& warn,
-  GeodeticFrame& geodesy, formats::LasOutput& output)
+Frame PlaceFile(vtkPointSet* input, int system, int zone,
+  const std::function<void(std::string)>& warn, GeodeticFrame& geodesy, formats::LasOutput& output)
 {
   const std::optional<Point> origin = fields::FindOrigin(input);
   output.crs = fields::FindText(input, CrsName);
@@ -298,7 +298,8 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
     warn(" has other values or names of the point arrays " + extra.Changed + ".");
   }
   GeodeticFrame geodesy;
-  const Frame target = Place(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
+  const Frame target =
+    PlaceFile(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
   output.position = [&](std::int64_t i)
   {
     Point point;

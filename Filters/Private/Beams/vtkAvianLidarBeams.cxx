@@ -4,7 +4,6 @@
 #include "Hash.h"
 #include "ScanPattern.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarIdRuns.h"
 #include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
@@ -14,6 +13,7 @@
 #include "vtkPolyData.h"
 #include "vtkTypeUInt64Array.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -194,6 +194,43 @@ void ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
   }
 }
 
+/// Consecutive ids, `count` of them, from `first` on. The beams of a sensor are one run, and the
+/// columns of one rank are a few runs.
+struct IdRun
+{
+  std::uint64_t first;
+  std::uint64_t count;
+};
+
+/// Ascending runs of ids that come in any order. An id that occurs twice begins a new run.
+std::vector<IdRun> RunsOf(std::vector<std::uint64_t> ids)
+{
+  std::sort(ids.begin(), ids.end());
+  std::vector<IdRun> runs;
+  for (const std::uint64_t id : ids)
+  {
+    if (runs.empty() || id != runs.back().first + runs.back().count)
+    {
+      runs.push_back({ id, 0 });
+    }
+    ++runs.back().count;
+  }
+  return runs;
+}
+
+/// An error text if an id is in two of the runs, else an empty string.
+std::string RepeatedIdError(std::vector<IdRun> runs)
+{
+  std::sort(
+    runs.begin(), runs.end(), [](const IdRun& a, const IdRun& b) { return a.first < b.first; });
+  const auto twice = std::adjacent_find(runs.begin(), runs.end(),
+    [](const IdRun& a, const IdRun& b) { return b.first < a.first + a.count; });
+  return twice == runs.end() ? std::string()
+                             : "point array 'beam_id' holds " + std::to_string((twice + 1)->first) +
+      " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
+      "appending beams)";
+}
+
 void ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   vtkDataArray* ids = FindScalar(input, Arrays::BeamId);
@@ -206,7 +243,7 @@ void ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
     }
     beams.ids.push_back(static_cast<std::uint64_t>(id));
   }
-  vtkAvianLidarRequire(vtkAvianLidarRepeatedIdError(vtkAvianLidarRunsOf(beams.ids)));
+  vtkAvianLidarRequire(RepeatedIdError(RunsOf(beams.ids)));
 }
 
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
@@ -344,7 +381,7 @@ void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorith
   ranks.Together(self,
     [&]()
     {
-      for (const vtkAvianLidarIdRun& run : vtkAvianLidarRunsOf(this->beams.ids))
+      for (const IdRun& run : RunsOf(this->beams.ids))
       {
         mine->InsertNextValue(run.first);
         mine->InsertNextValue(run.count);
@@ -355,12 +392,12 @@ void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorith
   ranks.Together(self,
     [&]()
     {
-      std::vector<vtkAvianLidarIdRun> runs;
+      std::vector<IdRun> runs;
       for (vtkIdType i = 0; i < all->GetNumberOfValues(); i += 2)
       {
         runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
       }
-      vtkAvianLidarRequire(vtkAvianLidarRepeatedIdError(std::move(runs)), BeamsPort);
+      vtkAvianLidarRequire(RepeatedIdError(std::move(runs)), BeamsPort);
     });
 }
 

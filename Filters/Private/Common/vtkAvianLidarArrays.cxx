@@ -54,6 +54,20 @@ void SetFieldInteger(vtkFieldData* fields, const Name& name, int value)
   fields->AddArray(array);
 }
 
+void SetFieldVector(vtkFieldData* fields, const Name& name, const double* values, int components)
+{
+  auto array = Make<vtkDoubleArray>(name, 1, components);
+  array->SetTypedTuple(0, values);
+  fields->AddArray(array);
+}
+
+vtkSmartPointer<vtkIntArray> Constant(const Name& name, vtkIdType tuples, int value)
+{
+  auto array = Make<vtkIntArray>(name, tuples);
+  array->FillValue(value);
+  return array;
+}
+
 void SetFieldStrings(vtkFieldData* fields, const Name& name, const std::vector<std::string>& values)
 {
   auto array = Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));

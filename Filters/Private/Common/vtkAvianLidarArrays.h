@@ -17,6 +17,7 @@
 #include <vector>
 
 class vtkFieldData;
+class vtkIntArray;
 class vtkPoints;
 class vtkStringArray;
 
@@ -73,6 +74,13 @@ void SetFieldValue(vtkFieldData* fields, const Name& name, double value);
 
 /// Put one int value (with unit) into field data, replacing an array of that name.
 void SetFieldInteger(vtkFieldData* fields, const Name& name, int value);
+
+/// Put a vector (with unit) into field data, replacing an array of that name.
+void SetFieldVector(
+  vtkFieldData* fields, const Name& name, const double* values, int components = 3);
+
+/// A new array of one component with the same value everywhere.
+vtkSmartPointer<vtkIntArray> Constant(const Name& name, vtkIdType tuples, int value);
 
 /// Put strings into field data, as UTF-8, replacing an array of that name.
 void SetFieldStrings(

@@ -21,13 +21,6 @@
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
-
-vtkSmartPointer<vtkIntArray> Constant(const Arrays::Name& name, vtkIdType count, int value)
-{
-  auto array = Arrays::Make<vtkIntArray>(name, count);
-  array->FillValue(value);
-  return array;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -102,7 +95,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarBirds::Surface(
   bird->SetPolys(cells);
   const vtkIdType count = cells->GetNumberOfCells();
   bird->GetCellData()->AddArray(parts);
-  bird->GetCellData()->AddArray(Constant(Arrays::MaterialId, count, 4));
+  bird->GetCellData()->AddArray(Arrays::Constant(Arrays::MaterialId, count, 4));
   vtkAvianLidarMaterials::AddCoefficients(
     bird->GetCellData(), count, [&](vtkIdType) -> const avianlidar::Material& { return plumage; });
   Arrays::SetFieldStrings(
@@ -113,7 +106,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarBirds::Surface(
 //------------------------------------------------------------------------------
 void vtkAvianLidarBirds::SetObject(vtkPolyData* bird, int id, const std::string& name)
 {
-  bird->GetCellData()->AddArray(Constant(Arrays::ObjectId, bird->GetNumberOfCells(), id));
+  bird->GetCellData()->AddArray(Arrays::Constant(Arrays::ObjectId, bird->GetNumberOfCells(), id));
   Arrays::SetFieldStrings(bird->GetFieldData(), Arrays::ObjectNames, { name });
   Arrays::SetFieldStrings(bird->GetFieldData(), Arrays::ObjectClasses, { "bird" });
 }

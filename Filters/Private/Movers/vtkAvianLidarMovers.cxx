@@ -5,7 +5,6 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
-#include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkCellData.h"
@@ -39,7 +38,7 @@ constexpr char MoversPort[] = "Input port 2 (movers), ";
 /// Hash of all that is read of a block.
 std::uint64_t HashOfMover(vtkPolyData* block)
 {
-  std::uint64_t hash = vtkAvianLidarSurfaceState::HashOf(block);
+  std::uint64_t hash = Leaf::HashOf(block);
   hash = vtkAvianLidarContent::HashOf(block->GetCellData()->GetArray(names::Part.name), hash);
   for (const names::Name& name :
     { names::PoseTime, names::PosePosition, names::PoseOrientation, names::FlapHinge,

@@ -6,7 +6,6 @@
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
-#include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkAppendPolyData.h"
@@ -107,7 +106,7 @@ vtkMultiProcessStream ListOf(const std::vector<Leaf>& leaves, vtkTable* fields)
   {
     const bool empty = leaf.data->GetNumberOfPolys() + leaf.data->GetNumberOfStrips() == 0;
     list << leaf.index << static_cast<int>(leaf.named) << leaf.name
-         << vtkTypeUInt64{ vtkAvianLidarSurfaceState::HashOf(leaf.data) }
+         << vtkTypeUInt64{ Leaf::HashOf(leaf.data) }
          << (empty ? 0.0 : vtkAvianLidarRanks::BytesOf(Lean(leaf.data)));
   }
   return list;
@@ -199,8 +198,7 @@ bool AreAlike(vtkPolyData* one, vtkPolyData* other)
   const auto sameType = [](vtkDataArray* c, vtkDataArray* d)
   { return c && d ? c->GetDataType() == d->GetDataType() : c == d; };
   return std::equal(a.begin(), a.end(), b.begin(), sameType) &&
-    vtkAvianLidarSurfaceState::HashOfNames(one->GetFieldData(), 0) ==
-    vtkAvianLidarSurfaceState::HashOfNames(other->GetFieldData(), 0);
+    Leaf::HashOfNames(one->GetFieldData(), 0) == Leaf::HashOfNames(other->GetFieldData(), 0);
 }
 
 /// Parts that are alike as one, in their order.
@@ -350,7 +348,7 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
   }
   this->Fields = scene.fields->GetFieldData();
   const std::uint64_t some = this->Fields->GetNumberOfArrays() > 0;
-  const bool received = ranks.Same(vtkAvianLidarSurfaceState::HashOfNames(this->Fields, some));
+  const bool received = ranks.Same(Leaf::HashOfNames(this->Fields, some));
   ranks.Together(self,
     [&]()
     {

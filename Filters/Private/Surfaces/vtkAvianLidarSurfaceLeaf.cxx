@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceLeaf.h"
 
+#include "Hash.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarTriangles.h"
 
@@ -18,11 +20,13 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 
 namespace
 {
@@ -245,6 +249,42 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
                                 : vtkAvianLidarTriangles(this->data);
 }
 
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarSurfaceLeaf::HashOfNames(vtkFieldData* fields, std::uint64_t seed)
+{
+  for (const auto& name : vtkAvianLidarArrays::SurfaceTexts)
+  {
+    vtkAbstractArray* array = fields ? fields->GetAbstractArray(name.name) : nullptr;
+    auto* names = vtkStringArray::SafeDownCast(array);
+    constexpr vtkIdType none = -1;
+    constexpr vtkIdType noText = -2; // an error: another state than none
+    const vtkIdType count = names ? names->GetNumberOfValues() : array ? noText : none;
+    seed = avianlidar::hashOf(&count, sizeof(count), seed);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const std::string& text = names->GetValue(i);
+      seed = avianlidar::hashOf(text.data(), text.size(), seed);
+    }
+  }
+  return seed;
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarSurfaceLeaf::HashOf(vtkPolyData* poly)
+{
+  namespace Content = vtkAvianLidarContent;
+  const vtkAvianLidarSurfaceArrays arrays(poly);
+  std::uint64_t hash = HashOfNames(poly->GetFieldData(), 0);
+  hash = Content::HashOf(arrays.ghosts, Content::HashOfGeometry(poly, hash));
+  // An array without numbers is an error: another state than no array.
+  const std::string_view odd = arrays.notNumeric ? arrays.notNumeric : "";
+  hash = avianlidar::hashOf(odd.data(), odd.size(), hash);
+  for (vtkDataArray* array : arrays.Numbers())
+  {
+    hash = Content::HashOf(array, hash);
+  }
+  return hash;
+}
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
 {
