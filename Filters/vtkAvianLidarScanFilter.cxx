@@ -15,6 +15,7 @@
 #include "vtkAvianLidarText.h"
 
 #include "vtkDataObject.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -142,7 +143,8 @@ vtkTypeBool vtkAvianLidarScanFilter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   // RequestData says what is missing; all else has nothing to ask for.
-  const bool ready = request->Has(Pipeline::REQUEST_DATA()) || this->MissingInput().empty();
+  const bool ready =
+    request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || this->MissingInput().empty();
   return ready ? this->Superclass::ProcessRequest(request, inputVector, outputVector) : 1;
 }
 
