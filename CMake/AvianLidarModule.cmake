@@ -5,9 +5,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarSources.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/AvianLidarPrivateFolders.cmake")
 vtk_module_add_module(AvianLidar::AvianLidar
   CLASSES ${classes}
-  NOWRAP_HEADERS Filters/vtkAvianLidarErrorsAsData.h
-    Filters/vtkAvianLidarSensorPresets.h
-    Filters/vtkAvianLidarFilePath.h
+  NOWRAP_HEADERS Filters/vtkAvianLidarProperties.h
   SOURCES ${private_sources})
 
 # Built-in data files, as text.

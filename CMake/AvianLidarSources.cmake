@@ -68,19 +68,16 @@ set(private_sources
   Filters/Private/Common/vtkAvianLidarContent.cxx
   Filters/Private/Common/vtkAvianLidarGather.cxx
   Filters/Private/Common/vtkAvianLidarGuard.cxx
-  Filters/Private/Common/vtkAvianLidarIdRuns.cxx
   Filters/Private/Common/vtkAvianLidarRanks.cxx
   Filters/Private/Common/vtkAvianLidarScanStream.cxx
   Filters/Private/Surfaces/vtkAvianLidarMedia.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceIds.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceLeaf.cxx
-  Filters/Private/Surfaces/vtkAvianLidarSurfaceState.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaces.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfacesMerge.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfacesToPolyData.cxx
   Filters/Private/Surfaces/vtkAvianLidarScene.cxx
-  Filters/Private/Surfaces/vtkAvianLidarTreeDisplay.cxx
   Filters/Private/Surfaces/vtkAvianLidarTriangles.cxx
   Filters/Private/Beams/vtkAvianLidarBeamSourceFile.cxx
   Filters/Private/Beams/vtkAvianLidarBeams.cxx
@@ -94,7 +91,6 @@ set(private_sources
   Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
   Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
   Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
-  Filters/Private/Echoes/vtkAvianLidarModelNotes.cxx
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
   ${cloud_sources}

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanArrays.h"
 #include "vtkAvianLidarScanShape.h"
@@ -80,13 +81,6 @@ std::string NameProperties(const std::string& error)
   }
   return result;
 }
-
-void SetVector(vtkFieldData* fields, const Arrays::Name& name, const double* values, int components)
-{
-  auto array = Arrays::Make<vtkDoubleArray>(name, 1, components);
-  array->SetTypedTuple(0, values);
-  fields->AddArray(array);
-}
 }
 
 vtkStandardNewMacro(vtkAvianLidarBeamSource);
@@ -97,9 +91,6 @@ vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
 }
-
-//------------------------------------------------------------------------------
-vtkAvianLidarBeamSource::~vtkAvianLidarBeamSource() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& preset)
@@ -117,28 +108,23 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   }
   take(this->AzimuthRange[0], preset.AzimuthRange[0]);
   take(this->AzimuthRange[1], preset.AzimuthRange[1]);
-  take(this->NumberOfChannels, preset.NumberOfChannels);
-  take(this->ChannelElevations, preset.ChannelElevations);
-  take(this->ChannelAzimuthOffsets, preset.ChannelAzimuthOffsets);
-  take(this->ChannelFiringTimes, preset.ChannelFiringTimes);
-  take(this->BlankedSectors, preset.BlankedSectors);
-  take(this->PrismWedgeAngles, preset.PrismWedgeAngles);
-  take(this->PrismRefractiveIndices, preset.PrismRefractiveIndices);
-  take(this->PrismRotationRates, preset.PrismRotationRates);
-  take(this->PrismPhases, preset.PrismPhases);
-  take(this->BeamOutline, preset.BeamOutline);
-  take(this->BeamProfile, preset.BeamProfile);
-  take(this->ThresholdLaw, preset.ThresholdLaw);
   take(this->NumberOfRevolutions, preset.NumberOfRevolutions);
   take(this->StepsPerRevolution, preset.StepsPerRevolution);
   take(this->MotionSeed, preset.MotionSeed);
-  take(this->ReceiverModel, preset.ReceiverModel);
   take(this->Assumed, preset.Assumed);
   take(this->Description, preset.Description);
   take(this->Table, preset.Table);
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
     take(this->*scalar.property, preset.*scalar.property);
+  }
+  for (const auto& [name, integer] : vtkInternals::Integers())
+  {
+    take(this->*integer, preset.*integer);
+  }
+  for (const auto& [name, table] : vtkInternals::Tables())
+  {
+    take(this->*table, preset.*table);
   }
   if (changed)
   {
@@ -187,26 +173,27 @@ void vtkAvianLidarBeamSource::SetTablesOfPreset(const char* name)
 }
 
 //------------------------------------------------------------------------------
-bool vtkAvianLidarBeamSource::LoadSensor(const char* fileName)
+bool vtkAvianLidarBeamSource::IsGood(const char* what, const std::string& error)
 {
-  const std::string error = this->ReadSensor(fileName, false);
   if (!error.empty())
   {
-    vtkErrorMacro("LoadSensor: " << error << ".");
+    vtkErrorMacro("" << what << ": " << error << ".");
   }
   return error.empty();
 }
 
 //------------------------------------------------------------------------------
+bool vtkAvianLidarBeamSource::LoadSensor(const char* fileName)
+{
+  return this->IsGood("LoadSensor", this->ReadSensor(fileName, false));
+}
+
+//------------------------------------------------------------------------------
 bool vtkAvianLidarBeamSource::LoadSensorText(const char* text)
 {
-  const std::string error = this->TakeFile(
-    [text]() { return vtkAvianLidarSensorFile::OfText(text ? text : "", "the text"); }, false);
-  if (!error.empty())
-  {
-    vtkErrorMacro("LoadSensorText: " << error << ".");
-  }
-  return error.empty();
+  return this->IsGood("LoadSensorText",
+    this->TakeFile(
+      [text]() { return vtkAvianLidarSensorFile::OfText(text ? text : "", "the text"); }, false));
 }
 
 //------------------------------------------------------------------------------
@@ -220,47 +207,39 @@ std::string vtkAvianLidarBeamSource::ReadSensor(const char* fileName, bool keepP
 std::string vtkAvianLidarBeamSource::TakeFile(
   const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace)
 {
-  try
-  {
-    vtkNew<vtkAvianLidarBeamSource> loaded;
-    if (keepPlace)
+  return vtkAvianLidarGuard::ProblemOf(
+    [&]()
     {
-      loaded->SetPosition(this->Position);
-      loaded->SetOrientation(this->Orientation);
-      loaded->SetNumberOfRevolutions(this->NumberOfRevolutions);
-      loaded->SetStepsPerRevolution(this->StepsPerRevolution);
-      loaded->SetMotionSeed(this->MotionSeed);
-    }
-    const vtkAvianLidarSensorFile file = read();
-    vtkInternals::Apply(file, *loaded);
-    const std::string error = vtkInternals::CheckProperties(*loaded);
-    if (!error.empty())
-    {
-      return file.file + ": " + error;
-    }
-    this->TakeProperties(*loaded);
-    return {};
-  }
-  catch (const std::exception& error)
-  {
-    return error.what();
-  }
+      vtkNew<vtkAvianLidarBeamSource> loaded;
+      if (keepPlace)
+      {
+        loaded->SetPosition(this->Position);
+        loaded->SetOrientation(this->Orientation);
+        loaded->SetNumberOfRevolutions(this->NumberOfRevolutions);
+        loaded->SetStepsPerRevolution(this->StepsPerRevolution);
+        loaded->SetMotionSeed(this->MotionSeed);
+      }
+      const vtkAvianLidarSensorFile file = read();
+      vtkInternals::Apply(file, *loaded);
+      vtkAvianLidarWithin(file.file + ": ", [&]() { vtkInternals::RequireProperties(*loaded); });
+      this->TakeProperties(*loaded);
+    });
 }
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarBeamSource::SetBeams(vtkPolyData* beams)
 {
-  std::shared_ptr<vtkBeamTable> table;
-  if (beams)
+  const auto table = beams ? std::make_shared<vtkBeamTable>() : nullptr;
+  const auto read = [&]()
   {
-    table = std::make_shared<vtkBeamTable>();
-    const std::string error =
-      vtkAvianLidarGuard::ProblemOf([&]() { return vtkInternals::ReadTable(beams, *table); });
-    if (!error.empty())
+    if (beams)
     {
-      vtkErrorMacro("SetBeams: " << error << ".");
-      return false;
+      vtkInternals::ReadTable(beams, *table);
     }
+  };
+  if (!this->IsGood("SetBeams", vtkAvianLidarGuard::ProblemOf(read)))
+  {
+    return false;
   }
   this->Table = table;
   this->Modified();
@@ -305,16 +284,22 @@ int vtkAvianLidarBeamSource::GetNumberOfChannelElevations() const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::SetChannelElevation(int index, double elevation)
+bool vtkAvianLidarBeamSource::HasChannelElevation(int index)
 {
-  if (index < 0 || index >= this->GetNumberOfChannelElevations())
+  const bool has = index >= 0 && index < this->GetNumberOfChannelElevations();
+  if (!has)
   {
     vtkErrorMacro("ChannelElevation has no entry " << index << ", expected an index below the "
                                                    << this->GetNumberOfChannelElevations()
                                                    << " of NumberOfChannelElevations.");
-    return;
   }
-  if (this->ChannelElevations[index] != elevation)
+  return has;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::SetChannelElevation(int index, double elevation)
+{
+  if (this->HasChannelElevation(index) && this->ChannelElevations[index] != elevation)
   {
     this->ChannelElevations[index] = elevation;
     this->Modified();
@@ -324,14 +309,7 @@ void vtkAvianLidarBeamSource::SetChannelElevation(int index, double elevation)
 //------------------------------------------------------------------------------
 double vtkAvianLidarBeamSource::GetChannelElevation(int index)
 {
-  if (index < 0 || index >= this->GetNumberOfChannelElevations())
-  {
-    vtkErrorMacro("ChannelElevation has no entry " << index << ", expected an index below the "
-                                                   << this->GetNumberOfChannelElevations()
-                                                   << " of NumberOfChannelElevations.");
-    return 0.0;
-  }
-  return this->ChannelElevations[index];
+  return this->HasChannelElevation(index) ? this->ChannelElevations[index] : 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -373,26 +351,24 @@ void vtkAvianLidarBeamSource::SetLimitsFromDataSheet(
   double range, double reflectance, double attenuation)
 {
   avianlidar::Sensor sensor;
-  std::string error = vtkInternals::CheckProperties(*this);
-  if (error.empty())
+  const auto find = [&]()
   {
-    vtkInternals::SensorOf(*this, sensor);
-    error = NameProperties(
-      avianlidar::setDataSheetLimits(sensor, range, reflectance, attenuation, this->DynamicRange));
-  }
-  if (!error.empty())
+    vtkInternals::RequireProperties(*this);
+    sensor = vtkInternals::SensorOf(*this);
+    vtkAvianLidarRequire(NameProperties(
+      avianlidar::setDataSheetLimits(sensor, range, reflectance, attenuation, this->DynamicRange)));
+  };
+  if (this->IsGood("SetLimitsFromDataSheet", vtkAvianLidarGuard::ProblemOf(find)))
   {
-    vtkErrorMacro("SetLimitsFromDataSheet: " << error << ".");
-    return;
+    this->SetLowerEnergyLimit(sensor.lowerEnergyLimit);
+    this->SetUpperEnergyLimit(sensor.upperEnergyLimit);
   }
-  this->SetLowerEnergyLimit(sensor.lowerEnergyLimit);
-  this->SetUpperEnergyLimit(sensor.upperEnergyLimit);
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
-  const Source& self, avianlidar::Sensor& sensor)
+avianlidar::Sensor vtkAvianLidarBeamSource::vtkInternals::SensorOf(const Source& self)
 {
+  avianlidar::Sensor sensor;
   for (const Scalar& scalar : Scalars())
   {
     if (scalar.sensor)
@@ -410,14 +386,15 @@ std::string vtkAvianLidarBeamSource::vtkInternals::SensorOf(
     error +=
       " (" + avianlidar::valueError("Wavelength", WavelengthOf(self), "such a one in nm") + ")";
   }
-  error = error.empty() ? avianlidar::checkPhotonLimits(self.FalseAlarmsPerScan, self.DynamicRange)
-                        : error;
-  if (!error.empty() || sensor.receiverModel != avianlidar::ReceiverModel::Photons)
+  vtkAvianLidarRequire(NameProperties(error));
+  vtkAvianLidarRequire(
+    NameProperties(avianlidar::checkPhotonLimits(self.FalseAlarmsPerScan, self.DynamicRange)));
+  if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
-    return error;
+    vtkAvianLidarRequire(NameProperties(avianlidar::setPhotonLimits(sensor, self.FalseAlarmsPerScan,
+      self.DynamicRange, static_cast<double>(avianlidar::numberOfFirings(PatternOf(self))))));
   }
-  return avianlidar::setPhotonLimits(sensor, self.FalseAlarmsPerScan, self.DynamicRange,
-    static_cast<double>(avianlidar::numberOfFirings(PatternOf(self))));
+  return sensor;
 }
 
 //------------------------------------------------------------------------------
@@ -460,55 +437,43 @@ avianlidar::ScanClock vtkAvianLidarBeamSource::vtkInternals::ClockOf(const Sourc
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeamSource::vtkInternals::FindMoment(
+void vtkAvianLidarBeamSource::vtkInternals::FindMoment(
   const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution)
 {
-  if (!asked->Has(Pipeline::UPDATE_TIME_STEP()))
+  if (asked->Has(Pipeline::UPDATE_TIME_STEP())) // else the whole of revolution 0
   {
-    return std::string(); // the whole of revolution 0
+    avianlidar::ScanMoment moment;
+    vtkAvianLidarRequire(
+      avianlidar::momentAt(ClockOf(self), asked->Get(Pipeline::UPDATE_TIME_STEP()), moment));
+    revolution = moment.revolution;
+    part.step = moment.step;
+    part.steps = self.StepsPerRevolution;
   }
-  avianlidar::ScanMoment moment;
-  const std::string error =
-    avianlidar::momentAt(ClockOf(self), asked->Get(Pipeline::UPDATE_TIME_STEP()), moment);
-  revolution = moment.revolution;
-  part.step = moment.step;
-  part.steps = self.StepsPerRevolution;
-  return error;
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeamSource::vtkInternals::CheckProperties(const Source& self)
+void vtkAvianLidarBeamSource::vtkInternals::RequireProperties(const Source& self)
 {
-  for (const std::string& error : { NameProperties(avianlidar::checkPosition(
-                                      { self.Position[0], self.Position[1], self.Position[2] })),
-         NameProperties(avianlidar::checkDisplayLength(self.DisplayLength)),
-         avianlidar::checkPattern(PatternOf(self)), avianlidar::checkPointing(PointingOf(self)) })
-  {
-    if (!error.empty())
-    {
-      return error;
-    }
-  }
+  vtkAvianLidarRequire(NameProperties(
+    avianlidar::checkPosition({ self.Position[0], self.Position[1], self.Position[2] })));
+  vtkAvianLidarRequire(NameProperties(avianlidar::checkDisplayLength(self.DisplayLength)));
+  vtkAvianLidarRequire(avianlidar::checkPattern(PatternOf(self)));
+  vtkAvianLidarRequire(avianlidar::checkPointing(PointingOf(self)));
   if (self.GetNumberOfPrisms() > 0 && !self.Table && self.EncoderJitter != 0.0)
   {
-    return avianlidar::valueError(
-      "EncoderJitter", self.EncoderJitter, "0 with prisms, whose beams have no columns by azimuth");
+    vtkAvianLidarRequire(avianlidar::valueError("EncoderJitter", self.EncoderJitter,
+      "0 with prisms, whose beams have no columns by azimuth"));
   }
-  const std::string badClock = avianlidar::checkClock(ClockOf(self), PatternOf(self));
-  if (!badClock.empty())
-  {
-    return badClock;
-  }
-  avianlidar::Sensor sensor;
-  return NameProperties(SensorOf(self, sensor));
+  vtkAvianLidarRequire(avianlidar::checkClock(ClockOf(self), PatternOf(self)));
+  SensorOf(self);
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   const Source& self, int revolution, vtkFieldData* fields)
 {
-  SetVector(fields, Arrays::Position, self.Position, 3);
-  SetVector(fields, Arrays::Orientation, self.Orientation, 3);
+  Arrays::SetFieldVector(fields, Arrays::Position, self.Position, 3);
+  Arrays::SetFieldVector(fields, Arrays::Orientation, self.Orientation, 3);
   if (!self.Table)
   {
     Arrays::SetFieldInteger(
@@ -522,7 +487,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
     }
     if (self.GetNumberOfPrisms() == 0)
     {
-      SetVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
+      Arrays::SetFieldVector(fields, Arrays::AzimuthRange, self.AzimuthRange, 2);
     }
   }
   Arrays::SetFieldInteger(fields, Arrays::BeamOutline, self.BeamOutline);
@@ -548,8 +513,7 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
   {
     Arrays::SetFieldStrings(fields, Arrays::Assumed, AssumedOf(self));
   }
-  avianlidar::Sensor sensor;
-  SensorOf(self, sensor);
+  const avianlidar::Sensor sensor = SensorOf(self);
   Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, sensor.lowerEnergyLimit);
   Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, sensor.upperEnergyLimit);
 }
@@ -573,31 +537,29 @@ int vtkAvianLidarBeamSource::RequestData(
   vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      std::string error = vtkInternals::CheckProperties(*this);
       // Both outputs are of the piece and the time that one of them is asked for: so VTK's
       // executive has it.
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
-      const double full = 2000.0 * this->HalfBeamwidth;
-      if (error.empty() && this->BeamwidthMilliradians != 0.0 &&
-        !(std::abs(this->BeamwidthMilliradians - full) <= 1e-9 * full))
-      {
-        error = avianlidar::valueError("BeamwidthMilliradians", this->BeamwidthMilliradians,
-          "2000 times HalfBeamwidth (load the plugin in ParaView's client, too, which keeps them "
-          "alike, or set both)");
-      }
-      if (error.empty())
-      {
-        error = vtkInternals::FindMoment(*this, asked, part, revolution);
-      }
-      if (!error.empty())
-      {
-        return "Beam source: " + error;
-      }
+      vtkAvianLidarWithin("Beam source: ",
+        [&]()
+        {
+          vtkInternals::RequireProperties(*this);
+          const double full = 2000.0 * this->HalfBeamwidth;
+          if (this->BeamwidthMilliradians != 0.0 &&
+            !(std::abs(this->BeamwidthMilliradians - full) <= 1e-9 * full))
+          {
+            vtkAvianLidarRequire(
+              avianlidar::valueError("BeamwidthMilliradians", this->BeamwidthMilliradians,
+                "2000 times HalfBeamwidth (load the plugin in ParaView's client, too, which keeps "
+                "them alike, or set both)"));
+          }
+          vtkInternals::FindMoment(*this, asked, part, revolution);
+        });
       vtkPolyData* beams = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
       vtkAvianLidarScanArrays::FillBeams(vtkInternals::PatternOf(*this),
@@ -605,8 +567,7 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkAvianLidarScanArrays::FillRays(beams, this->DisplayLength, rays);
       vtkInternals::AddSensor(*this, revolution, beams->GetFieldData());
       vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
-      avianlidar::Sensor sensor;
-      vtkInternals::SensorOf(*this, sensor);
+      const avianlidar::Sensor sensor = vtkInternals::SensorOf(*this);
       std::string warning;
       for (const std::string& one : { avianlidar::warningOnElectrons(sensor),
              avianlidar::warningOnAmbiguity(
@@ -622,7 +583,6 @@ int vtkAvianLidarBeamSource::RequestData(
           vtkWarningMacro("Beam source: " << warning << ".");
         }
       }
-      return {};
     });
 }
 

@@ -37,9 +37,8 @@
 #ifndef vtkAvianLidarBeamSource_h
 #define vtkAvianLidarBeamSource_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
-#include "vtkAvianLidarSensorPresets.h"
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <functional> // For std::function
@@ -50,6 +49,14 @@
 
 class vtkPolyData;
 struct vtkAvianLidarSensorFile;
+
+/// Declares the setter of a built-in sensor, which is a file in Filters/Sensors.
+#define vtkAvianLidarPresetMacro(name) \
+  void SetPresetTo##name()             \
+  {                                    \
+    this->TakePreset(#name);           \
+  }
+
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarBeamSource : public vtkPolyDataAlgorithm
 {
 public:
@@ -82,12 +89,27 @@ public:
   };
 
   ///@{
-  /**
-   * Set all properties but ErrorsAsData to the values of a built-in sensor's file in
-   * Filters/Sensors. A property that is not in the file gets its default
-   * (Documentation/reference/sensor-files.md).
-   */
-  vtkAvianLidarSensorPresetsMacro();
+  /// Set all properties but ErrorsAsData to the values of a built-in sensor's file in
+  /// Filters/Sensors. A property that is not in the file gets its default
+  /// (Documentation/reference/sensor-files.md).
+  vtkAvianLidarPresetMacro(Airport16);
+  vtkAvianLidarPresetMacro(Airport32);
+  vtkAvianLidarPresetMacro(CorridorC16);
+  vtkAvianLidarPresetMacro(Search905);
+  vtkAvianLidarPresetMacro(Search1550);
+  vtkAvianLidarPresetMacro(Automotive16);
+  vtkAvianLidarPresetMacro(VLP16);
+  vtkAvianLidarPresetMacro(VLP32C);
+  vtkAvianLidarPresetMacro(HDL32E);
+  vtkAvianLidarPresetMacro(Pandar40P);
+  vtkAvianLidarPresetMacro(PandarXT32);
+  vtkAvianLidarPresetMacro(OS1_64);
+  vtkAvianLidarPresetMacro(Helios16P);
+  vtkAvianLidarPresetMacro(OS0_128);
+  vtkAvianLidarPresetMacro(OS2_128);
+  vtkAvianLidarPresetMacro(Mid40);
+  vtkAvianLidarPresetMacro(Avia);
+  vtkAvianLidarPresetMacro(Mid360);
   ///@}
 
   /// Take only the values without a setter from a built-in sensor: tables, prisms, the names of
@@ -123,383 +145,216 @@ public:
   /// @return false for bad beams, with an error that names the array; then nothing changes
   bool SetBeams(vtkPolyData* beams);
 
-  ///@{
-  /** Position of the sensor in scene coordinates, m, at most 1e30. Default (0, 0, 0). */
-  vtkSetVector3Macro(Position, double);
-  vtkGetVector3Macro(Position, double);
-  ///@}
+  /// Position of the sensor in scene coordinates, m, at most 1e30. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Position, 3, 0.0, 0.0, 0.0);
+
+  /// Yaw (from north), pitch (up), roll (right), deg; R = yaw * pitch * roll. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Orientation, 3, 0.0, 0.0, 0.0);
+
+  /// Number of channels, at least 1. Not used with a table of elevations. Default 16.
+  vtkAvianLidarPropertyMacro(NumberOfChannels, int, 16);
+
+  /// Elevation of channel 0, deg, -90 to 90. Not used with a table of elevations. Default 0.
+  vtkAvianLidarPropertyMacro(MinimumElevation, double, 0.0);
+
+  /// Elevation step of channels, deg, above 0. Not used with an elevation table. Default 0.375.
+  vtkAvianLidarPropertyMacro(ElevationStep, double, 0.375);
 
   ///@{
-  /** Yaw (from north), pitch (up), roll (right), deg; R = yaw * pitch * roll. Default (0, 0, 0). */
-  vtkSetVector3Macro(Orientation, double);
-  vtkGetVector3Macro(Orientation, double);
-  ///@}
-
-  ///@{
-  /** Number of channels, at least 1. Not used with a table of elevations. Default 16. */
-  vtkSetMacro(NumberOfChannels, int);
-  vtkGetMacro(NumberOfChannels, int);
-  ///@}
-
-  ///@{
-  /** Elevation of channel 0, deg, -90 to 90. Not used with a table of elevations. Default 0. */
-  vtkSetMacro(MinimumElevation, double);
-  vtkGetMacro(MinimumElevation, double);
-  ///@}
-
-  ///@{
-  /** Elevation step of channels, deg, above 0. Not used with an elevation table. Default 0.375. */
-  vtkSetMacro(ElevationStep, double);
-  vtkGetMacro(ElevationStep, double);
-  ///@}
-
-  ///@{
-  /**
-   * Table of the elevations of all channels, deg, -90 to 90, in any order, instead of
-   * NumberOfChannels, MinimumElevation and ElevationStep. New entries are 0; a bad index is an
-   * error. Default: empty.
-   */
+  /// Table of the elevations of all channels, deg, -90 to 90, in any order, instead of
+  /// NumberOfChannels, MinimumElevation and ElevationStep. New entries are 0; a bad index is an
+  /// error. Default: empty.
   void SetNumberOfChannelElevations(int number);
   int GetNumberOfChannelElevations() const;
   void SetChannelElevation(int index, double elevation);
   double GetChannelElevation(int index);
   ///@}
 
-  ///@{
-  /** First azimuth (-360 to 360) and end (at most 360 later), deg, clockwise. Default (0, 360). */
-  vtkSetVector2Macro(AzimuthRange, double);
-  vtkGetVector2Macro(AzimuthRange, double);
-  ///@}
+  /// First azimuth (-360 to 360) and end (at most 360 later), deg, clockwise. Default (0, 360).
+  vtkAvianLidarVectorMacro(AzimuthRange, 2, 0.0, 360.0);
+
+  /// Difference of azimuth between columns, deg, above 0. Default 0.375.
+  vtkAvianLidarPropertyMacro(AzimuthStep, double, 0.375);
+
+  /// Half of the opening angle, rad, 1e-9 to pi/3 (beams not round: to 0.1). Default 5.6e-3.
+  vtkAvianLidarPropertyMacro(HalfBeamwidth, double, 5.6e-3);
+
+  /// Opening angle, mrad, 2000 times HalfBeamwidth, else an error. Default 0: not checked.
+  vtkAvianLidarPropertyMacro(BeamwidthMilliradians, double, 0.0);
 
   ///@{
-  /** Difference of azimuth between columns, deg, above 0. Default 0.375. */
-  vtkSetMacro(AzimuthStep, double);
-  vtkGetMacro(AzimuthStep, double);
-  ///@}
-
-  ///@{
-  /** Half of the opening angle, rad, 1e-9 to pi/3 (beams not round: to 0.1). Default 5.6e-3. */
-  vtkSetMacro(HalfBeamwidth, double);
-  vtkGetMacro(HalfBeamwidth, double);
-  ///@}
-
-  ///@{
-  /** Opening angle, mrad, 2000 times HalfBeamwidth, else an error. Default 0: not checked. */
-  vtkSetMacro(BeamwidthMilliradians, double);
-  vtkGetMacro(BeamwidthMilliradians, double);
-  ///@}
-
-  ///@{
-  /** Outline of the beam across its axis: ellipse or rectangle. Default BEAM_OUTLINE_ELLIPSE. */
-  vtkSetMacro(BeamOutline, int);
-  vtkGetMacro(BeamOutline, int);
+  /// Outline of the beam across its axis: ellipse or rectangle. Default BEAM_OUTLINE_ELLIPSE.
+  vtkAvianLidarPropertyMacro(BeamOutline, int, BEAM_OUTLINE_ELLIPSE);
   void SetBeamOutlineToEllipse() { this->SetBeamOutline(BEAM_OUTLINE_ELLIPSE); }
   void SetBeamOutlineToRectangle() { this->SetBeamOutline(BEAM_OUTLINE_RECTANGLE); }
   ///@}
 
-  ///@{
-  /**
-   * Half of the opening angle perpendicular to HalfBeamwidth, rad, 1e-9 to 0.1 and 1/1000 to 1000
-   * times HalfBeamwidth. Default 0: HalfBeamwidth. The energy of a beam that is not round is
-   * uniform, or Gaussian, over the plane perpendicular to the axis.
-   */
-  vtkSetMacro(HalfBeamwidthAcross, double);
-  vtkGetMacro(HalfBeamwidthAcross, double);
-  ///@}
+  /// Half of the opening angle perpendicular to HalfBeamwidth, rad, 1e-9 to 0.1 and 1/1000 to 1000
+  /// times HalfBeamwidth. Default 0: HalfBeamwidth. The energy of a beam that is not round is
+  /// uniform, or Gaussian, over the plane perpendicular to the axis.
+  vtkAvianLidarPropertyMacro(HalfBeamwidthAcross, double, 0.0);
+
+  /// Angle from the sensor's horizontal to the direction of HalfBeamwidth, deg, -360 to 360. Seen
+  /// along the beam, a positive angle raises the right-hand end of this direction. For a vertical
+  /// beam a fixed direction replaces the horizontal. Default 0.
+  vtkAvianLidarPropertyMacro(BeamRotation, double, 0.0);
 
   ///@{
-  /**
-   * Angle from the sensor's horizontal to the direction of HalfBeamwidth, deg, -360 to 360. Seen
-   * along the beam, a positive angle raises the right-hand end of this direction. For a vertical
-   * beam a fixed direction replaces the horizontal. Default 0.
-   */
-  vtkSetMacro(BeamRotation, double);
-  vtkGetMacro(BeamRotation, double);
-  ///@}
-
-  ///@{
-  /** Energy within the outline: uniform (the paper) or Gaussian. Default BEAM_PROFILE_UNIFORM. */
-  vtkSetMacro(BeamProfile, int);
-  vtkGetMacro(BeamProfile, int);
+  /// Energy within the outline: uniform (the paper) or Gaussian. Default BEAM_PROFILE_UNIFORM.
+  vtkAvianLidarPropertyMacro(BeamProfile, int, BEAM_PROFILE_UNIFORM);
   void SetBeamProfileToUniform() { this->SetBeamProfile(BEAM_PROFILE_UNIFORM); }
   void SetBeamProfileToGaussian() { this->SetBeamProfile(BEAM_PROFILE_GAUSSIAN); }
   ///@}
 
-  ///@{
-  /** Half-beamwidth divided by the 1/e^2 radius of the Gaussian profile, 1, 0.1 to 3. Default 1. */
-  vtkSetMacro(GaussianTruncation, double);
-  vtkGetMacro(GaussianTruncation, double);
-  ///@}
+  /// Half-beamwidth divided by the 1/e^2 radius of the Gaussian profile, 1, 0.1 to 3. Default 1.
+  vtkAvianLidarPropertyMacro(GaussianTruncation, double, 1.0);
 
   ///@{
-  /**
-   * Threshold of a photon receiver where the air sends light back: fixed, or the mean of the air's
-   * light plus as many standard deviations of the noise as without air. Default
-   * THRESHOLD_LAW_FOLLOWS_AIR.
-   */
-  vtkSetMacro(ThresholdLaw, int);
-  vtkGetMacro(ThresholdLaw, int);
+  /// Threshold of a photon receiver where the air sends light back: fixed, or the mean of the air's
+  /// light plus as many standard deviations of the noise as without air. Default
+  /// THRESHOLD_LAW_FOLLOWS_AIR.
+  vtkAvianLidarPropertyMacro(ThresholdLaw, int, THRESHOLD_LAW_FOLLOWS_AIR);
   void SetThresholdLawToFixed() { this->SetThresholdLaw(THRESHOLD_LAW_FIXED); }
   void SetThresholdLawToFollowsAir() { this->SetThresholdLaw(THRESHOLD_LAW_FOLLOWS_AIR); }
   ///@}
 
-  ///@{
-  /** Rate of revolutions, or of scans with prisms, Hz, 1e-20 to 1e20. Default 0.5. */
-  vtkSetMacro(RotationRate, double);
-  vtkGetMacro(RotationRate, double);
-  ///@}
+  /// Rate of revolutions, or of scans with prisms, Hz, 1e-20 to 1e20. Default 0.5.
+  vtkAvianLidarPropertyMacro(RotationRate, double, 0.5);
+
+  /// Time between two firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6.
+  vtkAvianLidarPropertyMacro(FiringInterval, double, 30e-6);
+
+  /// Number of revolutions to play, at least 1, at most 1e6 steps in all. Default 1.
+  vtkAvianLidarPropertyMacro(NumberOfRevolutions, int, 1);
+
+  /// Number of steps that share a revolution's columns, 1 to the number of columns. Default 1.
+  vtkAvianLidarPropertyMacro(StepsPerRevolution, int, 1);
+
+  /// Sway of the mast: rms tilt about each horizontal axis, deg, 0 to 10. Default 0.
+  vtkAvianLidarPropertyMacro(SwayAmplitude, double, 0.0);
+
+  /// Frequency of the sway, Hz, 1e-6 to 1e6. Default 0.5 (assumed).
+  vtkAvianLidarPropertyMacro(SwayFrequency, double, 0.5);
+
+  /// Jitter of the encoder: rms error of a column's azimuth, deg, 0 to 10. Default 0.
+  vtkAvianLidarPropertyMacro(EncoderJitter, double, 0.0);
+
+  /// Seed of sway and jitter, any int. Default 0.
+  vtkAvianLidarPropertyMacro(MotionSeed, int, 0);
+
+  /// Energy of a pulse Qs, J, 1e-50 to 1e50. Default 3.6e-4.
+  vtkAvianLidarPropertyMacro(PulseEnergy, double, 3.6e-4);
+
+  /// Length of the rectangular pulse tau_e, s, 0 to 1000 sampling intervals. Default 5e-9.
+  vtkAvianLidarPropertyMacro(PulseWidth, double, 5e-9);
+
+  /// Frequency of the light nu, Hz, 1 to 1e30. Default 3.313e14 (905 nm).
+  vtkAvianLidarPropertyMacro(Frequency, double, 3.313e14);
 
   ///@{
-  /** Time between two firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6. */
-  vtkSetMacro(FiringInterval, double);
-  vtkGetMacro(FiringInterval, double);
-  ///@}
-
-  ///@{
-  /** Number of revolutions to play, at least 1, at most 1e6 steps in all. Default 1. */
-  vtkSetMacro(NumberOfRevolutions, int);
-  vtkGetMacro(NumberOfRevolutions, int);
-  ///@}
-
-  ///@{
-  /** Number of steps that share a revolution's columns, 1 to the number of columns. Default 1. */
-  vtkSetMacro(StepsPerRevolution, int);
-  vtkGetMacro(StepsPerRevolution, int);
-  ///@}
-
-  ///@{
-  /** Sway of the mast: rms tilt about each horizontal axis, deg, 0 to 10. Default 0. */
-  vtkSetMacro(SwayAmplitude, double);
-  vtkGetMacro(SwayAmplitude, double);
-  ///@}
-
-  ///@{
-  /** Frequency of the sway, Hz, 1e-6 to 1e6. Default 0.5 (assumed). */
-  vtkSetMacro(SwayFrequency, double);
-  vtkGetMacro(SwayFrequency, double);
-  ///@}
-
-  ///@{
-  /** Jitter of the encoder: rms error of a column's azimuth, deg, 0 to 10. Default 0. */
-  vtkSetMacro(EncoderJitter, double);
-  vtkGetMacro(EncoderJitter, double);
-  ///@}
-
-  ///@{
-  /** Seed of sway and jitter, any int. Default 0. */
-  vtkSetMacro(MotionSeed, int);
-  vtkGetMacro(MotionSeed, int);
-  ///@}
-
-  ///@{
-  /** Energy of a pulse Qs, J, 1e-50 to 1e50. Default 3.6e-4. */
-  vtkSetMacro(PulseEnergy, double);
-  vtkGetMacro(PulseEnergy, double);
-  ///@}
-
-  ///@{
-  /** Length of the rectangular pulse tau_e, s, 0 to 1000 sampling intervals. Default 5e-9. */
-  vtkSetMacro(PulseWidth, double);
-  vtkGetMacro(PulseWidth, double);
-  ///@}
-
-  ///@{
-  /** Frequency of the light nu, Hz, 1 to 1e30. Default 3.313e14 (905 nm). */
-  vtkSetMacro(Frequency, double);
-  vtkGetMacro(Frequency, double);
-  ///@}
-
-  ///@{
-  /** Wavelength of the light, nm, 1e-6 to 3e17; sets Frequency. Default 904.897247208. */
+  /// Wavelength of the light, nm, 1e-6 to 3e17; sets Frequency. Default 904.897247208.
   void SetWavelength(double nanometres);
   double GetWavelength();
   ///@}
 
-  ///@{
-  /** Length of a range unit in time tau_s, s, 1e-30 to 1e20. Default 5e-9 (0.75 m). */
-  vtkSetMacro(SamplingInterval, double);
-  vtkGetMacro(SamplingInterval, double);
-  ///@}
+  /// Length of a range unit in time tau_s, s, 1e-30 to 1e20. Default 5e-9 (0.75 m).
+  vtkAvianLidarPropertyMacro(SamplingInterval, double, 5e-9);
 
-  ///@{
-  /** Greatest range recorded, m, above 0, at most 1e30 and 2^52 range units. Default 4000. */
-  vtkSetMacro(RangeGate, double);
-  vtkGetMacro(RangeGate, double);
-  ///@}
+  /// Greatest range recorded, m, above 0, at most 1e30 and 2^52 range units. Default 4000.
+  vtkAvianLidarPropertyMacro(RangeGate, double, 4000.0);
 
   /// Range, m, beyond which echoes arrive after the next pulse has left; infinite for SetBeams(). A
   /// larger RangeGate gives one warning; echoes keep their true ranges
   /// (Documentation/reference/sensor-files.md).
   double GetUnambiguousRange();
 
-  ///@{
-  /** Mean rate of noise photons at the receiver, Hz, 0 to 1e50 (paper, Eq. 11). Default 20e3. */
-  vtkSetMacro(NoisePhotonRate, double);
-  vtkGetMacro(NoisePhotonRate, double);
-  ///@}
+  /// Mean rate of noise photons at the receiver, Hz, 0 to 1e50 (paper, Eq. 11). Default 20e3.
+  vtkAvianLidarPropertyMacro(NoisePhotonRate, double, 20e3);
+
+  /// Lower limit of the dynamic range Qlow, J, 0 to Qhigh (paper, Eq. 12). Default 2e-6.
+  vtkAvianLidarPropertyMacro(LowerEnergyLimit, double, 2e-6);
+
+  /// Upper limit of the dynamic range Qhigh, J, Qlow to 1e50 (paper, Eq. 12). Default 6.25e-5.
+  vtkAvianLidarPropertyMacro(UpperEnergyLimit, double, 6.25e-5);
+
+  /// Area of the receiver's aperture, m2, 0 to 1e20. Default 0: energies do not fall with 1/r^2.
+  vtkAvianLidarPropertyMacro(ReceiverAperture, double, 0.0);
 
   ///@{
-  /** Lower limit of the dynamic range Qlow, J, 0 to Qhigh (paper, Eq. 12). Default 2e-6. */
-  vtkSetMacro(LowerEnergyLimit, double);
-  vtkGetMacro(LowerEnergyLimit, double);
-  ///@}
-
-  ///@{
-  /** Upper limit of the dynamic range Qhigh, J, Qlow to 1e50 (paper, Eq. 12). Default 6.25e-5. */
-  vtkSetMacro(UpperEnergyLimit, double);
-  vtkGetMacro(UpperEnergyLimit, double);
-  ///@}
-
-  ///@{
-  /** Area of the receiver's aperture, m2, 0 to 1e20. Default 0: energies do not fall with 1/r^2. */
-  vtkSetMacro(ReceiverAperture, double);
-  vtkGetMacro(ReceiverAperture, double);
-  ///@}
-
-  ///@{
-  /**
-   * Receiver that turns energies into echoes: the limits of the paper in J, or a photon receiver,
-   * which needs an aperture (Documentation/reference/sensor-files.md). Default
-   * RECEIVER_MODEL_ENERGY_LIMITS.
-   */
-  vtkSetMacro(ReceiverModel, int);
-  vtkGetMacro(ReceiverModel, int);
+  /// Receiver that turns energies into echoes: the limits of the paper in J, or a photon receiver,
+  /// which needs an aperture (Documentation/reference/sensor-files.md). Default
+  /// RECEIVER_MODEL_ENERGY_LIMITS.
+  vtkAvianLidarPropertyMacro(ReceiverModel, int, RECEIVER_MODEL_ENERGY_LIMITS);
   void SetReceiverModelToEnergyLimits() { this->SetReceiverModel(RECEIVER_MODEL_ENERGY_LIMITS); }
   void SetReceiverModelToPhotons() { this->SetReceiverModel(RECEIVER_MODEL_PHOTONS); }
   ///@}
 
-  ///@{
-  /** Electrons per photon eta, 1, above 0 to 1. Photon receiver. Default 0.4 (assumed). */
-  vtkSetMacro(ReceiverEfficiency, double);
-  vtkGetMacro(ReceiverEfficiency, double);
-  ///@}
+  /// Electrons per photon eta, 1, above 0 to 1. Photon receiver. Default 0.4 (assumed).
+  vtkAvianLidarPropertyMacro(ReceiverEfficiency, double, 0.4);
+
+  /// Width of the optical filter, nm, 0 to 1e6. Photon receiver. Default 10 (assumed).
+  vtkAvianLidarPropertyMacro(FilterBandwidth, double, 10.0);
+
+  /// Background radiance L, W/(m2 sr nm), 0 to 1e10. Photon receiver. Default 0.05 (assumed).
+  vtkAvianLidarPropertyMacro(BackgroundRadiance, double, 0.05);
+
+  /// Noise of the amplifier n_a, electrons, 0 or 1e-3 to 1e20. Photon receiver. Default 60
+  /// (assumed).
+  vtkAvianLidarPropertyMacro(AmplifierNoise, double, 60.0);
+
+  /// Excess noise factor F of the avalanche, 1, 1 to 1e6. Photon receiver. Default 3 (assumed).
+  vtkAvianLidarPropertyMacro(ExcessNoiseFactor, double, 3.0);
+
+  /// Spectral irradiance of the sun, W/(m2 nm), 0 to 1e10. Photon receiver. Default 0: no daylight.
+  vtkAvianLidarPropertyMacro(Sunlight, double, 0.0);
+
+  /// Azimuth of the sun, deg from north, clockwise, -360 to 360. With Sunlight. Default 180.
+  vtkAvianLidarPropertyMacro(SunAzimuth, double, 180.0);
+
+  /// Elevation of the sun, deg, -90 to 90. With Sunlight. Default 45.
+  vtkAvianLidarPropertyMacro(SunElevation, double, 45.0);
+
+  /// Least range recorded, m, 0 to below RangeGate. Nearer surfaces still occlude. Default 0.
+  vtkAvianLidarPropertyMacro(MinimumRange, double, 0.0);
+
+  /// Range r_o of the share in view 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: share 1.
+  vtkAvianLidarPropertyMacro(OverlapRange, double, 0.0);
+
+  /// Range r_d of the share in focus 1 / (1 + (r_d/r)^2), m, 0 to 1e9. Default 0: share 1.
+  vtkAvianLidarPropertyMacro(DefocusRange, double, 0.0);
+
+  /// Coefficient b of the standard deviation of ranges, sqrt(a^2 + b^2/S^p), m, 0 to 1e9. S is the
+  /// signal-to-noise ratio (at least 1), a is RangeNoiseFloor, and p is RangeNoiseExponent
+  /// (Documentation/reference/sensor-files.md). Photon receiver. Default 0: exact.
+  vtkAvianLidarPropertyMacro(RangeNoise, double, 0.0);
+
+  /// Exponent p of S in RangeNoise, 1, 0 to 10. Photon receiver. Default 2.
+  vtkAvianLidarPropertyMacro(RangeNoiseExponent, double, 2.0);
+
+  /// Standard deviation a of the ranges of the strongest echoes, m, 0 to 1e9. Default 0.
+  vtkAvianLidarPropertyMacro(RangeNoiseFloor, double, 0.0);
+
+  /// Walk error of an echo at the lower limit, m, 0 to 1e9. Stronger echoes have a smaller error.
+  /// Default 0.
+  vtkAvianLidarPropertyMacro(RangeWalk, double, 0.0);
+
+  /// Step to which ranges are rounded, m, 0 (exact) or 1e-9 to 1e9. Default 0.
+  vtkAvianLidarPropertyMacro(RangeQuantum, double, 0.0);
+
+  /// Expected number of false alarms in a scan of empty sky, 1, above 0 to 1e8. Photon receiver.
+  /// Default 1.
+  vtkAvianLidarPropertyMacro(FalseAlarmsPerScan, double, 1.0);
+
+  /// Ratio of upper to lower limit, dB of electrons (10 log10), 0 to 1000. Default 40 (assumed).
+  vtkAvianLidarPropertyMacro(DynamicRange, double, 40.0);
 
   ///@{
-  /** Width of the optical filter, nm, 0 to 1e6. Photon receiver. Default 10 (assumed). */
-  vtkSetMacro(FilterBandwidth, double);
-  vtkGetMacro(FilterBandwidth, double);
-  ///@}
-
-  ///@{
-  /** Background radiance L, W/(m2 sr nm), 0 to 1e10. Photon receiver. Default 0.05 (assumed). */
-  vtkSetMacro(BackgroundRadiance, double);
-  vtkGetMacro(BackgroundRadiance, double);
-  ///@}
-
-  ///@{
-  /**
-   * Noise of the amplifier n_a, electrons, 0 or 1e-3 to 1e20. Photon receiver. Default 60
-   * (assumed).
-   */
-  vtkSetMacro(AmplifierNoise, double);
-  vtkGetMacro(AmplifierNoise, double);
-  ///@}
-
-  ///@{
-  /** Excess noise factor F of the avalanche, 1, 1 to 1e6. Photon receiver. Default 3 (assumed). */
-  vtkSetMacro(ExcessNoiseFactor, double);
-  vtkGetMacro(ExcessNoiseFactor, double);
-  ///@}
-
-  ///@{
-  /**
-   * Spectral irradiance of the sun, W/(m2 nm), 0 to 1e10. Photon receiver. Default 0: no daylight.
-   */
-  vtkSetMacro(Sunlight, double);
-  vtkGetMacro(Sunlight, double);
-  ///@}
-
-  ///@{
-  /** Azimuth of the sun, deg from north, clockwise, -360 to 360. With Sunlight. Default 180. */
-  vtkSetMacro(SunAzimuth, double);
-  vtkGetMacro(SunAzimuth, double);
-  ///@}
-
-  ///@{
-  /** Elevation of the sun, deg, -90 to 90. With Sunlight. Default 45. */
-  vtkSetMacro(SunElevation, double);
-  vtkGetMacro(SunElevation, double);
-  ///@}
-
-  ///@{
-  /** Least range recorded, m, 0 to below RangeGate. Nearer surfaces still occlude. Default 0. */
-  vtkSetMacro(MinimumRange, double);
-  vtkGetMacro(MinimumRange, double);
-  ///@}
-
-  ///@{
-  /** Range r_o of the share in view 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: share 1. */
-  vtkSetMacro(OverlapRange, double);
-  vtkGetMacro(OverlapRange, double);
-  ///@}
-
-  ///@{
-  /** Range r_d of the share in focus 1 / (1 + (r_d/r)^2), m, 0 to 1e9. Default 0: share 1. */
-  vtkSetMacro(DefocusRange, double);
-  vtkGetMacro(DefocusRange, double);
-  ///@}
-
-  ///@{
-  /**
-   * Coefficient b of the standard deviation of ranges, sqrt(a^2 + b^2/S^p), m, 0 to 1e9. S is the
-   * signal-to-noise ratio (at least 1), a is RangeNoiseFloor, and p is RangeNoiseExponent
-   * (Documentation/reference/sensor-files.md). Photon receiver. Default 0: exact.
-   */
-  vtkSetMacro(RangeNoise, double);
-  vtkGetMacro(RangeNoise, double);
-  ///@}
-
-  ///@{
-  /** Exponent p of S in RangeNoise, 1, 0 to 10. Photon receiver. Default 2. */
-  vtkSetMacro(RangeNoiseExponent, double);
-  vtkGetMacro(RangeNoiseExponent, double);
-  ///@}
-
-  ///@{
-  /** Standard deviation a of the ranges of the strongest echoes, m, 0 to 1e9. Default 0. */
-  vtkSetMacro(RangeNoiseFloor, double);
-  vtkGetMacro(RangeNoiseFloor, double);
-  ///@}
-
-  ///@{
-  /**
-   * Walk error of an echo at the lower limit, m, 0 to 1e9. Stronger echoes have a smaller error.
-   * Default 0.
-   */
-  vtkSetMacro(RangeWalk, double);
-  vtkGetMacro(RangeWalk, double);
-  ///@}
-
-  ///@{
-  /** Step to which ranges are rounded, m, 0 (exact) or 1e-9 to 1e9. Default 0. */
-  vtkSetMacro(RangeQuantum, double);
-  vtkGetMacro(RangeQuantum, double);
-  ///@}
-
-  ///@{
-  /**
-   * Expected number of false alarms in a scan of empty sky, 1, above 0 to 1e8. Photon receiver.
-   * Default 1.
-   */
-  vtkSetMacro(FalseAlarmsPerScan, double);
-  vtkGetMacro(FalseAlarmsPerScan, double);
-  ///@}
-
-  ///@{
-  /** Ratio of upper to lower limit, dB of electrons (10 log10), 0 to 1000. Default 40 (assumed). */
-  vtkSetMacro(DynamicRange, double);
-  vtkGetMacro(DynamicRange, double);
-  ///@}
-
-  ///@{
-  /**
-   * Set LowerEnergyLimit from a line of a data sheet, and UpperEnergyLimit so that it
-   * exceeds LowerEnergyLimit by DynamicRange. The sensor detects a Lambertian surface of
-   * `reflectance` (above 0 to 1) that fills the beam up to `range`, m, in air of `attenuation`, 1/m
-   * (default: GetClearAirAttenuation()). Needs ReceiverAperture and RECEIVER_MODEL_ENERGY_LIMITS. A
-   * bad value changes nothing. Limits from one line are only an estimate
-   * (Documentation/reference/sensor-files.md).
-   */
+  /// Set LowerEnergyLimit from a line of a data sheet, and UpperEnergyLimit so that it
+  /// exceeds LowerEnergyLimit by DynamicRange. The sensor detects a Lambertian surface of
+  /// `reflectance` (above 0 to 1) that fills the beam up to `range`, m, in air of `attenuation`,
+  /// 1/m (default: GetClearAirAttenuation()). Needs ReceiverAperture and
+  /// RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. Limits from one line are only an
+  /// estimate (Documentation/reference/sensor-files.md).
   void SetLimitsFromDataSheet(double range, double reflectance);
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);
   ///@}
@@ -507,17 +362,14 @@ public:
   /// Attenuation of clear air (23 km visibility) at Wavelength, 1/m.
   double GetClearAirAttenuation();
 
-  ///@{
-  /** Length of port 1's lines and range of report points without echo, m, to 1e30. Default 1000. */
-  vtkSetMacro(DisplayLength, double);
-  vtkGetMacro(DisplayLength, double);
-  ///@}
+  /// Length of port 1's lines and range of report points without echo, m, to 1e30. Default 1000.
+  vtkAvianLidarPropertyMacro(DisplayLength, double, 1000.0);
 
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarBeamSource();
-  ~vtkAvianLidarBeamSource() override;
+  ~vtkAvianLidarBeamSource() override = default;
 
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -526,11 +378,6 @@ protected:
   /// @return an error text, in which case nothing changes; else an empty string
   std::string ReadSensor(const char* fileName, bool keepPlace);
 
-  double Position[3] = { 0.0, 0.0, 0.0 };
-  double Orientation[3] = { 0.0, 0.0, 0.0 };
-  int NumberOfChannels = 16;
-  double MinimumElevation = 0.0;
-  double ElevationStep = 0.375;
   std::vector<double> ChannelElevations;
   std::vector<double> ChannelAzimuthOffsets;
   std::vector<double> ChannelFiringTimes;
@@ -541,53 +388,6 @@ protected:
   std::vector<double> PrismPhases;
   double PrismAxisElevation = 0.0;
   double PrismAxisRotationRate = 0.0;
-  double AzimuthRange[2] = { 0.0, 360.0 };
-  double AzimuthStep = 0.375;
-  double HalfBeamwidth = 5.6e-3;
-  double BeamwidthMilliradians = 0.0;
-  int BeamOutline = BEAM_OUTLINE_ELLIPSE;
-  double HalfBeamwidthAcross = 0.0;
-  double BeamRotation = 0.0;
-  int BeamProfile = BEAM_PROFILE_UNIFORM;
-  double GaussianTruncation = 1.0;
-  int ThresholdLaw = THRESHOLD_LAW_FOLLOWS_AIR;
-  double RotationRate = 0.5;
-  double FiringInterval = 30e-6;
-  int NumberOfRevolutions = 1;
-  int StepsPerRevolution = 1;
-  double SwayAmplitude = 0.0;
-  double SwayFrequency = 0.5;
-  double EncoderJitter = 0.0;
-  int MotionSeed = 0;
-  double PulseEnergy = 3.6e-4;
-  double PulseWidth = 5e-9;
-  double Frequency = 3.313e14;
-  double SamplingInterval = 5e-9;
-  double RangeGate = 4000.0;
-  double NoisePhotonRate = 20e3;
-  double LowerEnergyLimit = 2e-6;
-  double UpperEnergyLimit = 6.25e-5;
-  double ReceiverAperture = 0.0;
-  int ReceiverModel = RECEIVER_MODEL_ENERGY_LIMITS;
-  double ReceiverEfficiency = 0.4;
-  double FilterBandwidth = 10.0;
-  double BackgroundRadiance = 0.05;
-  double AmplifierNoise = 60.0;
-  double ExcessNoiseFactor = 3.0;
-  double FalseAlarmsPerScan = 1.0;
-  double DynamicRange = 40.0;
-  double Sunlight = 0.0;
-  double SunAzimuth = 180.0;
-  double SunElevation = 45.0;
-  double MinimumRange = 0.0;
-  double OverlapRange = 0.0;
-  double DefocusRange = 0.0;
-  double RangeNoise = 0.0;
-  double RangeNoiseExponent = 2.0;
-  double RangeNoiseFloor = 0.0;
-  double RangeWalk = 0.0;
-  double RangeQuantum = 0.0;
-  double DisplayLength = 1000.0;
   std::string Description;
   /// Properties that a file marks as assumed, by names in snake case, and their values.
   std::vector<std::pair<std::string, std::vector<double>>> Assumed;
@@ -596,6 +396,8 @@ private:
   vtkAvianLidarBeamSource(const vtkAvianLidarBeamSource&) = delete;
   void operator=(const vtkAvianLidarBeamSource&) = delete;
 
+  bool HasChannelElevation(int index);
+  bool IsGood(const char* what, const std::string& error);
   void TakeProperties(const vtkAvianLidarBeamSource& preset);
   void TakePreset(const char* name);
   std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);

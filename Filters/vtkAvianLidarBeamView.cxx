@@ -5,6 +5,7 @@
 #include "BeamSight.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
 
@@ -235,7 +236,7 @@ int vtkAvianLidarBeamView::RequestData(
       own.Add("BeamId", this->BeamId);
       this->PrepareBeams(ranks, beams);
       ranks.AgreeOn(this, own);
-      in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams);
+      in.Beams.CheckRanks(ranks, this);
       this->PrepareSurfaces(ranks, surfaces);
       this->PrepareMovers(ranks, movers);
       this->PrepareTree(ranks, surfaces);
@@ -253,12 +254,12 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
   const bool isHere = place != ids.end() && this->BeamId >= 0;
   const bool isAnywhere = ranks.Sum(isHere ? 1.0 : 0.0) > 0.0;
   ranks.Together(this,
-    [&]() -> std::string
+    [&]()
     {
       if (!isAnywhere && in.Beams.total > 0)
       {
-        return "BeamId is " + std::to_string(this->BeamId) +
-          ", expected the beam_id of a beam of input port 0 (beams)";
+        vtkAvianLidarRequire("BeamId is " + std::to_string(this->BeamId) +
+          ", expected the beam_id of a beam of input port 0 (beams)");
       }
       avianlidar::planModel(in.Setup);
       for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ surfaces, cone, shares })
@@ -269,7 +270,7 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
       }
       if (!isHere)
       {
-        return {};
+        return;
       }
       in.Setup.settings.fullModel = true; // faint samples, too
       avianlidar::planModel(in.Setup);
@@ -288,7 +289,6 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
       FillSurfaces(frame, seen, surfaces);
       FillCone(frame, length > 0.0 ? length : in.Beams.displayLength, cone);
       FillTable(RowsOf(seen), shares->GetFieldData(), shares);
-      return {};
     });
 }
 

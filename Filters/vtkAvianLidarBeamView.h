@@ -43,11 +43,8 @@ public:
   vtkTypeMacro(vtkAvianLidarBeamView, vtkAvianLidarEchoFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /** Value of `beam_id` of the beam to view. Default 0. */
-  vtkSetMacro(BeamId, vtkIdType);
-  vtkGetMacro(BeamId, vtkIdType);
-  ///@}
+  /// Value of `beam_id` of the beam to view. Default 0.
+  vtkAvianLidarPropertyMacro(BeamId, vtkIdType, 0);
 
 protected:
   vtkAvianLidarBeamView() = default;
@@ -55,8 +52,6 @@ protected:
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  vtkIdType BeamId = 0;
 
 private:
   vtkAvianLidarBeamView(const vtkAvianLidarBeamView&) = delete;

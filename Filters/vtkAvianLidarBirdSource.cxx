@@ -7,12 +7,12 @@
 #include "ValueError.h"
 #include "vtkAvianLidarBirds.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
-#include <cmath>
-#include <stdexcept>
+#include <array>
 
 namespace
 {
@@ -20,10 +20,9 @@ using avianlidar::Vec3;
 
 void RequireFinite(const char* name, double value)
 {
-  if (!std::isfinite(value))
-  {
-    throw std::runtime_error(avianlidar::valueError(name, value, "a finite number"));
-  }
+  using avianlidar::LargestFinite;
+  vtkAvianLidarRequire(
+    avianlidar::rangeError(name, value, -LargestFinite, LargestFinite, "a finite number"));
 }
 
 /// Turns from the bird's frame into the scene's: bank to the right, then heading.
@@ -57,14 +56,11 @@ vtkAvianLidarBirdSource::vtkAvianLidarBirdSource()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarBirdSource::~vtkAvianLidarBirdSource() = default;
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarBirdSource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       const auto known = vtkAvianLidarBirds::KnownSpecies(this->SpeciesFileName);
       const avianlidar::BirdShape shape(
@@ -74,15 +70,10 @@ int vtkAvianLidarBirdSource::RequestData(
       RequireFinite("Bank", this->Bank);
       const Vec3 position(this->Position[0], this->Position[1], this->Position[2]);
       const std::string misplaced = avianlidar::checkPosition(position);
-      if (!misplaced.empty())
-      {
-        return "Bird source: P" + misplaced.substr(1);
-      }
+      vtkAvianLidarRequire(misplaced.empty() ? "" : "Bird source: P" + misplaced.substr(1));
       vtkAvianLidarBirds::CheckReflectance(this->Reflectance);
-      if (this->ObjectId < -1)
-      {
-        return avianlidar::valueError("ObjectId", this->ObjectId, "at least -1");
-      }
+      vtkAvianLidarRequire(
+        avianlidar::rangeError("ObjectId", this->ObjectId, -1, VTK_INT_MAX, "at least -1"));
       auto surface = vtkAvianLidarBirds::Surface(
         shape, avianlidar::wingAngle(this->WingPhase, this->Gliding), this->Reflectance);
       const Turn turn(this->Heading, this->Bank);
@@ -96,7 +87,6 @@ int vtkAvianLidarBirdSource::RequestData(
       }
       vtkAvianLidarBirds::SetObject(surface, this->ObjectId, this->Species);
       vtkPolyData::GetData(outputVector)->ShallowCopy(surface);
-      return {};
     });
 }
 

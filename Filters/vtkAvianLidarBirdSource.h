@@ -23,9 +23,8 @@
 #ifndef vtkAvianLidarBirdSource_h
 #define vtkAvianLidarBirdSource_h
 
-#include "vtkAvianLidarErrorsAsData.h"
-#include "vtkAvianLidarFilePath.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // For std::string
@@ -37,80 +36,41 @@ public:
   vtkTypeMacro(vtkAvianLidarBirdSource, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /** Name of a species, built in or in SpeciesFileName. Default "herring gull". */
-  vtkSetMacro(Species, std::string);
-  vtkGetMacro(Species, std::string);
-  ///@}
+  /// Name of a species, built in or in SpeciesFileName. Default "herring gull".
+  vtkAvianLidarPropertyMacro(Species, std::string, "herring gull");
 
-  ///@{
-  /**
-   * Table of the user's species (CSV, with the columns of Filters/Birds/species.csv). These species
-   * precede the built-in species. Default: none.
-   */
+  /// Table of the user's species (CSV, with the columns of Filters/Birds/species.csv). These
+  /// species precede the built-in species. Default: none.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
-  ///@}
 
-  ///@{
-  /** Phase, wingbeats: 0 level and rising, 0.25 up, 0.75 down; not used in a glide. Default 0. */
-  vtkSetMacro(WingPhase, double);
-  vtkGetMacro(WingPhase, double);
-  ///@}
+  /// Phase, wingbeats: 0 level and rising, 0.25 up, 0.75 down; not used in a glide. Default 0.
+  vtkAvianLidarPropertyMacro(WingPhase, double, 0.0);
 
-  ///@{
-  /** Whether the wings are held still, 5 degrees up. Default: off. */
-  vtkSetMacro(Gliding, bool);
-  vtkGetMacro(Gliding, bool);
-  vtkBooleanMacro(Gliding, bool);
-  ///@}
+  /// Whether the wings are held still, 5 degrees up. Default: off.
+  vtkAvianLidarSwitchMacro(Gliding, false);
 
-  ///@{
-  /** Centre of the body, m, x east, y north, z up, at most 1e30. Default (0, 0, 0). */
-  vtkSetVector3Macro(Position, double);
-  vtkGetVector3Macro(Position, double);
-  ///@}
+  /// Centre of the body, m, x east, y north, z up, at most 1e30. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Position, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Direction of flight, deg from north, clockwise, any finite angle. Default 0. */
-  vtkSetMacro(Heading, double);
-  vtkGetMacro(Heading, double);
-  ///@}
+  /// Direction of flight, deg from north, clockwise, any finite angle. Default 0.
+  vtkAvianLidarPropertyMacro(Heading, double, 0.0);
 
-  ///@{
-  /** Roll to the right, deg, any finite angle. Default 0. */
-  vtkSetMacro(Bank, double);
-  vtkGetMacro(Bank, double);
-  ///@}
+  /// Roll to the right, deg, any finite angle. Default 0.
+  vtkAvianLidarPropertyMacro(Bank, double, 0.0);
 
-  ///@{
-  /** Reflectance of the plumage at the lidar's wavelength, 1, 0 to 1. Default 0.3 (assumed). */
-  vtkSetMacro(Reflectance, double);
-  vtkGetMacro(Reflectance, double);
-  ///@}
+  /// Reflectance of the plumage at the lidar's wavelength, 1, 0 to 1. Default 0.3 (assumed).
+  vtkAvianLidarPropertyMacro(Reflectance, double, 0.3);
 
-  ///@{
-  /** Value of `object_id`, at least -1. Default 1. */
-  vtkSetMacro(ObjectId, int);
-  vtkGetMacro(ObjectId, int);
-  ///@}
+  /// Value of `object_id`, at least -1. Default 1.
+  vtkAvianLidarPropertyMacro(ObjectId, int, 1);
 
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarBirdSource();
-  ~vtkAvianLidarBirdSource() override;
+  ~vtkAvianLidarBirdSource() override = default;
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  std::string Species = "herring gull";
-  std::string SpeciesFileName;
-  double WingPhase = 0.0;
-  bool Gliding = false;
-  double Position[3] = { 0.0, 0.0, 0.0 };
-  double Heading = 0.0;
-  double Bank = 0.0;
-  double Reflectance = 0.3;
-  int ObjectId = 1;
 
 private:
   vtkAvianLidarBirdSource(const vtkAvianLidarBirdSource&) = delete;

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
@@ -19,7 +20,6 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
@@ -46,10 +46,8 @@ std::string NameOf(int port)
     " cloud)";
 }
 
-// What is wrong with a cloud, or an empty string.
-std::string CheckCloud(vtkPointSet* cloud, int port)
+void CheckCloud(vtkPointSet* cloud, int port)
 {
-  const std::string which = NameOf(port);
   for (vtkIdType i = 0; i < cloud->GetNumberOfPoints(); ++i)
   {
     double p[3];
@@ -58,10 +56,9 @@ std::string CheckCloud(vtkPointSet* cloud, int port)
     const std::string wrong = avianlidar::checkPosition({ p[0], p[1], p[2] });
     if (!wrong.empty())
     {
-      return which + ": point " + std::to_string(i) + ": " + wrong;
+      vtkAvianLidarRequire(wrong, NameOf(port) + ": point " + std::to_string(i) + ": ");
     }
   }
-  return std::string();
 }
 
 // The nearest points of another cloud to the points of one, and of the distances on all ranks the
@@ -149,10 +146,7 @@ void Measure(
     if (i % block == 0)
     {
       filter->UpdateProgress(start + 0.5 * static_cast<double>(i) / static_cast<double>(size));
-      if (vtkAvianLidarAbort::Wanted(filter))
-      {
-        throw avianlidar::WorkStopped{};
-      }
+      vtkAvianLidarAbort::StopIfWanted(filter);
     }
     const auto [square, number] = NearestIn(tree, PlaceOf(from, i), found);
     result.Distances->SetValue(i, std::sqrt(square));
@@ -205,11 +199,10 @@ void LeavePointsOut(vtkPointSet* cloud)
 }
 
 vtkStandardNewMacro(vtkAvianLidarCloudComparison);
-vtkCxxSetObjectMacro(vtkAvianLidarCloudComparison, Controller, vtkMultiProcessController);
+vtkAvianLidarCxxControllerMacro(vtkAvianLidarCloudComparison);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
-  : ChamferAlpha(1.0)
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(Ports);
@@ -278,13 +271,6 @@ int vtkAvianLidarCloudComparison::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarCloudComparison::ModifyRequest(vtkInformation* request, int when)
-{
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarCloudComparison::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -296,20 +282,16 @@ int vtkAvianLidarCloudComparison::RequestData(
       vtkSmartPointer<vtkPointSet> whole[Ports];
       Direction directions[Ports];
       ranks.Together(this,
-        [&]() -> std::string
+        [&]()
         {
           vtkAvianLidarAbort::StopIfWanted(this);
-          std::string problem;
-          if (!(this->ChamferAlpha >= 1e-6 && this->ChamferAlpha <= 1e6))
-          {
-            problem = avianlidar::valueError("ChamferAlpha", this->ChamferAlpha, "1e-6 to 1e6 1/m");
-          }
-          for (int port = 0; port < Ports && problem.empty(); ++port)
+          vtkAvianLidarRequire(avianlidar::rangeError(
+            "ChamferAlpha", this->ChamferAlpha, 1e-6, 1e6, "1e-6 to 1e6 1/m"));
+          for (int port = 0; port < Ports; ++port)
           {
             clouds[port] = vtkPointSet::GetData(inputVector[port]);
-            problem = CheckCloud(clouds[port], port);
+            CheckCloud(clouds[port], port);
           }
-          return problem;
         });
       vtkAvianLidarRanks::Settings settings;
       settings.Add("ChamferAlpha", this->ChamferAlpha);
@@ -319,18 +301,16 @@ int vtkAvianLidarCloudComparison::RequestData(
         whole[port] = vtkAvianLidarGather::Coordinates(ranks, this, clouds[port]);
       }
       ranks.Together(this,
-        [&]() -> std::string
+        [&]()
         {
           for (int port = 0; port < Ports; ++port)
           {
-            if (whole[port]->GetNumberOfPoints() == 0)
-            {
-              return NameOf(port) + " has no points: the distance to nothing is not defined";
-            }
+            vtkAvianLidarRequire(whole[port]->GetNumberOfPoints() > 0
+                ? ""
+                : NameOf(port) + " has no points: the distance to nothing is not defined");
           }
           Measure(clouds[0], whole[1], this, 0.0, directions[0]);
           Measure(clouds[1], whole[0], this, 0.5, directions[1]);
-          return {};
         });
       for (int port = 0; port < Ports; ++port)
       {
@@ -347,17 +327,13 @@ int vtkAvianLidarCloudComparison::RequestData(
       this->DensityAwareChamferDistance =
         0.5 * (directions[0].DensityAware + directions[1].DensityAware);
 
-      const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-      const bool nothing = ranks.Alone() &&
-        outputVector->GetInformationObject(asked)->Get(
-          vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0;
       for (int port = 0; port < Ports; ++port)
       {
         vtkPointSet* output = vtkPointSet::GetData(outputVector, port);
         output->ShallowCopy(clouds[port]);
         output->GetPointData()->AddArray(directions[port].Distances);
         this->AddResult(output->GetFieldData());
-        if (nothing)
+        if (ranks.Alone() && ranks.Piece() > 0)
         {
           LeavePointsOut(output);
         }

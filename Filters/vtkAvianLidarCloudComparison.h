@@ -33,12 +33,11 @@
 #ifndef vtkAvianLidarCloudComparison_h
 #define vtkAvianLidarCloudComparison_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPassInputTypeAlgorithm.h"
 
 class vtkFieldData;
-class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCloudComparison : public vtkPassInputTypeAlgorithm
 {
@@ -48,36 +47,30 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Hausdorff distance (paper, Eq. 19), and by direction, m; NaN before the first execution. */
+  /// Hausdorff distance (paper, Eq. 19), and by direction, m; NaN before the first execution.
   vtkGetMacro(HausdorffDistance, double);
   vtkGetMacro(HausdorffSimulatedToReference, double);
   vtkGetMacro(HausdorffReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /** Root mean square distances (paper, Eq. 20), m; NaN before the first execution. */
+  /// Root mean square distances (paper, Eq. 20), m; NaN before the first execution.
   vtkGetMacro(RMSESimulatedToReference, double);
   vtkGetMacro(RMSEReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /** Density-aware Chamfer distance, 0 (equal) to 1: mean, by direction; NaN before execution. */
+  /// Density-aware Chamfer distance, 0 (equal) to 1: mean, by direction; NaN before execution.
   vtkGetMacro(DensityAwareChamferDistance, double);
   vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
   vtkGetMacro(DensityAwareChamferReferenceToSimulated, double);
   ///@}
 
-  ///@{
-  /** Alpha of the Chamfer distance, 1/m, 1e-6 to 1e6. Default 1 (assumed, for scans in metres). */
-  vtkSetMacro(ChamferAlpha, double);
-  vtkGetMacro(ChamferAlpha, double);
-  ///@}
+  /// Alpha of the Chamfer distance, 1/m, 1e-6 to 1e6. Default 1 (assumed, for scans in metres).
+  vtkAvianLidarPropertyMacro(ChamferAlpha, double, 1.0);
 
-  ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  /// Processes that may work together; null: only this one. Default: the global controller.
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -88,10 +81,7 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarCloudComparison(const vtkAvianLidarCloudComparison&) = delete;
@@ -108,7 +98,6 @@ private:
   double DensityAwareChamferDistance;
   double DensityAwareChamferSimulatedToReference;
   double DensityAwareChamferReferenceToSimulated;
-  double ChamferAlpha;
 };
 
 #endif

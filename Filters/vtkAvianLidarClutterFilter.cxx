@@ -6,14 +6,14 @@
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScanStream.h"
 
-#include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
@@ -22,13 +22,11 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,9 +37,6 @@ namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::ClutterCell;
 using avianlidar::ClutterGrid;
 using avianlidar::ClutterMap;
-using Pipeline = vtkStreamingDemandDrivenPipeline;
-
-constexpr int MostWarmUp = 100000;
 
 constexpr char ScanPort[] = "input port 0 (scan): ";
 constexpr char TablePort[] = "input port 1 (table): ";
@@ -65,8 +60,8 @@ struct Setup
   }
 };
 
-// The key of each point; `problem` names the first point that cannot be used.
-std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup, std::string& problem)
+// The key of each point.
+std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup)
 {
   std::vector<ClutterMap::Key> keys(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -76,8 +71,7 @@ std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup, std:
     const std::string wrong = avianlidar::checkPosition({ p[0], p[1], p[2] });
     if (!wrong.empty())
     {
-      problem = std::string(ScanPort) + "point " + std::to_string(i) + ": " + wrong;
-      return {};
+      vtkAvianLidarRequire(wrong, std::string(ScanPort) + "point " + std::to_string(i) + ": ");
     }
     keys[i] = ClutterMap::keyOf(
       setup.Grid, { p[0] - setup.Position[0], p[1] - setup.Position[1], p[2] - setup.Position[2] });
@@ -85,23 +79,8 @@ std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup, std:
   return keys;
 }
 
-// What a table must say about the cells that it was learned with.
-std::string CheckStep(vtkFieldData* fields, const Arrays::Name& name, double expected)
-{
-  double step = 0.0;
-  if (!Arrays::GetFieldValue(fields, name, step))
-  {
-    return std::string("field data '") + name.name + "' is not one finite number";
-  }
-  // A file of text may have rounded it.
-  return std::fabs(step - expected) <= 1e-6 * expected
-    ? std::string()
-    : avianlidar::valueError(
-        name.name, step, ("the step of the filter, " + std::to_string(expected)).c_str());
-}
-
 // The map that a table holds.
-std::string ReadTable(vtkPolyData* table, const ClutterMap& empty, ClutterMap& map)
+ClutterMap ReadTable(vtkPolyData* table, const ClutterMap& empty)
 {
   vtkFieldData* fields = table->GetFieldData();
   const ClutterGrid& grid = empty.grid();
@@ -109,33 +88,29 @@ std::string ReadTable(vtkPolyData* table, const ClutterMap& empty, ClutterMap& m
          std::pair(Arrays::ClutterAzimuthStep, grid.azimuthStep),
          std::pair(Arrays::ClutterElevationStep, grid.elevationStep) })
   {
-    const std::string wrong = CheckStep(fields, name, expected);
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    double step = 0.0;
+    vtkAvianLidarRequire(Arrays::GetFieldValue(fields, name, step)
+        ? ""
+        : std::string("field data '") + name.name + "' is not one finite number");
+    const double rounding = 1e-6 * expected; // by a file of text
+    vtkAvianLidarRequire(avianlidar::rangeError(name.name, step, expected - rounding,
+      expected + rounding, "the step of the filter, " + std::to_string(expected)));
   }
   double scans = 0.0;
   const bool known = Arrays::GetFieldValue(fields, Arrays::LearnedScans, scans);
-  if (!known || !Arrays::IsInt(scans) || scans < 0.0)
-  {
-    return "field data 'learned_scans' is not a whole number from 0 on";
-  }
+  vtkAvianLidarRequire(known && Arrays::IsInt(scans) && scans >= 0.0
+      ? ""
+      : "field data 'learned_scans' is not a whole number from 0 on");
   const vtkIdType size = table->GetNumberOfPoints();
   vtkDataArray* persistence = table->GetPointData()->GetArray(Arrays::ClutterProbability.name);
   vtkDataArray* indices = table->GetPointData()->GetArray(Arrays::ClutterCell.name);
   const std::pair<vtkDataArray*, int> arrays[] = { { persistence, 1 }, { indices, 3 } };
   for (const auto& [array, components] : arrays)
   {
-    if (size > 0 && !array)
-    {
-      return "point arrays 'clutter_probability' or 'clutter_cell' are missing, expected both";
-    }
-    const std::string wrong = Arrays::CheckShape(array, "point array", components, size);
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    vtkAvianLidarRequire(size == 0 || array
+        ? ""
+        : "point arrays 'clutter_probability' or 'clutter_cell' are missing, expected both");
+    Arrays::RequireShape(array, "point array", components, size);
   }
   std::vector<ClutterMap::Key> keys(static_cast<std::size_t>(size));
   std::vector<double> shares(keys.size());
@@ -148,19 +123,17 @@ std::string ReadTable(vtkPolyData* table, const ClutterMap& empty, ClutterMap& m
     const ClutterCell cell = whole ? ClutterCell{ static_cast<int>(index[0]),
       static_cast<int>(index[1]), static_cast<int>(index[2]) }
                                    : ClutterCell{ -1, 0, 0 };
-    if (!ClutterMap::holds(grid, cell))
+    const bool isCell = ClutterMap::holds(grid, cell);
+    if (!isCell || !(shares[i] >= 0.0 && shares[i] <= 1.0))
     {
-      return "point " + std::to_string(i) + ": 'clutter_cell' is not a cell of the grid";
-    }
-    if (!(shares[i] >= 0.0 && shares[i] <= 1.0))
-    {
-      return "point " + std::to_string(i) + ": " +
-        avianlidar::valueError("clutter_probability", shares[i], "0 to 1");
+      vtkAvianLidarRequire(isCell
+          ? avianlidar::valueError("clutter_probability", shares[i], "0 to 1")
+          : "'clutter_cell' is not a cell of the grid",
+        "point " + std::to_string(i) + ": ");
     }
     keys[i] = ClutterMap::keyOf(cell);
   }
-  map = empty.restored(keys, shares, static_cast<int>(scans));
-  return {};
+  return empty.restored(keys, shares, static_cast<int>(scans));
 }
 
 std::uint64_t HashOfTable(vtkPolyData* table)
@@ -189,12 +162,6 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
   auto points = Arrays::MakePoints(size);
   auto persistence = Arrays::Make<vtkDoubleArray>(Arrays::ClutterProbability, size);
   auto indices = Arrays::Make<vtkIntArray>(Arrays::ClutterCell, size, 3);
-  vtkNew<vtkIdTypeArray> offsets;
-  vtkNew<vtkIdTypeArray> vertices;
-  Arrays::SetTuples(offsets.Get(), size + 1);
-  Arrays::SetTuples(vertices.Get(), size);
-  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + size + 1, vtkIdType(0));
-  std::iota(vertices->GetPointer(0), vertices->GetPointer(0) + size, vtkIdType(0));
   for (vtkIdType i = 0; i < size; ++i)
   {
     const auto k = static_cast<std::size_t>(i);
@@ -206,10 +173,8 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
     indices->SetTypedComponent(i, 1, cell.elevation);
     indices->SetTypedComponent(i, 2, cell.range);
   }
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(offsets.Get(), vertices.Get());
   output->SetPoints(points);
-  output->SetVerts(cells);
+  output->SetVerts(vtkAvianLidarMakeCells(size, 1));
   output->GetPointData()->AddArray(persistence);
   output->GetPointData()->AddArray(indices);
 }
@@ -225,7 +190,7 @@ struct vtkAvianLidarClutterFilter::Memory
 };
 
 vtkStandardNewMacro(vtkAvianLidarClutterFilter);
-vtkCxxSetObjectMacro(vtkAvianLidarClutterFilter, Controller, vtkMultiProcessController);
+vtkAvianLidarCxxControllerMacro(vtkAvianLidarClutterFilter);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarClutterFilter::vtkAvianLidarClutterFilter()
@@ -300,89 +265,62 @@ int vtkAvianLidarClutterFilter::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarClutterFilter::ModifyRequest(vtkInformation* request, int when)
+void vtkAvianLidarClutterFilter::CheckProperties() const
 {
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarClutterFilter::CheckProperties() const
-{
-  if (!(this->ClutterThreshold > 0.0 && this->ClutterThreshold <= 1.0))
-  {
-    return avianlidar::valueError("ClutterThreshold", this->ClutterThreshold, "above 0, at most 1");
-  }
+  using avianlidar::rangeError;
+  vtkAvianLidarRequire(rangeError(
+    "ClutterThreshold", this->ClutterThreshold, avianlidar::AboveZero, 1.0, "above 0, at most 1"));
   for (const auto& [name, value] : { std::pair("RangeTolerance", this->RangeTolerance),
          std::pair("AngularTolerance", this->AngularTolerance) })
   {
-    if (value < 0 || value > ClutterMap::MostTolerance)
-    {
-      return avianlidar::valueError(name, value, "0 to 10 cells");
-    }
+    vtkAvianLidarRequire(rangeError(name, value, 0, ClutterMap::MostTolerance, "0 to 10 cells"));
   }
-  if (this->WarmUp < 0 || this->WarmUp > MostWarmUp)
-  {
-    return avianlidar::valueError("WarmUp", this->WarmUp, "0 to 100,000 scans");
-  }
-  const std::string misplaced = avianlidar::checkPosition(
-    { this->SensorPosition[0], this->SensorPosition[1], this->SensorPosition[2] });
-  if (!misplaced.empty())
-  {
-    return "SensorPosition: " + misplaced;
-  }
-  return ClutterMap::check(
-    { this->RangeStep, this->AzimuthStep, this->ElevationStep }, this->Window);
+  vtkAvianLidarRequire(rangeError("WarmUp", this->WarmUp, 0, 100000, "0 to 100,000 scans"));
+  vtkAvianLidarRequire(avianlidar::checkPosition({ this->SensorPosition[0], this->SensorPosition[1],
+                         this->SensorPosition[2] }),
+    "SensorPosition: ");
+  vtkAvianLidarRequire(
+    ClutterMap::check({ this->RangeStep, this->AzimuthStep, this->ElevationStep }, this->Window));
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarClutterFilter::Advance(
-  vtkDataObject* cloud, vtkPolyData* table, Memory& memory)
+void vtkAvianLidarClutterFilter::Advance(vtkDataObject* cloud, vtkPolyData* table, Memory& memory)
 {
-  std::string problem = this->CheckProperties();
-  if (problem.empty() && !this->Learning && !table)
-  {
-    problem = "Learning is off and input port 1 (table) is not connected, expected one of both";
-  }
+  this->CheckProperties();
+  vtkAvianLidarRequire(this->Learning || table
+      ? ""
+      : "Learning is off and input port 1 (table) is not connected, expected one of both");
   Setup setup;
   setup.Grid = { this->RangeStep, this->AzimuthStep, this->ElevationStep };
   setup.Window = this->Window;
   setup.Learning = this->Learning;
   std::copy(this->SensorPosition, this->SensorPosition + 3, setup.Position);
   setup.Table = HashOfTable(table);
-  double time = 0.0;
-  if (problem.empty())
-  {
-    problem = vtkAvianLidarScanStream::ReadPosition(cloud, setup.Position);
-    problem = problem.empty() ? memory.Stream.ReadTime(cloud, time) : problem;
-    problem = problem.empty() ? problem : ScanPort + problem;
-  }
-  if (!problem.empty())
-  {
-    return problem;
-  }
+  const double time = vtkAvianLidarWithin(ScanPort,
+    [&]()
+    {
+      vtkAvianLidarScanStream::ReadPosition(cloud, setup.Position);
+      return memory.Stream.TimeOf(cloud);
+    });
   const bool goesOn = memory.Stream.Begun() && memory.Of == setup;
   const bool back = goesOn && time < memory.Stream.Time();
   if (!goesOn || back)
   {
     const ClutterMap empty(setup.Grid, setup.Window);
-    ClutterMap start = empty;
-    problem = table ? ReadTable(table, empty, start) : std::string();
-    problem = problem.empty() ? problem : TablePort + problem;
-    memory.Before = std::make_shared<const ClutterMap>(std::move(start));
+    memory.Before = std::make_shared<const ClutterMap>(
+      !table ? empty : vtkAvianLidarWithin(TablePort, [&]() { return ReadTable(table, empty); }));
   }
   else if (time > memory.Stream.Time())
   {
     memory.Before = memory.With;
   }
-  if (back && problem.empty())
+  if (back)
   {
     vtkWarningMacro("The time goes back from " << memory.Stream.Time() << " s to " << time
                                                << " s: what was learned is forgotten.");
   }
   memory.Of = setup;
   memory.Stream.Accept(cloud, time);
-  return problem;
 }
 
 //------------------------------------------------------------------------------
@@ -404,9 +342,7 @@ void vtkAvianLidarClutterFilter::AddSettings(const Memory& memory, vtkFieldData*
   {
     Arrays::SetFieldInteger(fields, name, value);
   }
-  auto position = Arrays::Make<vtkDoubleArray>(Arrays::Position, 1, 3);
-  std::copy(memory.Of.Position, memory.Of.Position + 3, position->GetPointer(0));
-  fields->AddArray(position);
+  Arrays::SetFieldVector(fields, Arrays::Position, memory.Of.Position);
 }
 
 //------------------------------------------------------------------------------
@@ -437,15 +373,15 @@ int vtkAvianLidarClutterFilter::RequestData(
       Memory memory = *this->Kept; // which stays if something is wrong
       std::vector<ClutterMap::Key> keys;
       ranks.Together(this,
-        [&]() -> std::string
+        [&]()
         {
           vtkAvianLidarAbort::StopIfWanted(this);
-          std::string problem = this->Advance(cloud, vtkPolyData::GetData(inputVector[1]), memory);
-          if (problem.empty())
-          {
-            keys = KeysOf(cloud, memory.Of, problem);
-          }
-          return problem.empty() ? problem : "Clutter filter: " + problem;
+          vtkAvianLidarWithin("Clutter filter: ",
+            [&]()
+            {
+              this->Advance(cloud, vtkPolyData::GetData(inputVector[1]), memory);
+              keys = KeysOf(cloud, memory.Of);
+            });
         });
       vtkAvianLidarRanks::Settings settings;
       settings.Add("time", memory.Stream.Time());
@@ -458,22 +394,16 @@ int vtkAvianLidarClutterFilter::RequestData(
       ranks.AgreeOn(this, settings);
       const vtkSmartPointer<vtkPointSet> all = vtkAvianLidarGather::Coordinates(ranks, this, cloud);
       ranks.Together(this,
-        [&]() -> std::string
+        [&]()
         {
-          std::string problem;
-          memory.With = !this->Learning
-            ? memory.Before
-            : std::make_shared<const ClutterMap>(
-                memory.Before->learned(ranks.Alone() ? keys : KeysOf(all, memory.Of, problem)));
+          memory.With = !this->Learning ? memory.Before
+                                        : std::make_shared<const ClutterMap>(memory.Before->learned(
+                                            ranks.Alone() ? keys : KeysOf(all, memory.Of)));
           vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
           vtkPolyData* table = vtkPolyData::GetData(outputVector, 1);
           scan->ShallowCopy(cloud);
           this->Classify(memory, keys, scan);
-          const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-          const bool first = ranks.Alone()
-            ? outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER()) <= 0
-            : ranks.Rank() == 0;
-          if (first)
+          if (ranks.Piece() <= 0)
           {
             WriteTable(*memory.With, memory.Of.Position, table);
           }
@@ -483,7 +413,6 @@ int vtkAvianLidarClutterFilter::RequestData(
           }
           this->AddSettings(memory, scan->GetFieldData());
           this->AddSettings(memory, table->GetFieldData());
-          return problem;
         });
       *this->Kept = std::move(memory);
     });

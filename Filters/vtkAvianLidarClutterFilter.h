@@ -39,8 +39,8 @@
 #ifndef vtkAvianLidarClutterFilter_h
 #define vtkAvianLidarClutterFilter_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPassInputTypeAlgorithm.h"
 
 #include <cstdint> // For std::uint64_t
@@ -50,7 +50,6 @@
 
 class vtkDataObject;
 class vtkFieldData;
-class vtkMultiProcessController;
 class vtkPointSet;
 class vtkPolyData;
 
@@ -61,78 +60,42 @@ public:
   vtkTypeMacro(vtkAvianLidarClutterFilter, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /** Number of scans after which the weight of a scan is 1/e, 1 to 100,000. Default 200. */
-  vtkSetMacro(Window, double);
-  vtkGetMacro(Window, double);
-  ///@}
+  /// Number of scans after which the weight of a scan is 1/e, 1 to 100,000. Default 200.
+  vtkAvianLidarPropertyMacro(Window, double, 200.0);
 
-  ///@{
-  /** Clutter probability from which on a point is clutter, 1, above 0 to 1. Default 0.05. */
-  vtkSetMacro(ClutterThreshold, double);
-  vtkGetMacro(ClutterThreshold, double);
-  ///@}
+  /// Clutter probability from which on a point is clutter, 1, above 0 to 1. Default 0.05.
+  vtkAvianLidarPropertyMacro(ClutterThreshold, double, 0.05);
 
-  ///@{
-  /** Size of the cells in range, m, 0.001 to 1000. Default 1.5, as for the sensor Search905. */
-  vtkSetMacro(RangeStep, double);
-  vtkGetMacro(RangeStep, double);
-  ///@}
+  /// Size of the cells in range, m, 0.001 to 1000. Default 1.5, as for the sensor Search905.
+  vtkAvianLidarPropertyMacro(RangeStep, double, 1.5);
 
-  ///@{
-  /** Size of the cells in azimuth, deg, 0.001 to 90, adjusted to divide 360. Default 0.375. */
-  vtkSetMacro(AzimuthStep, double);
-  vtkGetMacro(AzimuthStep, double);
-  ///@}
+  /// Size of the cells in azimuth, deg, 0.001 to 90, adjusted to divide 360. Default 0.375.
+  vtkAvianLidarPropertyMacro(AzimuthStep, double, 0.375);
 
-  ///@{
-  /** Size of the cells in elevation, deg, 0.001 to 90. Default 0.375. */
-  vtkSetMacro(ElevationStep, double);
-  vtkGetMacro(ElevationStep, double);
-  ///@}
+  /// Size of the cells in elevation, deg, 0.001 to 90. Default 0.375.
+  vtkAvianLidarPropertyMacro(ElevationStep, double, 0.375);
 
-  ///@{
-  /** Number of cells in range that count on either side of a point's cell, 0 to 10. Default 1. */
-  vtkSetMacro(RangeTolerance, int);
-  vtkGetMacro(RangeTolerance, int);
-  ///@}
+  /// Number of cells in range that count on either side of a point's cell, 0 to 10. Default 1.
+  vtkAvianLidarPropertyMacro(RangeTolerance, int, 1);
 
-  ///@{
-  /** Number of cells in angle that count on each side of a point's cell, 0 to 10. Default 1. */
-  vtkSetMacro(AngularTolerance, int);
-  vtkGetMacro(AngularTolerance, int);
-  ///@}
+  /// Number of cells in angle that count on each side of a point's cell, 0 to 10. Default 1.
+  vtkAvianLidarPropertyMacro(AngularTolerance, int, 1);
 
-  ///@{
-  /**
-   * Number of first scans in which all points are clutter, 0 to 100,000. Scans of a table count.
-   * Default 5.
-   */
-  vtkSetMacro(WarmUp, int);
-  vtkGetMacro(WarmUp, int);
-  ///@}
+  /// Number of first scans in which all points are clutter, 0 to 100,000. Scans of a table count.
+  /// Default 5.
+  vtkAvianLidarPropertyMacro(WarmUp, int, 5);
 
-  ///@{
-  /** Position of the sensor, m, for scans without the field data `position`. Default (0, 0, 0). */
-  vtkSetVector3Macro(SensorPosition, double);
-  vtkGetVector3Macro(SensorPosition, double);
-  ///@}
+  /// Position of the sensor, m, for scans without the field data `position`. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(SensorPosition, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Whether scans are learned; if not, only the table on port 1 counts. Default: on. */
-  vtkSetMacro(Learning, bool);
-  vtkGetMacro(Learning, bool);
-  vtkBooleanMacro(Learning, bool);
-  ///@}
+  /// Whether scans are learned; if not, only the table on port 1 counts. Default: on.
+  vtkAvianLidarSwitchMacro(Learning, true);
 
   /// Empty the memory, for a new stream whose first scan may have any time.
   void Forget();
 
-  ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  /// Processes that may work together; null: only this one. Default: the global controller.
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -144,28 +107,15 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  double Window = 200.0;
-  double ClutterThreshold = 0.05;
-  double RangeStep = 1.5;
-  double AzimuthStep = 0.375;
-  double ElevationStep = 0.375;
-  int RangeTolerance = 1;
-  int AngularTolerance = 1;
-  int WarmUp = 5;
-  double SensorPosition[3] = { 0.0, 0.0, 0.0 };
-  bool Learning = true;
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarClutterFilter(const vtkAvianLidarClutterFilter&) = delete;
   void operator=(const vtkAvianLidarClutterFilter&) = delete;
 
   struct Memory;
-  std::string CheckProperties() const;
-  std::string Advance(vtkDataObject* cloud, vtkPolyData* table, Memory& memory);
+  void CheckProperties() const;
+  void Advance(vtkDataObject* cloud, vtkPolyData* table, Memory& memory);
   void Classify(
     const Memory& memory, const std::vector<std::uint64_t>& keys, vtkPointSet* output) const;
   void AddSettings(const Memory& memory, vtkFieldData* fields) const;

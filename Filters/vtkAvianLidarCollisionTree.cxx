@@ -6,28 +6,141 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceExchange.h"
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarText.h"
-#include "vtkAvianLidarTreeDisplay.h"
 #include "vtkAvianLidarWarnings.h"
 
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+#include <variant>
+#include <vector>
 
 vtkStandardNewMacro(vtkAvianLidarCollisionTree);
-vtkCxxSetObjectMacro(vtkAvianLidarCollisionTree, Controller, vtkMultiProcessController);
+vtkAvianLidarCxxControllerMacro(vtkAvianLidarCollisionTree);
 vtkInformationKeyMacro(vtkAvianLidarCollisionTree, COLLISION_TREE, ObjectBase);
+
+namespace
+{
+namespace names = vtkAvianLidarArrays;
+using avianlidar::Vec3;
+
+/// Collects the surfaces of volumes, with the number of the node each face belongs to.
+struct Volumes
+{
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> faces;
+  vtkSmartPointer<vtkIntArray> nodes = names::Make<vtkIntArray>(names::NodeId);
+  vtkSmartPointer<vtkIntArray> triangles = names::Make<vtkIntArray>(names::Triangles);
+  vtkSmartPointer<vtkIntArray> depths = names::Make<vtkIntArray>(names::Depth);
+  int node = 0;
+  int count = 0;
+  int depth = 0;
+
+  Volumes() { this->points->SetDataTypeToDouble(); }
+
+  void Face(const std::vector<vtkIdType>& corners)
+  {
+    this->faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
+    this->nodes->InsertNextValue(this->node);
+    this->triangles->InsertNextValue(this->count);
+    this->depths->InsertNextValue(this->depth);
+  }
+};
+
+void AddBox(Volumes& surface, const Vec3& center, const Vec3& x, const Vec3& y, const Vec3& z)
+{
+  const vtkIdType first = surface.points->GetNumberOfPoints();
+  for (int i = 0; i < 8; ++i)
+  {
+    const Vec3 p = center + (i & 1 ? x : -x) + (i & 2 ? y : -y) + (i & 4 ? z : -z);
+    surface.points->InsertNextPoint(&p.x);
+  }
+  constexpr int faces[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+    { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
+  for (const auto& face : faces)
+  {
+    surface.Face({ first + face[0], first + face[1], first + face[2], first + face[3] });
+  }
+}
+
+void AddVolume(Volumes& surface, const avianlidar::OBB& box)
+{
+  AddBox(surface, box.center, box.half.x * box.axes[0], box.half.y * box.axes[1],
+    box.half.z * box.axes[2]);
+}
+
+void AddVolume(Volumes& surface, const avianlidar::BoundingSphere& sphere)
+{
+  constexpr int meridians = 24;
+  constexpr int parallels = 12;
+  const vtkIdType first = surface.points->GetNumberOfPoints();
+  for (int i = 0; i <= parallels; ++i)
+  {
+    const double theta = vtkMath::Pi() * i / parallels;
+    for (int j = 0; j < meridians; ++j)
+    {
+      const double phi = 2.0 * vtkMath::Pi() * j / meridians;
+      const Vec3 p = sphere.center +
+        sphere.radius *
+          Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      surface.points->InsertNextPoint(&p.x);
+    }
+  }
+  for (int i = 0; i < parallels; ++i)
+  {
+    for (int j = 0; j < meridians; ++j)
+    {
+      const vtkIdType a = first + i * meridians + j;
+      const vtkIdType b = first + i * meridians + (j + 1) % meridians;
+      surface.Face({ a, a + meridians, b + meridians, b });
+    }
+  }
+}
+/// Fill `display` with the volumes of the nodes at depth `level`, and of the leaves above this
+/// depth; `display` stays empty for level < 0.
+void MakeDisplay(const avianlidar::CollisionTree& tree, int level, vtkPolyData* display)
+{
+  Volumes surface;
+  const auto shown =
+    level < 0 ? nullptr : avianlidar::volumesOf(tree, static_cast<std::uint32_t>(level));
+  for (std::size_t i = 0; shown && i < shown->nodes.size(); ++i)
+  {
+    const avianlidar::BinaryNode& node = shown->nodes[i];
+    const int depth = static_cast<int>(node.depth);
+    if (depth == level || (depth < level && node.children == 0))
+    {
+      surface.node = static_cast<int>(i);
+      surface.count = static_cast<int>(node.count);
+      surface.depth = depth;
+      std::visit([&](const auto& volumes) { AddVolume(surface, volumes[i]); }, shown->volumes);
+    }
+  }
+  display->SetPoints(surface.points);
+  display->SetPolys(surface.faces);
+  display->GetCellData()->AddArray(surface.nodes);
+  display->GetCellData()->AddArray(surface.triangles);
+  display->GetCellData()->AddArray(surface.depths);
+  display->GetCellData()->SetActiveScalars(names::Depth.name);
+}
+}
 
 struct vtkAvianLidarCollisionTree::vtkInternals
 {
@@ -70,35 +183,18 @@ int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarCollisionTree::CheckOptions() const
+void vtkAvianLidarCollisionTree::CheckOptions() const
 {
-  if (this->Preset != PRESET_CUSTOM)
+  using avianlidar::rangeError;
+  vtkAvianLidarRequire(
+    rangeError("Preset", this->Preset, PRESET_CUSTOM, PRESET_PAPER, "0 (custom) or 1 (paper)"));
+  if (this->Preset == PRESET_CUSTOM)
   {
-    return this->Preset == PRESET_PAPER
-      ? std::string()
-      : avianlidar::valueError("Preset", this->Preset, "0 (custom) or 1 (paper)");
+    vtkAvianLidarRequire(rangeError("SplitRule", this->SplitRule, 0, 3, "0 to 3"));
+    vtkAvianLidarRequire(rangeError("BoundingVolume", this->BoundingVolume, 0, 3, "0 to 3"));
+    vtkAvianLidarRequire(
+      rangeError("MaximumLeafSize", this->MaximumLeafSize, 1, VTK_INT_MAX, "at least 1"));
   }
-  if (this->SplitRule < SPLIT_RULE_HALVES || this->SplitRule > SPLIT_RULE_SURFACE_AREA_HEURISTIC)
-  {
-    return avianlidar::valueError("SplitRule", this->SplitRule, "0 to 3");
-  }
-  if (this->BoundingVolume < BOUNDING_VOLUME_AABB ||
-    this->BoundingVolume > BOUNDING_VOLUME_BINARY_AABB)
-  {
-    return avianlidar::valueError("BoundingVolume", this->BoundingVolume, "0 to 3");
-  }
-  if (this->MaximumLeafSize < 1)
-  {
-    return avianlidar::valueError("MaximumLeafSize", this->MaximumLeafSize, "at least 1");
-  }
-  return {};
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarCollisionTree::ModifyRequest(vtkInformation* request, int when)
-{
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
 }
 
 //------------------------------------------------------------------------------
@@ -126,7 +222,7 @@ void vtkAvianLidarCollisionTree::MergeSurfaces(
     [this]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      return this->CheckOptions();
+      this->CheckOptions();
     });
   in.Surfaces = in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces);
   const vtkAvianLidarSurfaces& merged = *in.Surfaces;
@@ -188,7 +284,7 @@ void vtkAvianLidarCollisionTree::MakeOutputs(
       scene->AttachTo(output);
       if (ranks.Rank() == 0)
       {
-        vtkAvianLidarMakeTreeDisplay(*in.Tree, this->DisplayLevel, display);
+        MakeDisplay(*in.Tree, this->DisplayLevel, display);
       }
     });
 }

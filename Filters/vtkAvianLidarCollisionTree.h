@@ -37,17 +37,15 @@
 #ifndef vtkAvianLidarCollisionTree_h
 #define vtkAvianLidarCollisionTree_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
-#include <string> // For error texts
 
 class vtkAvianLidarRanks;
 class vtkDataObject;
 class vtkInformationObjectBaseKey;
-class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarCollisionTree : public vtkPolyDataAlgorithm
 {
@@ -79,24 +77,18 @@ public:
   };
 
   ///@{
-  /**
-   * PRESET_PAPER builds the paper's k-D tree (Sec. 3.1, 5.1 and Algorithm 1): at execution it
-   * overrides SplitRule (median), BoundingVolume (boxes, two per node) and MaximumLeafSize (1).
-   * Default: PRESET_CUSTOM, which overrides nothing.
-   */
-  vtkSetMacro(Preset, int);
-  vtkGetMacro(Preset, int);
+  /// PRESET_PAPER builds the paper's k-D tree (Sec. 3.1, 5.1 and Algorithm 1): at execution it
+  /// overrides SplitRule (median), BoundingVolume (boxes, two per node) and MaximumLeafSize (1).
+  /// Default: PRESET_CUSTOM, which overrides nothing.
+  vtkAvianLidarPropertyMacro(Preset, int, PRESET_CUSTOM);
   void SetPresetToCustom() { this->SetPreset(PRESET_CUSTOM); }
   void SetPresetToPaper() { this->SetPreset(PRESET_PAPER); }
   ///@}
 
   ///@{
-  /**
-   * Rule that splits a node's triangles: halves of the list (paper: BVH), median (k-D), principal
-   * plane (BSP), or the binned surface area heuristic. Default: SPLIT_RULE_SURFACE_AREA_HEURISTIC.
-   */
-  vtkSetMacro(SplitRule, int);
-  vtkGetMacro(SplitRule, int);
+  /// Rule that splits a node's triangles: halves of the list (paper: BVH), median (k-D), principal
+  /// plane (BSP), or the binned surface area heuristic. Default: SPLIT_RULE_SURFACE_AREA_HEURISTIC.
+  vtkAvianLidarPropertyMacro(SplitRule, int, SPLIT_RULE_SURFACE_AREA_HEURISTIC);
   void SetSplitRuleToHalves() { this->SetSplitRule(SPLIT_RULE_HALVES); }
   void SetSplitRuleToMedian() { this->SetSplitRule(SPLIT_RULE_MEDIAN); }
   void SetSplitRuleToPrincipalPlane() { this->SetSplitRule(SPLIT_RULE_PRINCIPAL_PLANE); }
@@ -107,33 +99,22 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Volume around a node. BOUNDING_VOLUME_AABB has eight boxes per node in single precision; the
-   * others have two volumes per node in double precision, as in the paper: oriented boxes, spheres
-   * or boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
-   */
-  vtkSetMacro(BoundingVolume, int);
-  vtkGetMacro(BoundingVolume, int);
+  /// Volume around a node. BOUNDING_VOLUME_AABB has eight boxes per node in single precision; the
+  /// others have two volumes per node in double precision, as in the paper: oriented boxes, spheres
+  /// or boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
+  vtkAvianLidarPropertyMacro(BoundingVolume, int, BOUNDING_VOLUME_AABB);
   void SetBoundingVolumeToAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_AABB); }
   void SetBoundingVolumeToOBB() { this->SetBoundingVolume(BOUNDING_VOLUME_OBB); }
   void SetBoundingVolumeToSphere() { this->SetBoundingVolume(BOUNDING_VOLUME_SPHERE); }
   void SetBoundingVolumeToBinaryAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_BINARY_AABB); }
   ///@}
 
-  ///@{
-  /** Largest number of triangles in a leaf, at least 1 (1: Algorithm 1 as printed). Default: 4. */
-  vtkSetMacro(MaximumLeafSize, int);
-  vtkGetMacro(MaximumLeafSize, int);
-  ///@}
+  /// Largest number of triangles in a leaf, at least 1 (1: Algorithm 1 as printed). Default: 4.
+  vtkAvianLidarPropertyMacro(MaximumLeafSize, int, 4);
 
-  ///@{
-  /**
-   * Level of the volumes that port 1 shows, with the leaves above this level; negative: no volumes.
-   * Default: 0, the root.
-   */
-  vtkSetMacro(DisplayLevel, int);
-  vtkGetMacro(DisplayLevel, int);
-  ///@}
+  /// Level of the volumes that port 1 shows, with the leaves above this level; negative: no
+  /// volumes. Default: 0, the root.
+  vtkAvianLidarPropertyMacro(DisplayLevel, int, 0);
 
   /// Number of nodes, number of leaves, and depth of the last tree; 0 without a tree.
   int GetNumberOfNodes() const;
@@ -150,11 +131,8 @@ public:
   /// Key under which the information of the field array `tree_checksum` holds the tree.
   static vtkInformationObjectBaseKey* COLLISION_TREE();
 
-  ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  /// Processes that may work together; null: only this one. Default: the global controller.
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -163,16 +141,7 @@ protected:
   ~vtkAvianLidarCollisionTree() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  int Preset = PRESET_CUSTOM;
-  int SplitRule = SPLIT_RULE_SURFACE_AREA_HEURISTIC;
-  int BoundingVolume = BOUNDING_VOLUME_AABB;
-  int MaximumLeafSize = 4;
-  int DisplayLevel = 0;
-
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;
@@ -183,7 +152,7 @@ private:
   void MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);
 
-  std::string CheckOptions() const;
+  void CheckOptions() const;
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -15,6 +15,7 @@
 #include "vtkAvianLidarImageArrays.h"
 #include "vtkAvianLidarMovers.h"
 #include "vtkAvianLidarPlaces.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
 
@@ -190,20 +191,20 @@ int vtkAvianLidarCoverage::RequestDataObject(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarCoverage::CheckTarget() const
+void vtkAvianLidarCoverage::CheckTarget() const
 {
   vtkAvianLidarBirds::CheckReflectance(this->Reflectance);
   if (!(this->Reflectance > 0.0))
   {
-    return avianlidar::valueError("Reflectance", this->Reflectance, "above 0 to 1");
+    vtkAvianLidarRequire(avianlidar::valueError("Reflectance", this->Reflectance, "above 0 to 1"));
   }
   if (!(this->EffectiveArea >= 0.0) || !(this->EffectiveArea <= 1e6) ||
     (this->Species.empty() && this->EffectiveArea == 0.0))
   {
-    return avianlidar::valueError("EffectiveArea", this->EffectiveArea,
-      this->Species.empty() ? "above 0 to 1e6 m2 without a species" : "0 to 1e6 m2");
+    vtkAvianLidarRequire(avianlidar::valueError("EffectiveArea", this->EffectiveArea,
+      this->Species.empty() ? "above 0 to 1e6 m2 without a species" : "0 to 1e6 m2"));
   }
-  return avianlidar::checkRules(this->Targets->Rules);
+  vtkAvianLidarRequire(avianlidar::checkRules(this->Targets->Rules));
 }
 
 //------------------------------------------------------------------------------
@@ -234,8 +235,8 @@ int vtkAvianLidarCoverage::RequestInformation(
   // What is wrong with the region is said in RequestData.
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
   const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
-  const std::string problem = vtkAvianLidarGuard::ProblemOf(
-    [this]() { return vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing); });
+  const std::string problem = vtkAvianLidarGuard::ProblemOf([this]()
+    { vtkAvianLidarRequire(vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing)); });
   if (problem.empty())
   {
     vtkAvianLidarPlaces::ExtentOf(this->Bounds, this->Spacing, extent);
@@ -270,9 +271,7 @@ int vtkAvianLidarCoverage::RequestUpdateExtent(
     }
   }
   // All beams for each place.
-  vtkInformation* beams = inputVector[0]->GetInformationObject(0);
-  beams->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  beams->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  vtkAvianLidarRanks::RequestAll(inputVector[0]);
   vtkInformation* places = inputVector[2]->GetInformationObject(0);
   if (!places)
   {
@@ -308,13 +307,12 @@ int vtkAvianLidarCoverage::RequestData(
       vtkPolyData* clutter = vtkPolyData::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkInformation* info = outputVector->GetInformationObject(0);
-      const int piece = info->Get(Pipeline::UPDATE_PIECE_NUMBER());
       this->PrepareBeams(ranks, beams);
       this->PrepareTargets(ranks);
       this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info);
       this->PrepareSurfaces(ranks, surfaces);
       this->PrepareTree(ranks, surfaces);
-      this->View(ranks, piece == 0, clutter);
+      this->View(ranks, clutter);
       this->Evaluate(ranks, output, table);
       ranks.Together(this,
         [&]()
@@ -326,7 +324,7 @@ int vtkAvianLidarCoverage::RequestData(
           }
         });
       const bool differ = vtkTargets::ScansDiffer(beams) && this->NumberOfScans > 1;
-      if (differ && !this->Targets->Warned && piece == 0)
+      if (differ && !this->Targets->Warned && ranks.Piece() == 0)
       {
         vtkWarningMacro("Input port 0 (beams): rotating prisms give each scan other beams, and "
                         "track_probability takes all NumberOfScans for the one that is here. "
@@ -342,25 +340,17 @@ void vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
 {
   vtkInternals& in = *this->Internals;
   ranks.Together(this,
-    [&]() -> std::string
+    [&]()
     {
-      const std::string problem = vtkInternals::WrongWithBeams(
-        in.Beams.beams.size() > 0 ? avianlidar::checkOrigins(in.Beams.beams) : "");
-      if (!problem.empty())
-      {
-        return problem;
-      }
+      vtkAvianLidarRequire(
+        in.Beams.beams.size() > 0 ? avianlidar::checkOrigins(in.Beams.beams) : "",
+        "Input port 0 (beams), ");
       this->Targets->Rules = { this->RequiredDetections, this->NumberOfScans,
         this->StrikeHeightWeights, this->HeightLimits };
-      const std::string target = this->CheckTarget();
-      if (!target.empty())
-      {
-        return target;
-      }
+      this->CheckTarget();
       in.Beams.total = in.Beams.beams.size(); // all of them, on every rank
       this->Targets->Wanted = this->Targets->Birds.Choose(
         this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
-      return {};
     });
 }
 
@@ -407,7 +397,7 @@ void vtkAvianLidarCoverage::PreparePlaces(
 {
   ranks.AgreeOn(this, vtkTargets::SettingsOf(*this, places != nullptr));
   ranks.Together(this,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarPlaces& where = this->Targets->Places;
       where = {};
@@ -423,27 +413,23 @@ void vtkAvianLidarCoverage::PreparePlaces(
             count, "places", (BytesPerPlace + sizeof(float) * poses) * count);
         }
       };
-      const auto take = [&]() -> std::string
-      {
-        require(vtkAvianLidarPlaces::CountOf(places));
-        where = vtkAvianLidarPlaces(places);
-        where.SetMine(info);
-        return {};
-      };
       if (places)
       {
-        const std::string problem = vtkAvianLidarGuard::ProblemOf(take);
-        return problem.empty() ? problem : "Input port 2 (places), " + problem;
+        vtkAvianLidarWithin("Input port 2 (places), ",
+          [&]()
+          {
+            require(vtkAvianLidarPlaces::CountOf(places));
+            where = vtkAvianLidarPlaces(places);
+          });
       }
-      const std::string problem = vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing);
-      if (problem.empty())
+      else
       {
+        vtkAvianLidarRequire(vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing));
         const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
         where = vtkAvianLidarPlaces(info->Get(Pipeline::UPDATE_EXTENT()), origin, this->Spacing);
         require(static_cast<double>(where.Size()));
-        where.SetMine(info);
       }
-      return problem;
+      where.SetMine(info);
     });
   if (!ranks.Alone())
   {
@@ -452,8 +438,7 @@ void vtkAvianLidarCoverage::PreparePlaces(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarCoverage::View(
-  const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter)
+void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter)
 {
   vtkInternals& in = *this->Internals;
   vtkTargets& targets = *this->Targets;
@@ -474,7 +459,7 @@ void vtkAvianLidarCoverage::View(
         targets.Survey.look(in.Setup, in.Beams.beams, still, targets.SurveyPlaces(), in.Geometry,
           in.Threads, vtkAvianLidarAbort::KeepGoing(this, ScanShare, ViewShare)));
       targets.TracedPlaces = static_cast<double>(targets.Survey.traced());
-      if (isFirst)
+      if (ranks.Piece() == 0)
       {
         vtkAvianLidarFillClutter(still, in.Beams, clutter);
       }

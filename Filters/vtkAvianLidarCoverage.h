@@ -43,7 +43,6 @@
 #ifndef vtkAvianLidarCoverage_h
 #define vtkAvianLidarCoverage_h
 
-#include "vtkAvianLidarFilePath.h"
 #include "vtkAvianLidarModule.h" // For export macro
 #include "vtkAvianLidarScanFilter.h"
 
@@ -75,115 +74,64 @@ public:
     STATUS_SEEN = 7
   };
 
-  ///@{
-  /** Limits of the image in x, y, z, m. Default: (-1000, 1000, -1000, 1000, 0, 150). */
-  vtkSetVector6Macro(Bounds, double);
-  vtkGetVector6Macro(Bounds, double);
-  ///@}
+  /// Limits of the image in x, y, z, m. Default: (-1000, 1000, -1000, 1000, 0, 150).
+  vtkAvianLidarVectorMacro(Bounds, 6, -1000.0, 1000.0, -1000.0, 1000.0, 0.0, 150.0);
 
-  ///@{
-  /** Distances between the image's points in x, y and z, m, above 0. Default: (20, 20, 15). */
-  vtkSetVector3Macro(Spacing, double);
-  vtkGetVector3Macro(Spacing, double);
-  ///@}
+  /// Distances between the image's points in x, y and z, m, above 0. Default: (20, 20, 15).
+  vtkAvianLidarVectorMacro(Spacing, 3, 20.0, 20.0, 15.0);
 
-  ///@{
-  /**
-   * Name of a species, or empty for a target with EffectiveArea from all sides. Default: herring
-   * gull.
-   */
-  vtkSetMacro(Species, std::string);
-  vtkGetMacro(Species, std::string);
-  ///@}
+  /// Name of a species, or empty for a target with EffectiveArea from all sides. Default: herring
+  /// gull.
+  vtkAvianLidarPropertyMacro(Species, std::string, "herring gull");
 
-  ///@{
-  /** Table of the user's species, as for vtkAvianLidarBirdSource. Default: none. */
+  /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: none.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
-  ///@}
+
+  /// Whether the bird glides instead of flapping. Default: off.
+  vtkAvianLidarSwitchMacro(Gliding, false);
+
+  /// Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird
+  /// is scaled. 0: the area of the species. 0.018 is the standard avian optical target. Default: 0.
+  vtkAvianLidarPropertyMacro(EffectiveArea, double, 0.0);
+
+  /// Reflectance of the plumage, 1, above 0 to 1. Default: 0.3 (assumed; 0.15 dark, 0.6 white).
+  vtkAvianLidarPropertyMacro(Reflectance, double, 0.3);
+
+  /// Whether a scan finds clutter; without this scan, the filter is much faster. Default: on.
+  vtkAvianLidarSwitchMacro(Clutter, true);
+
+  /// Number of detections for a track in NumberOfScans scans, 1 to NumberOfScans. Default: 2.
+  vtkAvianLidarPropertyMacro(RequiredDetections, int, 2);
+
+  /// Number of scans of which RequiredDetections must detect a bird, 1 to 100. Default: 3.
+  vtkAvianLidarPropertyMacro(NumberOfScans, int, 3);
 
   ///@{
-  /** Whether the bird glides instead of flapping. Default: off. */
-  vtkSetMacro(Gliding, bool);
-  vtkGetMacro(Gliding, bool);
-  vtkBooleanMacro(Gliding, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird is
-   * scaled. 0: the area of the species. 0.018 is the standard avian optical target. Default: 0.
-   */
-  vtkSetMacro(EffectiveArea, double);
-  vtkGetMacro(EffectiveArea, double);
-  ///@}
-
-  ///@{
-  /** Reflectance of the plumage, 1, above 0 to 1. Default: 0.3 (assumed; 0.15 dark, 0.6 white). */
-  vtkSetMacro(Reflectance, double);
-  vtkGetMacro(Reflectance, double);
-  ///@}
-
-  ///@{
-  /** Whether a scan finds clutter; without this scan, the filter is much faster. Default: on. */
-  vtkSetMacro(Clutter, bool);
-  vtkGetMacro(Clutter, bool);
-  vtkBooleanMacro(Clutter, bool);
-  ///@}
-
-  ///@{
-  /** Number of detections for a track in NumberOfScans scans, 1 to NumberOfScans. Default: 2. */
-  vtkSetMacro(RequiredDetections, int);
-  vtkGetMacro(RequiredDetections, int);
-  ///@}
-
-  ///@{
-  /** Number of scans of which RequiredDetections must detect a bird, 1 to 100. Default: 3. */
-  vtkSetMacro(NumberOfScans, int);
-  vtkGetMacro(NumberOfScans, int);
-  ///@}
-
-  ///@{
-  /**
-   * Limits of the height bands, m (z), rising; each limit belongs to the band above. Default: 0,
-   * 15, 30, 60, 150.
-   */
+  /// Limits of the height bands, m (z), rising; each limit belongs to the band above. Default: 0,
+  /// 15, 30, 60, 150.
   void AddHeightLimit(double height);
   void RemoveAllHeightLimits();
   int GetNumberOfHeightLimits() const;
   double GetHeightLimit(int index);
   ///@}
 
-  ///@{
-  /** Whether the table weights places by StrikeHeightDensity() at their z. Default: off. */
-  vtkSetMacro(StrikeHeightWeights, bool);
-  vtkGetMacro(StrikeHeightWeights, bool);
-  vtkBooleanMacro(StrikeHeightWeights, bool);
-  ///@}
+  /// Whether the table weights places by StrikeHeightDensity() at their z. Default: off.
+  vtkAvianLidarSwitchMacro(StrikeHeightWeights, false);
 
   /// Density of bird strikes by height above ground, 1/m: 74 % below 152.4 m, uniform there
   /// (assumed); above, the density falls by 32 % per 304.8 m (Dolbeer 2006). 0 below ground. @param
   /// height height, m
   static double StrikeHeightDensity(double height);
 
-  ///@{
-  /** Whether the table also has rows for all other species. Default: off. */
-  vtkSetMacro(AllSpecies, bool);
-  vtkGetMacro(AllSpecies, bool);
-  vtkBooleanMacro(AllSpecies, bool);
-  ///@}
+  /// Whether the table also has rows for all other species. Default: off.
+  vtkAvianLidarSwitchMacro(AllSpecies, false);
+
+  /// Whether the output has `pose_probabilities`, to compare several sensors pose by pose. Default:
+  /// off.
+  vtkAvianLidarSwitchMacro(PoseProbabilities, false);
 
   ///@{
-  /**
-   * Whether the output has `pose_probabilities`, to compare several sensors pose by pose. Default:
-   * off.
-   */
-  vtkSetMacro(PoseProbabilities, bool);
-  vtkGetMacro(PoseProbabilities, bool);
-  vtkBooleanMacro(PoseProbabilities, bool);
-  ///@}
-
-  ///@{
-  /** Input port 2, the places (optional). */
+  /// Input port 2, the places (optional).
   void SetPlacesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
   void SetPlacesData(vtkDataObject* places) { this->SetInputData(2, places); }
   ///@}
@@ -205,20 +153,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  double Bounds[6] = { -1000.0, 1000.0, -1000.0, 1000.0, 0.0, 150.0 };
-  double Spacing[3] = { 20.0, 20.0, 15.0 };
-  std::string Species = "herring gull";
-  std::string SpeciesFileName;
-  bool Gliding = false;
-  double EffectiveArea = 0.0;
-  double Reflectance = 0.3;
-  bool Clutter = true;
-  int RequiredDetections = 2;
-  int NumberOfScans = 3;
   std::vector<double> HeightLimits = { 0.0, 15.0, 30.0, 60.0, 150.0 };
-  bool StrikeHeightWeights = false;
-  bool AllSpecies = false;
-  bool PoseProbabilities = false;
 
 private:
   vtkAvianLidarCoverage(const vtkAvianLidarCoverage&) = delete;
@@ -229,10 +164,10 @@ private:
   // Passes of an execution, as in the superclass.
   void PrepareTargets(const vtkAvianLidarRanks& ranks);
   void PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
-  void View(const vtkAvianLidarRanks& ranks, bool isFirst, vtkPolyData* clutter);
+  void View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter);
   void Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);
 
-  std::string CheckTarget() const;
+  void CheckTarget() const;
   void MakeFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 
   struct vtkTargets;

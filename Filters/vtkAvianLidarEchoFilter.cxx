@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarMovers.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
 #include "vtkAvianLidarScanShape.h"
@@ -74,7 +75,7 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkPolyData* moved = vtkPolyData::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       this->PrepareBeams(ranks, beams);
-      in.Beams.CheckRanks(ranks, this, vtkInternals::WrongWithBeams);
+      in.Beams.CheckRanks(ranks, this);
       this->PrepareSurfaces(ranks, surfaces);
       this->PrepareMovers(ranks, movers);
       this->PrepareTree(ranks, surfaces);
@@ -98,12 +99,12 @@ void vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtk
   avianlidar::includeMovers(in.Setup);
   const bool untimed = in.Setup.movers && in.Beams.beams.size() > 0 && !in.Beams.isTimed;
   ranks.Together(this,
-    [untimed]() -> std::string
+    [untimed]()
     {
-      return untimed
-        ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
-          "in microseconds at which each beam meets the movers (input port 2)"
-        : "";
+      vtkAvianLidarRequire(untimed
+          ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
+            "in microseconds at which each beam meets the movers (input port 2)"
+          : "");
     });
 }
 
@@ -113,16 +114,12 @@ void vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
 {
   vtkInternals& in = *this->Internals;
   ranks.Together(this,
-    [&]() -> std::string
+    [&]()
     {
       avianlidar::planModel(in.Setup);
-      const std::string problem = avianlidar::checkNoise(in.Setup.noise, in.Beams.total);
-      if (!problem.empty())
-      {
-        return "Input port 0 (beams), field data: " + problem;
-      }
+      vtkAvianLidarRequire(avianlidar::checkNoise(in.Setup.noise, in.Beams.total),
+        "Input port 0 (beams), field data: ");
       this->Trace(outputs);
-      return {};
     });
   for (double* count : { &in.TracedRays, &in.TracedBeams, &this->Moved->TouchedBeams })
   {

@@ -81,20 +81,13 @@ public:
     RETURN_MODE_RANGE_UNITS = 4
   };
 
-  ///@{
-  /** Whether to compute photon noise (Eq. 11), where noise can matter. Default: on. */
-  vtkSetMacro(Noise, bool);
-  vtkGetMacro(Noise, bool);
-  vtkBooleanMacro(Noise, bool);
-  ///@}
+  /// Whether to compute photon noise (Eq. 11), where noise can matter. Default: on.
+  vtkAvianLidarSwitchMacro(Noise, true);
 
   ///@{
-  /**
-   * Returns that become points. RETURN_MODE_RANGE_UNITS makes a point of each range unit, as the
-   * paper does. Default: RETURN_MODE_ALL.
-   */
-  vtkSetMacro(ReturnMode, int);
-  vtkGetMacro(ReturnMode, int);
+  /// Returns that become points. RETURN_MODE_RANGE_UNITS makes a point of each range unit, as the
+  /// paper does. Default: RETURN_MODE_ALL.
+  vtkAvianLidarPropertyMacro(ReturnMode, int, RETURN_MODE_ALL);
   void SetReturnModeToAll() { this->SetReturnMode(RETURN_MODE_ALL); }
   void SetReturnModeToStrongest() { this->SetReturnMode(RETURN_MODE_STRONGEST); }
   void SetReturnModeToFirst() { this->SetReturnMode(RETURN_MODE_FIRST); }
@@ -102,15 +95,11 @@ public:
   void SetReturnModeToRangeUnits() { this->SetReturnMode(RETURN_MODE_RANGE_UNITS); }
   ///@}
 
-  ///@{
-  /** Whether to report movers (1 ms of one core per mover); does not affect echoes. Default: on. */
-  vtkSetMacro(ReportMovers, bool);
-  vtkGetMacro(ReportMovers, bool);
-  vtkBooleanMacro(ReportMovers, bool);
-  ///@}
+  /// Whether to report movers (1 ms of one core per mover); does not affect echoes. Default: on.
+  vtkAvianLidarSwitchMacro(ReportMovers, true);
 
   ///@{
-  /** Input port 2, objects that move (optional). */
+  /// Input port 2, objects that move (optional).
   void SetMoversConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
   void SetMoversData(vtkDataObject* movers) { this->SetInputData(2, movers); }
   ///@}
@@ -129,10 +118,6 @@ protected:
   // A pass of an execution, as in the superclass, and the field data of the outputs.
   void PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
-
-  bool Noise = true;
-  int ReturnMode = RETURN_MODE_ALL;
-  bool ReportMovers = true;
 
 private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;

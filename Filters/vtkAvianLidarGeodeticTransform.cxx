@@ -6,6 +6,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -13,7 +14,6 @@
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -43,19 +43,17 @@ public:
       tree ? tree->GetNumberOfPoints() : vtkPointSet::SafeDownCast(whole)->GetNumberOfPoints();
   }
 
-  std::string Problem;
-  bool Aborted = false;
-
-  // Converts `input` into `output`; false if it was bad or the user wants to stop.
-  bool Run(vtkPointSet* input, const std::string& block, vtkPointSet* output)
+  // Converts `input` into `output`.
+  void Run(vtkPointSet* input, const std::string& block, vtkPointSet* output)
   {
     output->ShallowCopy(input);
     const vtkIdType size = input->GetNumberOfPoints();
-    if (size > 0 && !this->PrepareFrame(input->GetFieldData(), output->GetFieldData()))
+    if (size > 0)
     {
-      this->Problem += block.empty() ? "" : " (block '" + block + "')";
-      return false;
+      this->Block = block.empty() ? "" : " (block '" + block + "')";
+      this->PrepareFrame(input->GetFieldData(), output->GetFieldData());
     }
+    const std::string where = " of input port 0" + (block.empty() ? "" : ", block '" + block + "'");
     auto longitudes = Arrays::Make<vtkDoubleArray>(Arrays::Longitude, size);
     auto latitudes = Arrays::Make<vtkDoubleArray>(Arrays::Latitude, size);
     auto heights = Arrays::Make<vtkDoubleArray>(Arrays::Height, size);
@@ -64,15 +62,10 @@ public:
     {
       std::array<double, 3> p;
       input->GetPoint(i, p.data());
-      const std::array<double, 3> geodetic = this->Convert(p, Frame::Geodetic);
+      const auto convert = [&](Frame to) { return this->Convert(p, to, i, where); };
+      const std::array<double, 3> geodetic = convert(Frame::Geodetic);
       const std::array<double, 3> target =
-        this->Target == Frame::Geodetic ? geodetic : this->Convert(p, this->Target);
-      if (!this->Problem.empty())
-      {
-        this->Problem = "point " + std::to_string(i) + " of input port 0" +
-          (block.empty() ? "" : ", block '" + block + "'") + ": " + this->Problem;
-        return false;
-      }
+        this->Target == Frame::Geodetic ? geodetic : convert(this->Target);
       longitudes->SetValue(i, geodetic[0]);
       latitudes->SetValue(i, geodetic[1]);
       heights->SetValue(i, geodetic[2]);
@@ -80,10 +73,7 @@ public:
       {
         moved->SetPoint(i, target.data());
       }
-      if (this->StopAfter())
-      {
-        return false;
-      }
+      this->CountPoint();
     }
     for (vtkDataArray* array : { longitudes.Get(), latitudes.Get(), heights.Get() })
     {
@@ -95,10 +85,9 @@ public:
       // A system that a reader left does not hold for them any more.
       output->GetFieldData()->RemoveArray(Arrays::CrsWkt.name);
     }
-    return true;
   }
 
-  // The same for every block of a composite; stops at the first bad one.
+  // The same for every block of a composite.
   void RunTree(vtkDataObjectTree* input, vtkDataObjectTree* output)
   {
     output->ShallowCopy(input);
@@ -112,15 +101,11 @@ public:
       auto* leaf = vtkPointSet::SafeDownCast(leaves->GetCurrentDataObject());
       if (!leaf)
       {
-        this->Problem = "block '" + name + "' of input port 0 is a " +
-          leaves->GetCurrentDataObject()->GetClassName() + ", expected a vtkPointSet";
-        return;
+        vtkAvianLidarRequire("block '" + name + "' of input port 0 is a " +
+          leaves->GetCurrentDataObject()->GetClassName() + ", expected a vtkPointSet");
       }
       auto converted = vtkSmartPointer<vtkPointSet>::Take(leaf->NewInstance());
-      if (!this->Run(leaf, name, converted))
-      {
-        return;
-      }
+      this->Run(leaf, name, converted);
       output->SetDataSet(leaves, converted);
     }
   }
@@ -129,34 +114,26 @@ private:
   bool Uses(Frame frame) const { return this->Source == frame || this->Target == frame; }
 
   // Sets origin and zone from the field data or the properties; leaves what was used in `output`.
-  bool PrepareFrame(vtkFieldData* fields, vtkFieldData* output)
+  void PrepareFrame(vtkFieldData* fields, vtkFieldData* output)
   {
     const bool automatic = this->Uses(Frame::UTM) && this->Self->UTMZone == 0;
     int zone = this->Self->UTMZone;
     if (this->Uses(Frame::ENU) || automatic)
     {
       double origin[3];
-      if (!this->FindOrigin(fields, origin))
-      {
-        return false;
-      }
+      this->FindOrigin(fields, origin);
       this->Geodesy.setOrigin(origin[0], origin[1], origin[2]);
       zone = automatic ? GeodeticFrame::zoneOf(origin[0], origin[1]) : zone;
-      auto array = Arrays::Make<vtkDoubleArray>(Arrays::GeodeticOrigin, 1, 3);
-      array->SetTypedTuple(0, origin);
-      output->AddArray(array);
+      Arrays::SetFieldVector(output, Arrays::GeodeticOrigin, origin);
     }
     if (this->Uses(Frame::UTM))
     {
       this->Geodesy.setZone(zone);
-      auto array = Arrays::Make<vtkIntArray>(Arrays::UTMZone, 1);
-      array->SetValue(0, zone);
-      output->AddArray(array);
+      Arrays::SetFieldInteger(output, Arrays::UTMZone, zone);
     }
-    return true;
   }
 
-  bool FindOrigin(vtkFieldData* fields, double origin[3])
+  void FindOrigin(vtkFieldData* fields, double origin[3])
   {
     std::string where = "Origin";
     std::copy(this->Self->Origin, this->Self->Origin + 3, origin);
@@ -167,11 +144,11 @@ private:
       array = array ? array : this->Whole->GetFieldData()->GetArray(Arrays::GeodeticOrigin.name);
       if (!array || array->GetNumberOfValues() != 3)
       {
-        this->Problem = "input port 0 has no field data '" +
+        vtkAvianLidarRequire("input port 0 has no field data '" +
           std::string(Arrays::GeodeticOrigin.name) +
           "' with latitude (deg), longitude (deg) and height (m): switch UseFieldDataOrigin off "
-          "and set Origin";
-        return false;
+          "and set Origin" +
+          this->Block);
       }
       for (int i = 0; i < 3; ++i)
       {
@@ -180,38 +157,36 @@ private:
       }
     }
     const std::string bad = GeodeticFrame::checkOrigin(origin[0], origin[1], origin[2]);
-    if (!bad.empty())
-    {
-      this->Problem = where + ": " + bad;
-    }
-    return bad.empty();
+    vtkAvianLidarRequire(bad.empty() ? bad : bad + this->Block, where + ": ");
   }
 
-  std::array<double, 3> Convert(const std::array<double, 3>& point, Frame to)
+  // Converts point `i` of the block that `where` names.
+  std::array<double, 3> Convert(
+    const std::array<double, 3>& point, Frame to, vtkIdType i, const std::string& where)
   {
-    if (this->Problem.empty())
+    std::string problem = GeodeticFrame::checkPoint(this->Source, point);
+    std::array<double, 3> converted = point;
+    if (problem.empty())
     {
-      this->Problem = GeodeticFrame::checkPoint(this->Source, point);
+      converted = this->Geodesy.convert(this->Source, to, point);
+      problem = GeodeticFrame::checkPoint(to, converted);
     }
-    if (!this->Problem.empty())
+    if (!problem.empty())
     {
-      return point;
+      vtkAvianLidarRequire(problem, "point " + std::to_string(i) + where + ": ");
     }
-    const std::array<double, 3> converted = this->Geodesy.convert(this->Source, to, point);
-    this->Problem = GeodeticFrame::checkPoint(to, converted);
     return converted;
   }
 
-  bool StopAfter()
+  void CountPoint()
   {
     constexpr vtkIdType block = 16384;
     if (++this->DonePoints % block == 0)
     {
       this->Self->UpdateProgress(
         static_cast<double>(this->DonePoints) / static_cast<double>(this->TotalPoints));
-      this->Aborted = vtkAvianLidarAbort::Wanted(this->Self);
+      vtkAvianLidarAbort::StopIfWanted(this->Self);
     }
-    return this->Aborted;
   }
 
   vtkAvianLidarGeodeticTransform* Self;
@@ -219,25 +194,12 @@ private:
   Frame Source;
   Frame Target;
   GeodeticFrame Geodesy;
+  std::string Block; // for errors of the origin
   vtkIdType TotalPoints = 0;
   vtkIdType DonePoints = 0;
 };
 
 vtkStandardNewMacro(vtkAvianLidarGeodeticTransform);
-
-//------------------------------------------------------------------------------
-vtkAvianLidarGeodeticTransform::vtkAvianLidarGeodeticTransform()
-  : SourceFrame(FRAME_ENU)
-  , TargetFrame(FRAME_GEODETIC)
-  , MovePoints(false)
-  , UseFieldDataOrigin(true)
-  , Origin{ 0.0, 0.0, 0.0 }
-  , UTMZone(0)
-{
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarGeodeticTransform::~vtkAvianLidarGeodeticTransform() = default;
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarGeodeticTransform::FillInputPortInformation(int, vtkInformation* info)
@@ -253,7 +215,7 @@ int vtkAvianLidarGeodeticTransform::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
@@ -261,33 +223,25 @@ int vtkAvianLidarGeodeticTransform::RequestData(
       if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||
         this->TargetFrame < FRAME_ENU || this->TargetFrame > FRAME_UTM)
       {
-        return "SourceFrame is " + std::to_string(this->SourceFrame) + " and TargetFrame " +
-          std::to_string(this->TargetFrame) +
-          ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM)";
+        vtkAvianLidarRequire("SourceFrame is " + std::to_string(this->SourceFrame) +
+          " and TargetFrame " + std::to_string(this->TargetFrame) +
+          ", expected 0 (ENU), 1 (geodetic), 2 (ECEF) or 3 (UTM)");
       }
-      if (this->UTMZone < -60 || this->UTMZone > 60)
-      {
-        return avianlidar::valueError(
-          "UTMZone", this->UTMZone, "1 to 60, -1 to -60 in the south, or 0 (automatic)");
-      }
-      vtkWork work(this, input);
-      if (auto* tree = vtkDataObjectTree::SafeDownCast(output))
-      {
-        work.RunTree(vtkDataObjectTree::SafeDownCast(input), tree);
-      }
-      else
-      {
-        work.Run(vtkPointSet::SafeDownCast(input), "", vtkPointSet::SafeDownCast(output));
-      }
-      if (!work.Problem.empty())
-      {
-        return "Geodetic transform: " + work.Problem;
-      }
-      if (work.Aborted)
-      {
-        output->Initialize();
-      }
-      return {};
+      vtkAvianLidarRequire(avianlidar::rangeError(
+        "UTMZone", this->UTMZone, -60, 60, "1 to 60, -1 to -60 in the south, or 0 (automatic)"));
+      vtkAvianLidarWithin("Geodetic transform: ",
+        [&]()
+        {
+          vtkWork work(this, input);
+          if (auto* tree = vtkDataObjectTree::SafeDownCast(output))
+          {
+            work.RunTree(vtkDataObjectTree::SafeDownCast(input), tree);
+          }
+          else
+          {
+            work.Run(vtkPointSet::SafeDownCast(input), "", vtkPointSet::SafeDownCast(output));
+          }
+        });
     });
 }
 

@@ -29,8 +29,8 @@
 #ifndef vtkAvianLidarGeodeticTransform_h
 #define vtkAvianLidarGeodeticTransform_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPassInputTypeAlgorithm.h"
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarGeodeticTransform : public vtkPassInputTypeAlgorithm
@@ -49,9 +49,8 @@ public:
   };
 
   ///@{
-  /** Frame in which the points are given. Default FRAME_ENU. */
-  vtkSetMacro(SourceFrame, int);
-  vtkGetMacro(SourceFrame, int);
+  /// Frame in which the points are given. Default FRAME_ENU.
+  vtkAvianLidarPropertyMacro(SourceFrame, int, FRAME_ENU);
   void SetSourceFrameToENU() { this->SetSourceFrame(FRAME_ENU); }
   void SetSourceFrameToGeodetic() { this->SetSourceFrame(FRAME_GEODETIC); }
   void SetSourceFrameToECEF() { this->SetSourceFrame(FRAME_ECEF); }
@@ -59,59 +58,35 @@ public:
   ///@}
 
   ///@{
-  /** Frame to which the points are moved if MovePoints is on. Default FRAME_GEODETIC. */
-  vtkSetMacro(TargetFrame, int);
-  vtkGetMacro(TargetFrame, int);
+  /// Frame to which the points are moved if MovePoints is on. Default FRAME_GEODETIC.
+  vtkAvianLidarPropertyMacro(TargetFrame, int, FRAME_GEODETIC);
   void SetTargetFrameToENU() { this->SetTargetFrame(FRAME_ENU); }
   void SetTargetFrameToGeodetic() { this->SetTargetFrame(FRAME_GEODETIC); }
   void SetTargetFrameToECEF() { this->SetTargetFrame(FRAME_ECEF); }
   void SetTargetFrameToUTM() { this->SetTargetFrame(FRAME_UTM); }
   ///@}
 
-  ///@{
-  /** Whether points are moved to TargetFrame; otherwise only arrays are added. Default: off. */
-  vtkSetMacro(MovePoints, bool);
-  vtkGetMacro(MovePoints, bool);
-  vtkBooleanMacro(MovePoints, bool);
-  ///@}
+  /// Whether points are moved to TargetFrame; otherwise only arrays are added. Default: off.
+  vtkAvianLidarSwitchMacro(MovePoints, false);
 
-  ///@{
-  /** Whether the origin is the field data `geodetic_origin` of block or input. Default: on. */
-  vtkSetMacro(UseFieldDataOrigin, bool);
-  vtkGetMacro(UseFieldDataOrigin, bool);
-  vtkBooleanMacro(UseFieldDataOrigin, bool);
-  ///@}
+  /// Whether the origin is the field data `geodetic_origin` of block or input. Default: on.
+  vtkAvianLidarSwitchMacro(UseFieldDataOrigin, true);
 
-  ///@{
-  /**
-   * Origin for ENU and automatic UTM, if UseFieldDataOrigin is off: latitude in [-90, 90],
-   * longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
-   */
-  vtkSetVector3Macro(Origin, double);
-  vtkGetVector3Macro(Origin, double);
-  ///@}
+  /// Origin for ENU and automatic UTM, if UseFieldDataOrigin is off: latitude in [-90, 90],
+  /// longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Origin, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Zone of UTM: 1 to 60 north, -1 to -60 south, 0 the zone of the origin. Default 0. */
-  vtkSetMacro(UTMZone, int);
-  vtkGetMacro(UTMZone, int);
-  ///@}
+  /// Zone of UTM: 1 to 60 north, -1 to -60 south, 0 the zone of the origin. Default 0.
+  vtkAvianLidarPropertyMacro(UTMZone, int, 0);
 
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
-  vtkAvianLidarGeodeticTransform();
-  ~vtkAvianLidarGeodeticTransform() override;
+  vtkAvianLidarGeodeticTransform() = default;
+  ~vtkAvianLidarGeodeticTransform() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  int SourceFrame;
-  int TargetFrame;
-  bool MovePoints;
-  bool UseFieldDataOrigin;
-  double Origin[3];
-  int UTMZone;
 
 private:
   vtkAvianLidarGeodeticTransform(const vtkAvianLidarGeodeticTransform&) = delete;

@@ -5,6 +5,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkDoubleArray.h"
@@ -61,20 +62,13 @@ vtkStandardNewMacro(vtkAvianLidarHSBColorMap);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarHSBColorMap::vtkAvianLidarHSBColorMap()
-  : UseFieldDataRange(true)
-  , EnergyRange{ 2e-6, 6.25e-5 }
-  , Executed(false)
-  , LastLimits{ 2e-6, 6.25e-5 }
 {
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, Arrays::Energy.name);
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarHSBColorMap::~vtkAvianLidarHSBColorMap() = default;
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
+void vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limits[2])
 {
   limits[0] = this->EnergyRange[0];
   limits[1] = this->EnergyRange[1];
@@ -87,10 +81,10 @@ std::string vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limi
     {
       if (!Arrays::GetFieldValue(input->GetFieldData(), names[i], limits[i]))
       {
-        return "The field data of input port 0 hold no finite number '" +
+        vtkAvianLidarRequire("The field data of input port 0 hold no finite number '" +
           std::string(names[i].name) +
           "' (J): colour echoes of the echo filter, or switch UseFieldDataRange off and set "
-          "EnergyRange";
+          "EnergyRange");
       }
     }
   }
@@ -99,9 +93,8 @@ std::string vtkAvianLidarHSBColorMap::FindLimits(vtkPointSet* input, double limi
     std::ostringstream text;
     text << "The energy limits in " << where << " are " << limits[0] << " and " << limits[1]
          << " J, expected two finite numbers, the lower one first";
-    return text.str();
+    vtkAvianLidarRequire(text.str());
   }
-  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -109,7 +102,7 @@ int vtkAvianLidarHSBColorMap::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
@@ -119,7 +112,7 @@ int vtkAvianLidarHSBColorMap::RequestData(
         output->ShallowCopy(input);
         output->GetPointData()->AddArray(Arrays::Make<vtkDoubleArray>(Arrays::Hue));
         output->GetPointData()->AddArray(Arrays::Make<vtkUnsignedCharArray>(Arrays::Rgb, 0, 3));
-        return {};
+        return;
       }
       vtkInformation* wanted = this->GetInputArrayInformation(0);
       const std::string name = vtkAvianLidarText(
@@ -129,21 +122,17 @@ int vtkAvianLidarHSBColorMap::RequestData(
       if (!energies || association != vtkDataObject::FIELD_ASSOCIATION_POINTS ||
         energies->GetNumberOfTuples() != input->GetNumberOfPoints())
       {
-        return "Input port 0 has no numeric point array '" + name +
-          "' (energies in J, one component)";
+        vtkAvianLidarRequire(
+          "Input port 0 has no numeric point array '" + name + "' (energies in J, one component)");
       }
       if (energies->GetNumberOfComponents() != 1)
       {
-        return "Point array '" + name + "' of input port 0 has " +
+        vtkAvianLidarRequire("Point array '" + name + "' of input port 0 has " +
           std::to_string(energies->GetNumberOfComponents()) +
-          " components, expected 1 (energies in J)";
+          " components, expected 1 (energies in J)");
       }
       double limits[2];
-      const std::string badLimits = this->FindLimits(input, limits);
-      if (!badLimits.empty())
-      {
-        return badLimits;
-      }
+      this->FindLimits(input, limits);
       output->ShallowCopy(input);
       const vtkIdType withoutNumber = Colour(energies, limits, output->GetPointData());
       if (withoutNumber > 0)
@@ -153,7 +142,6 @@ int vtkAvianLidarHSBColorMap::RequestData(
       }
       std::copy(limits, limits + 2, this->LastLimits);
       this->Executed = true;
-      return {};
     });
 }
 

@@ -25,9 +25,9 @@
 #ifndef vtkAvianLidarHSBColorMap_h
 #define vtkAvianLidarHSBColorMap_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
-#include "vtkNew.h"              // For vtkNew
+#include "vtkAvianLidarProperties.h"
+#include "vtkNew.h" // For vtkNew
 #include "vtkPointSetAlgorithm.h"
 
 class vtkLookupTable;
@@ -39,18 +39,11 @@ public:
   vtkTypeMacro(vtkAvianLidarHSBColorMap, vtkPointSetAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /** Whether field data `lower_energy_limit`, `upper_energy_limit` are the limits. Default: on. */
-  vtkSetMacro(UseFieldDataRange, bool);
-  vtkGetMacro(UseFieldDataRange, bool);
-  vtkBooleanMacro(UseFieldDataRange, bool);
-  ///@}
+  /// Whether field data `lower_energy_limit`, `upper_energy_limit` are the limits. Default: on.
+  vtkAvianLidarSwitchMacro(UseFieldDataRange, true);
 
-  ///@{
-  /** Qlow and Qhigh if UseFieldDataRange is off, J. Default (2e-6, 6.25e-5), paper, Table 2. */
-  vtkSetVector2Macro(EnergyRange, double);
-  vtkGetVector2Macro(EnergyRange, double);
-  ///@}
+  /// Qlow and Qhigh if UseFieldDataRange is off, J. Default (2e-6, 6.25e-5), paper, Table 2.
+  vtkAvianLidarVectorMacro(EnergyRange, 2, 2e-6, 6.25e-5);
 
   /// Lookup table of these colours for a mapper or a scalar bar, between the limits of the last
   /// execution or, before the first execution, of EnergyRange. This object owns the table, and the
@@ -66,22 +59,19 @@ public:
 
 protected:
   vtkAvianLidarHSBColorMap();
-  ~vtkAvianLidarHSBColorMap() override;
+  ~vtkAvianLidarHSBColorMap() override = default;
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  bool UseFieldDataRange;
-  double EnergyRange[2];
 
 private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;
   void operator=(const vtkAvianLidarHSBColorMap&) = delete;
 
-  // Finds the limits in use. Returns an error text if the limits are bad, else an empty string.
-  std::string FindLimits(vtkPointSet* input, double limits[2]);
+  // Finds the limits in use. Throws std::runtime_error if they are bad.
+  void FindLimits(vtkPointSet* input, double limits[2]);
 
-  bool Executed;
-  double LastLimits[2];
+  bool Executed = false;
+  double LastLimits[2] = { 2e-6, 6.25e-5 };
   vtkNew<vtkLookupTable> Table;
 };
 

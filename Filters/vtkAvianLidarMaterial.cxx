@@ -9,6 +9,7 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"
@@ -149,20 +150,14 @@ std::vector<std::string> MaterialNames(
   return names;
 }
 
-void SetConstant(vtkPolyData* data, const Arrays::Name& name, int value)
-{
-  auto array = Arrays::Make<vtkIntArray>(name, data->GetNumberOfCells());
-  array->FillValue(value);
-  data->GetCellData()->AddArray(array);
-}
-
 void AssignMaterial(const Assignment& what, vtkFieldData* whole, vtkPolyData* output)
 {
   vtkFieldData* fields = output->GetFieldData();
   const std::vector<std::string> names = MaterialNames(fields, whole, what.MaterialName);
   const auto index = std::find(names.begin(), names.end(), what.MaterialName) - names.begin();
   Arrays::SetFieldStrings(fields, Arrays::MaterialNames, names);
-  SetConstant(output, Arrays::MaterialId, static_cast<int>(index));
+  output->GetCellData()->AddArray(
+    Arrays::Constant(Arrays::MaterialId, output->GetNumberOfCells(), static_cast<int>(index)));
   Materials::AddCoefficients(output->GetCellData(), output->GetNumberOfCells(),
     [&](vtkIdType) -> const avianlidar::Material& { return *what.Coefficients; });
 }
@@ -184,7 +179,8 @@ void AssignObject(
   if (oneObject || !output->GetCellData()->GetArray(Arrays::ObjectId.name))
   {
     const int known = what.ObjectId >= 0 ? what.ObjectId : FirstObjectId(output);
-    SetConstant(output, Arrays::ObjectId, known >= 0 ? known : number);
+    output->GetCellData()->AddArray(
+      Arrays::Constant(Arrays::ObjectId, output->GetNumberOfCells(), known >= 0 ? known : number));
   }
   const std::vector<std::string> classes = StringsOf(fields, Arrays::ObjectClasses);
   if (oneObject && classes.size() > 1)
@@ -203,18 +199,14 @@ void AssignObject(
   }
 }
 
-// Empty if cells can be counted, else what is wrong: VTK counts -1 where offsets are missing.
-std::string CheckCells(vtkPolyData* surface)
+// Cells must be countable: VTK counts -1 where offsets are missing.
+void RequireCells(vtkPolyData* surface)
 {
   for (vtkCellArray* cells :
     { surface->GetVerts(), surface->GetLines(), surface->GetPolys(), surface->GetStrips() })
   {
-    if (cells->GetNumberOfCells() < 0)
-    {
-      return vtkAvianLidarOffsetsError(cells);
-    }
+    vtkAvianLidarRequire(cells->GetNumberOfCells() < 0 ? vtkAvianLidarOffsetsError(cells) : "");
   }
-  return std::string();
 }
 
 // The kernel says "kd + ks is 1.2" or "roughness is 2"; the properties are Kd, Ks, Roughness.
@@ -230,38 +222,35 @@ std::string NameCoefficients(std::string problem)
   return problem;
 }
 
-// Empty if the names that are there are texts, else what is wrong.
-std::string CheckNames(vtkDataObject* data)
+// The names that are there must be texts.
+void RequireNames(vtkDataObject* data)
 {
-  const std::string wrong = Arrays::CheckText(data->GetFieldData(), Arrays::MaterialNames);
-  return wrong.empty() ? Arrays::CheckText(data->GetFieldData(), Arrays::ObjectNames) : wrong;
+  Arrays::RequireText(data->GetFieldData(), Arrays::MaterialNames);
+  Arrays::RequireText(data->GetFieldData(), Arrays::ObjectNames);
 }
 
-// Empty if all chosen leaves are vtkPolyData, else what is wrong.
-std::string CheckLeaves(const std::vector<Leaf>& leaves)
+// All chosen leaves must be good vtkPolyData.
+void RequireLeaves(const std::vector<Leaf>& leaves)
 {
   for (std::size_t i = 0; i < leaves.size(); ++i)
   {
+    if (!leaves[i].Chosen)
+    {
+      continue;
+    }
     const std::string block =
       "Input port 0, block " + std::to_string(i) + " '" + leaves[i].Name + "'";
     auto* surface = vtkPolyData::SafeDownCast(leaves[i].Data);
-    if (leaves[i].Chosen && !surface)
-    {
-      return block + " is a " + leaves[i].Data->GetClassName() +
-        ", expected vtkPolyData (use Extract Surface first)";
-    }
-    const std::string badCells = leaves[i].Chosen ? CheckCells(surface) : std::string();
-    if (!badCells.empty())
-    {
-      return block + ": " + badCells;
-    }
-    const std::string badNames = leaves[i].Chosen ? CheckNames(leaves[i].Data) : std::string();
-    if (!badNames.empty())
-    {
-      return block + ": " + badNames;
-    }
+    vtkAvianLidarRequire(surface ? ""
+                                 : block + " is a " + leaves[i].Data->GetClassName() +
+          ", expected vtkPolyData (use Extract Surface first)");
+    vtkAvianLidarWithin(block + ": ",
+      [surface]()
+      {
+        RequireCells(surface);
+        RequireNames(surface);
+      });
   }
-  return std::string();
 }
 
 void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDataObjectTree* input,
@@ -295,12 +284,6 @@ void AssignToTree(const Assignment& what, const std::vector<Leaf>& leaves, vtkDa
 }
 
 vtkStandardNewMacro(vtkAvianLidarMaterial);
-
-//------------------------------------------------------------------------------
-vtkAvianLidarMaterial::vtkAvianLidarMaterial() = default;
-
-//------------------------------------------------------------------------------
-vtkAvianLidarMaterial::~vtkAvianLidarMaterial() = default;
 
 //------------------------------------------------------------------------------
 const char* vtkAvianLidarMaterial::GetMaterialName(int material)
@@ -359,7 +342,7 @@ int vtkAvianLidarMaterial::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
@@ -367,13 +350,11 @@ int vtkAvianLidarMaterial::RequestData(
       const Materials::NamedMaterial* named = Named(this->Material);
       if (!named && this->Material != MATERIAL_CUSTOM && this->Material != MATERIAL_UNCHANGED)
       {
-        return avianlidar::valueError(
-          "Material", this->Material, "0 (Wall) to 8 (Plumage), or -1 (unchanged)");
+        vtkAvianLidarRequire(avianlidar::valueError(
+          "Material", this->Material, "0 (Wall) to 8 (Plumage), or -1 (unchanged)"));
       }
-      if (this->ObjectId < -1)
-      {
-        return avianlidar::valueError("ObjectId", this->ObjectId, "at least 0, or -1 (automatic)");
-      }
+      vtkAvianLidarRequire(avianlidar::rangeError(
+        "ObjectId", this->ObjectId, -1, VTK_INT_MAX, "at least 0, or -1 (automatic)"));
       Assignment what;
       what.ObjectId = this->ObjectId;
       what.ObjectName = this->NameOfObject;
@@ -387,40 +368,28 @@ int vtkAvianLidarMaterial::RequestData(
         what.MaterialName = "Custom";
         what.Coefficients = { this->Kd, this->Ks, this->Kp, this->Roughness };
       }
-      const std::string badMaterial =
-        what.Coefficients ? avianlidar::checkMaterial(*what.Coefficients) : std::string();
-      if (!badMaterial.empty())
+      if (what.Coefficients)
       {
-        return "Material: " + NameCoefficients(badMaterial);
+        vtkAvianLidarRequire(
+          NameCoefficients(avianlidar::checkMaterial(*what.Coefficients)), "Material: ");
       }
-      const std::string badNames = CheckNames(input);
-      if (!badNames.empty())
-      {
-        return "Input port 0, " + badNames;
-      }
+      vtkAvianLidarWithin("Input port 0, ", [input]() { RequireNames(input); });
       if (auto* surface = vtkPolyData::SafeDownCast(output))
       {
-        const std::string badCells = CheckCells(vtkPolyData::SafeDownCast(input));
-        if (!badCells.empty())
-        {
-          return "Input port 0, " + badCells;
-        }
+        vtkAvianLidarWithin(
+          "Input port 0, ", [input]() { RequireCells(vtkPolyData::SafeDownCast(input)); });
         surface->ShallowCopy(input);
         if (what.Coefficients)
         {
           AssignMaterial(what, nullptr, surface);
         }
         AssignObject(what, 0, "", surface);
-        return {};
+        return;
       }
       std::vector<Leaf> leaves;
       const std::string pattern = this->BlockNamePattern.empty() ? "*" : this->BlockNamePattern;
       FindLeaves(input, "", pattern, false, leaves);
-      const std::string badLeaf = CheckLeaves(leaves);
-      if (!badLeaf.empty())
-      {
-        return badLeaf;
-      }
+      RequireLeaves(leaves);
       const auto chosen = [](const Leaf& leaf) { return leaf.Chosen; };
       if (!leaves.empty() && std::none_of(leaves.begin(), leaves.end(), chosen))
       {
@@ -429,7 +398,6 @@ int vtkAvianLidarMaterial::RequestData(
       }
       AssignToTree(what, leaves, vtkDataObjectTree::SafeDownCast(input),
         vtkDataObjectTree::SafeDownCast(output));
-      return {};
     });
 }
 

@@ -26,8 +26,8 @@
 #ifndef vtkAvianLidarMaterial_h
 #define vtkAvianLidarMaterial_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPassInputTypeAlgorithm.h"
 
 #include <string> // For std::string
@@ -54,13 +54,10 @@ public:
   };
 
   ///@{
-  /**
-   * The material: one from the paper's Table 1 (wall, glass, metal, wood); one that only scatters,
-   * at 905 nm (concrete, asphalt, grass of the USGS Spectral Library 7; plumage, assumed); custom,
-   * by Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
-   */
-  vtkSetMacro(Material, int);
-  vtkGetMacro(Material, int);
+  /// The material: one from the paper's Table 1 (wall, glass, metal, wood); one that only scatters,
+  /// at 905 nm (concrete, asphalt, grass of the USGS Spectral Library 7; plumage, assumed); custom,
+  /// by Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
+  vtkAvianLidarPropertyMacro(Material, int, MATERIAL_WALL);
   void SetMaterialToWall() { this->SetMaterial(MATERIAL_WALL); }
   void SetMaterialToGlass() { this->SetMaterial(MATERIAL_GLASS); }
   void SetMaterialToMetal() { this->SetMaterial(MATERIAL_METAL); }
@@ -73,11 +70,9 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Name of a value of Material, source of its coefficients ("assumed" if not measured), one of its
-   * coefficients (0 kd, 1 ks, 2 kp, 3 roughness) and its colour (red, green, blue, 0 to 1).
-   * MATERIAL_CUSTOM and unknown values give null, NaN, or false with the colour unchanged.
-   */
+  /// Name of a value of Material, source of its coefficients ("assumed" if not measured), one of
+  /// its coefficients (0 kd, 1 ks, 2 kp, 3 roughness) and its colour (red, green, blue, 0 to 1).
+  /// MATERIAL_CUSTOM and unknown values give null, NaN, or false with the colour unchanged.
   static const char* GetMaterialName(int material);
   static const char* GetMaterialSource(int material);
   static double GetMaterialCoefficient(int material, int coefficient);
@@ -87,72 +82,38 @@ public:
   /// Name of the cell array of a coefficient, counted from 0; null beyond the last one.
   static const char* GetCoefficientName(int coefficient);
 
-  ///@{
-  /** Diffuse coefficient of a custom material, 1, 0 to 1 - Ks. Default 0.146. */
-  vtkSetMacro(Kd, double);
-  vtkGetMacro(Kd, double);
-  ///@}
+  /// Diffuse coefficient of a custom material, 1, 0 to 1 - Ks. Default 0.146.
+  vtkAvianLidarPropertyMacro(Kd, double, 0.146);
 
-  ///@{
-  /** Specular coefficient of a custom material, 1, 0 to 1 - Kd. Default 0.054. */
-  vtkSetMacro(Ks, double);
-  vtkGetMacro(Ks, double);
-  ///@}
+  /// Specular coefficient of a custom material, 1, 0 to 1 - Kd. Default 0.054.
+  vtkAvianLidarPropertyMacro(Ks, double, 0.054);
 
-  ///@{
-  /** Glossiness of a custom material, 1, 0 to 1e6. Default 112. */
-  vtkSetMacro(Kp, double);
-  vtkGetMacro(Kp, double);
-  ///@}
+  /// Glossiness of a custom material, 1, 0 to 1e6. Default 112.
+  vtkAvianLidarPropertyMacro(Kp, double, 112.0);
 
-  ///@{
-  /** Standard deviation of facet slopes of a custom material, rad, 0 to pi/2. Default 0. */
-  vtkSetMacro(Roughness, double);
-  vtkGetMacro(Roughness, double);
-  ///@}
+  /// Standard deviation of facet slopes of a custom material, rad, 0 to pi/2. Default 0.
+  vtkAvianLidarPropertyMacro(Roughness, double, 0.0);
 
-  ///@{
-  /**
-   * Object id of the surfaces, at least 0; or -1, the default: leaves keep their ids, and a leaf
-   * without ids gets its number in leaf order. Ids that are not unique in a scene are replaced when
-   * surfaces are merged.
-   */
-  vtkSetMacro(ObjectId, int);
-  vtkGetMacro(ObjectId, int);
-  ///@}
+  /// Object id of the surfaces, at least 0; or -1, the default: leaves keep their ids, and a leaf
+  /// without ids gets its number in leaf order. Ids that are not unique in a scene are replaced
+  /// when surfaces are merged.
+  vtkAvianLidarPropertyMacro(ObjectId, int, -1);
 
-  ///@{
-  /** Name of each leaf, which becomes an object; empty: name of leaf or block. Default: empty. */
-  vtkSetMacro(NameOfObject, std::string);
-  vtkGetMacro(NameOfObject, std::string);
-  ///@}
+  /// Name of each leaf, which becomes an object; empty: name of leaf or block. Default: empty.
+  vtkAvianLidarPropertyMacro(NameOfObject, std::string, {});
 
-  ///@{
-  /**
-   * Pattern for the names of blocks that get the material with all blocks inside, with `*` (any
-   * text) and `?` (any character). Default `*`: all blocks, as with an empty pattern.
-   */
-  vtkSetMacro(BlockNamePattern, std::string);
-  vtkGetMacro(BlockNamePattern, std::string);
-  ///@}
+  /// Pattern for the names of blocks that get the material with all blocks inside, with `*` (any
+  /// text) and `?` (any character). Default `*`: all blocks, as with an empty pattern.
+  vtkAvianLidarPropertyMacro(BlockNamePattern, std::string, "*");
 
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
-  vtkAvianLidarMaterial();
-  ~vtkAvianLidarMaterial() override;
+  vtkAvianLidarMaterial() = default;
+  ~vtkAvianLidarMaterial() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  int Material = MATERIAL_WALL;
-  double Kd = 0.146;
-  double Ks = 0.054;
-  double Kp = 112.0;
-  double Roughness = 0.0;
-  int ObjectId = -1;
-  std::string NameOfObject;
-  std::string BlockNamePattern = "*";
 
 private:
   vtkAvianLidarMaterial(const vtkAvianLidarMaterial&) = delete;

@@ -7,16 +7,16 @@
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -28,11 +28,9 @@ using vtkAvianLidarMedia::Word;
 
 const Word& Chosen(const char* property, int value, const std::vector<Word>& all)
 {
-  if (value < 0 || value >= static_cast<int>(all.size()))
-  {
-    const std::string expected = "0 to " + std::to_string(all.size() - 1);
-    throw std::runtime_error(avianlidar::valueError(property, value, expected.c_str()));
-  }
+  const int last = static_cast<int>(all.size()) - 1;
+  vtkAvianLidarRequire(
+    avianlidar::rangeError(property, value, 0, last, "0 to " + std::to_string(last)));
   return all[value];
 }
 
@@ -46,12 +44,6 @@ avianlidar::Json Triple(const double (&v)[3])
   return { v[0], v[1], v[2] };
 }
 }
-
-//------------------------------------------------------------------------------
-vtkAvianLidarMedium::vtkAvianLidarMedium() = default;
-
-//------------------------------------------------------------------------------
-vtkAvianLidarMedium::~vtkAvianLidarMedium() = default;
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarMedium::FillInputPortInformation(int port, vtkInformation* info)
@@ -103,11 +95,7 @@ std::string vtkAvianLidarMedium::Description() const
 int vtkAvianLidarMedium::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  if (vtkInformation* input = inputVector[0]->GetInformationObject(0))
-  {
-    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  }
+  vtkAvianLidarRanks::RequestAll(inputVector[0]);
   return 1;
 }
 
@@ -116,13 +104,10 @@ int vtkAvianLidarMedium::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
-      if (!(this->DisplaySize > 0.0 && this->DisplaySize <= 1e9))
-      {
-        return avianlidar::valueError(
-          "DisplaySize", this->DisplaySize, "more than 0, at most 1e9 m");
-      }
+      vtkAvianLidarRequire(avianlidar::rangeError("DisplaySize", this->DisplaySize,
+        avianlidar::AboveZero, 1e9, "more than 0, at most 1e9 m"));
       auto drawn = vtkAvianLidarMedia::Surface(
         this->Description(), vtkPolyData::GetData(inputVector[0]), this->DisplaySize);
       vtkFieldData* fields = drawn->GetFieldData();
@@ -132,7 +117,6 @@ int vtkAvianLidarMedium::RequestData(
       vtkAvianLidarArrays::SetFieldStrings(
         fields, vtkAvianLidarArrays::ObjectClasses, { isObject ? "vegetation" : "air" });
       vtkPolyData::GetData(outputVector)->ShallowCopy(drawn);
-      return {};
     });
 }
 

@@ -30,8 +30,8 @@
 #ifndef vtkAvianLidarMedium_h
 #define vtkAvianLidarMedium_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // For std::string
@@ -64,9 +64,8 @@ public:
   };
 
   ///@{
-  /** Kind of the medium. Default KIND_FOG. */
-  vtkSetMacro(Kind, int);
-  vtkGetMacro(Kind, int);
+  /// Kind of the medium. Default KIND_FOG.
+  vtkAvianLidarPropertyMacro(Kind, int, KIND_FOG);
   void SetKindToHaze() { this->SetKind(KIND_HAZE); }
   void SetKindToFog() { this->SetKind(KIND_FOG); }
   void SetKindToDrizzle() { this->SetKind(KIND_DRIZZLE); }
@@ -76,52 +75,29 @@ public:
   void SetKindToCustom() { this->SetKind(KIND_CUSTOM); }
   ///@}
 
-  ///@{
-  /** Visibility, m, 0.001 to 1e9. Default 300. */
-  vtkSetMacro(Visibility, double);
-  vtkGetMacro(Visibility, double);
-  ///@}
+  /// Visibility, m, 0.001 to 1e9. Default 300.
+  vtkAvianLidarPropertyMacro(Visibility, double, 300.0);
+
+  /// Rain rate, mm/h, 1e-6 to 500. Default 10.
+  vtkAvianLidarPropertyMacro(RainRate, double, 10.0);
+
+  /// One-sided leaf area per volume, m2/m3, 1e-6 to 1000. Default 1 (assumed; crowns: 0.3 to 3).
+  vtkAvianLidarPropertyMacro(LeafAreaDensity, double, 1.0);
+
+  /// Extinction mu of KIND_CUSTOM, 1/m, 0 to 1e30. Default 0.01.
+  vtkAvianLidarPropertyMacro(Extinction, double, 0.01);
+
+  /// Ratio S of extinction to backscatter of KIND_CUSTOM, sr, 0.001 to 1e9. Default 18.8.
+  vtkAvianLidarPropertyMacro(BackscatterRatio, double, 18.8);
+
+  /// Share of drops or leaves that change from scan to scan, 1, 0 to 1; -1, the default: by the
+  /// kind (1 for drops and flakes, 0.3 for leaves, assumed). Not used for haze and fog.
+  vtkAvianLidarPropertyMacro(RenewedShare, double, -1.0);
 
   ///@{
-  /** Rain rate, mm/h, 1e-6 to 500. Default 10. */
-  vtkSetMacro(RainRate, double);
-  vtkGetMacro(RainRate, double);
-  ///@}
-
-  ///@{
-  /** One-sided leaf area per volume, m2/m3, 1e-6 to 1000. Default 1 (assumed; crowns: 0.3 to 3). */
-  vtkSetMacro(LeafAreaDensity, double);
-  vtkGetMacro(LeafAreaDensity, double);
-  ///@}
-
-  ///@{
-  /** Extinction mu of KIND_CUSTOM, 1/m, 0 to 1e30. Default 0.01. */
-  vtkSetMacro(Extinction, double);
-  vtkGetMacro(Extinction, double);
-  ///@}
-
-  ///@{
-  /** Ratio S of extinction to backscatter of KIND_CUSTOM, sr, 0.001 to 1e9. Default 18.8. */
-  vtkSetMacro(BackscatterRatio, double);
-  vtkGetMacro(BackscatterRatio, double);
-  ///@}
-
-  ///@{
-  /**
-   * Share of drops or leaves that change from scan to scan, 1, 0 to 1; -1, the default: by the kind
-   * (1 for drops and flakes, 0.3 for leaves, assumed). Not used for haze and fog.
-   */
-  vtkSetMacro(RenewedShare, double);
-  vtkGetMacro(RenewedShare, double);
-  ///@}
-
-  ///@{
-  /**
-   * Region of the medium: everywhere; in a layer between Bottom and Top; in a box or ellipsoid of
-   * Lengths about Center, turned by Heading; inside the surface of the input. Default SHAPE_LAYER.
-   */
-  vtkSetMacro(Shape, int);
-  vtkGetMacro(Shape, int);
+  /// Region of the medium: everywhere; in a layer between Bottom and Top; in a box or ellipsoid of
+  /// Lengths about Center, turned by Heading; inside the surface of the input. Default SHAPE_LAYER.
+  vtkAvianLidarPropertyMacro(Shape, int, SHAPE_LAYER);
   void SetShapeToEverywhere() { this->SetShape(SHAPE_EVERYWHERE); }
   void SetShapeToLayer() { this->SetShape(SHAPE_LAYER); }
   void SetShapeToBox() { this->SetShape(SHAPE_BOX); }
@@ -129,87 +105,42 @@ public:
   void SetShapeToSurface() { this->SetShape(SHAPE_SURFACE); }
   ///@}
 
-  ///@{
-  /** Lower limit of a layer, m, below Top. Default -1000. */
-  vtkSetMacro(Bottom, double);
-  vtkGetMacro(Bottom, double);
-  ///@}
+  /// Lower limit of a layer, m, below Top. Default -1000.
+  vtkAvianLidarPropertyMacro(Bottom, double, -1000.0);
 
-  ///@{
-  /** Upper limit of a layer, m. Default 20. */
-  vtkSetMacro(Top, double);
-  vtkGetMacro(Top, double);
-  ///@}
+  /// Upper limit of a layer, m. Default 20.
+  vtkAvianLidarPropertyMacro(Top, double, 20.0);
 
-  ///@{
-  /** Height above Top over which the density of a layer falls to 1/e, m, 0 to 1e6. Default 5. */
-  vtkSetMacro(Softness, double);
-  vtkGetMacro(Softness, double);
-  ///@}
+  /// Height above Top over which the density of a layer falls to 1/e, m, 0 to 1e6. Default 5.
+  vtkAvianLidarPropertyMacro(Softness, double, 5.0);
 
-  ///@{
-  /** Centre of a box or an ellipsoid, m. Default (0, 0, 0). */
-  vtkSetVector3Macro(Center, double);
-  vtkGetVector3Macro(Center, double);
-  ///@}
+  /// Centre of a box or an ellipsoid, m. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Center, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Full side lengths of a box or axes of an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20). */
-  vtkSetVector3Macro(Lengths, double);
-  vtkGetVector3Macro(Lengths, double);
-  ///@}
+  /// Full side lengths of a box or axes of an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20).
+  vtkAvianLidarVectorMacro(Lengths, 3, 100.0, 100.0, 20.0);
 
-  ///@{
-  /** Direction of the second of the Lengths, deg from north, clockwise. Default 0. */
-  vtkSetMacro(Heading, double);
-  vtkGetMacro(Heading, double);
-  ///@}
+  /// Direction of the second of the Lengths, deg from north, clockwise. Default 0.
+  vtkAvianLidarPropertyMacro(Heading, double, 0.0);
 
-  ///@{
-  /** Velocity, m/s; the medium is in its given place at time 0 of the beams. Default (0, 0, 0). */
-  vtkSetVector3Macro(Velocity, double);
-  vtkGetVector3Macro(Velocity, double);
-  ///@}
+  /// Velocity, m/s; the medium is in its given place at time 0 of the beams. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Velocity, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Name of the medium and of an object of foliage; empty: block's name. Default "medium". */
-  vtkSetMacro(Name, std::string);
-  vtkGetMacro(Name, std::string);
-  ///@}
+  /// Name of the medium and of an object of foliage; empty: block's name. Default "medium".
+  vtkAvianLidarPropertyMacro(Name, std::string, "medium");
 
-  ///@{
-  /** Side of the displayed part of a layer or of SHAPE_EVERYWHERE, m, above 0. Default 2000. */
-  vtkSetMacro(DisplaySize, double);
-  vtkGetMacro(DisplaySize, double);
-  ///@}
+  /// Side of the displayed part of a layer or of SHAPE_EVERYWHERE, m, above 0. Default 2000.
+  vtkAvianLidarPropertyMacro(DisplaySize, double, 2000.0);
 
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
-  vtkAvianLidarMedium();
-  ~vtkAvianLidarMedium() override;
+  vtkAvianLidarMedium() = default;
+  ~vtkAvianLidarMedium() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  int Kind = KIND_FOG;
-  double Visibility = 300.0;
-  double RainRate = 10.0;
-  double LeafAreaDensity = 1.0;
-  double Extinction = 0.01;
-  double BackscatterRatio = 18.8;
-  double RenewedShare = -1.0;
-  int Shape = SHAPE_LAYER;
-  double Bottom = -1000.0;
-  double Top = 20.0;
-  double Softness = 5.0;
-  double Center[3] = { 0.0, 0.0, 0.0 };
-  double Lengths[3] = { 100.0, 100.0, 20.0 };
-  double Heading = 0.0;
-  double Velocity[3] = { 0.0, 0.0, 0.0 };
-  std::string Name = "medium";
-  double DisplaySize = 2000.0;
 
 private:
   vtkAvianLidarMedium(const vtkAvianLidarMedium&) = delete;

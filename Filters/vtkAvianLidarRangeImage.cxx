@@ -10,6 +10,7 @@
 #include "vtkAvianLidarImageArrays.h"
 #include "vtkAvianLidarImageBeams.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
@@ -40,45 +41,37 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 constexpr double BytesPerCell = 40.0;
 
 // The strongest echo of each beam, -1 where there is none.
-std::vector<vtkIdType> StrongestEchoes(
-  vtkPolyData* echoes, const ImageBeams::Beams& beams, std::string& problem)
+std::vector<vtkIdType> StrongestEchoes(vtkPolyData* echoes, const ImageBeams::Beams& beams)
 {
   std::vector<vtkIdType> strongest(beams.IndexOfId.size(), -1);
   if (echoes->GetNumberOfPoints() == 0)
   {
     return strongest;
   }
-  const char* port = "input port 0 (echoes)";
-  vtkDataArray* ids = ImageArrays::Find(echoes, Arrays::BeamId, port, problem);
-  vtkDataArray* received =
-    ids ? ImageArrays::Find(echoes, Arrays::EnergyReceived, port, problem) : nullptr;
-  vtkDataArray* distance =
-    received ? ImageArrays::Find(echoes, Arrays::Distance, port, problem) : nullptr;
-  vtkDataArray* energy =
-    distance ? ImageArrays::Find(echoes, Arrays::Energy, port, problem) : nullptr;
-  for (vtkIdType i = 0; energy && i < echoes->GetNumberOfPoints(); ++i)
+  const std::string port = "input port 0 (echoes)";
+  const auto find = [&](const Arrays::Name& name)
+  { return ImageArrays::Find(echoes, name, port.c_str()); };
+  vtkDataArray* ids = find(Arrays::BeamId);
+  vtkDataArray* received = find(Arrays::EnergyReceived);
+  vtkDataArray* distance = find(Arrays::Distance);
+  vtkDataArray* energy = find(Arrays::Energy);
+  for (vtkIdType i = 0; i < echoes->GetNumberOfPoints(); ++i)
   {
     for (vtkDataArray* array : { received, distance, energy })
     {
       if (!std::isfinite(array->GetComponent(i, 0)))
       {
-        problem = std::string("point array '") + array->GetName() + "' of " + port +
-          " is not finite, at point " + std::to_string(i);
-        return strongest;
+        vtkAvianLidarRequire(std::string("point array '") + array->GetName() + "' of " + port +
+          " is not finite, at point " + std::to_string(i));
       }
     }
-    if (!ImageArrays::Fits<vtkIdType>(ids->GetComponent(i, 0)))
-    {
-      problem = ImageArrays::NoInteger(Arrays::BeamId, port, i);
-      return strongest;
-    }
-    const auto found = beams.IndexOfId.find(static_cast<vtkIdType>(ids->GetComponent(i, 0)));
+    const auto id = ImageArrays::RequireInteger<vtkIdType>(
+      ids->GetComponent(i, 0), Arrays::BeamId, port.c_str(), i);
+    const auto found = beams.IndexOfId.find(id);
     if (found == beams.IndexOfId.end())
     {
-      problem = std::string("echo ") + std::to_string(i) + " of " + port + " has the 'beam_id' " +
-        std::to_string(static_cast<vtkIdType>(ids->GetComponent(i, 0))) +
-        ", which no beam of input port 1 has";
-      return strongest;
+      vtkAvianLidarRequire("echo " + std::to_string(i) + " of " + port + " has the 'beam_id' " +
+        std::to_string(id) + ", which no beam of input port 1 has");
     }
     vtkIdType& best = strongest[found->second];
     if (best < 0 || received->GetComponent(i, 0) > received->GetComponent(best, 0) ||
@@ -161,14 +154,12 @@ std::string SizeOf(int columns, int rows)
   return std::to_string(columns) + " columns and " + std::to_string(rows) + " rows";
 }
 
-std::string ErrorOf(const std::string& problem)
-{
-  return problem.empty() ? problem : "Range image: " + problem;
-}
+/// Prefix of errors.
+constexpr char ImagePrefix[] = "Range image: ";
 }
 
 vtkStandardNewMacro(vtkAvianLidarRangeImage);
-vtkCxxSetObjectMacro(vtkAvianLidarRangeImage, Controller, vtkMultiProcessController);
+vtkAvianLidarCxxControllerMacro(vtkAvianLidarRangeImage);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarRangeImage::vtkAvianLidarRangeImage()
@@ -195,7 +186,7 @@ int vtkAvianLidarRangeImage::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   const std::string problem = vtkAvianLidarGuard::ProblemOf(
-    [&]() -> std::string
+    [&]()
     {
       vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
       vtkInformation* info = outputVector->GetInformationObject(0);
@@ -217,7 +208,6 @@ int vtkAvianLidarRangeImage::RequestInformation(
       }
       info->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
-      return {};
     });
   if (!problem.empty())
   {
@@ -239,13 +229,6 @@ int vtkAvianLidarRangeImage::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRangeImage::ModifyRequest(vtkInformation* request, int when)
-{
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
 int vtkAvianLidarRangeImage::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -255,27 +238,34 @@ int vtkAvianLidarRangeImage::RequestData(
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
       vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
       ranks.Together(this,
-        [&]() -> std::string
+        [&]()
         {
           vtkAvianLidarAbort::StopIfWanted(this);
-          const std::string problem = ImageArrays::CheckLengths(echoes, "input port 0 (echoes)");
-          return ErrorOf(
-            problem.empty() ? ImageArrays::CheckLengths(beams, "input port 1 (beams)") : problem);
+          vtkAvianLidarWithin(ImagePrefix,
+            [&]()
+            {
+              ImageArrays::RequireLengths(echoes, "input port 0 (echoes)");
+              ImageArrays::RequireLengths(beams, "input port 1 (beams)");
+            });
         });
       echoes = vtkAvianLidarGather::Points(ranks, this, echoes);
       beams = vtkAvianLidarGather::Points(ranks, this, beams);
       ranks.Together(this,
         [&]()
         {
-          return ErrorOf(this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
-            inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0)));
+          vtkAvianLidarWithin(ImagePrefix,
+            [&]()
+            {
+              this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
+                inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0));
+            });
         });
     });
   return done && ImageArrays::FillIfFailed(this, outputVector);
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarRangeImage::MakeImage(
+void vtkAvianLidarRangeImage::MakeImage(
   vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info)
 {
   vtkAvianLidarScanShape::WholeScan whole;
@@ -284,12 +274,7 @@ std::string vtkAvianLidarRangeImage::MakeImage(
     whole = vtkAvianLidarScanShape::Read(beamsInfo);
   }
   const ImageBeams::Beams beams = ImageBeams::Read(input, whole);
-  std::string problem = beams.Problem;
-  std::vector<vtkIdType> strongest;
-  if (problem.empty())
-  {
-    strongest = StrongestEchoes(echoes, beams, problem);
-  }
+  const std::vector<vtkIdType> strongest = StrongestEchoes(echoes, beams);
   int extent[6], announced[6];
   double origin[3], spacing[3];
   SetGeometry(beams.Grid, extent, origin, spacing);
@@ -298,34 +283,30 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   {
     std::copy(announced, announced + 6, extent);
   }
-  else if (problem.empty() && !std::equal(extent, extent + 6, announced))
+  else if (!std::equal(extent, extent + 6, announced))
   {
-    problem = "the beams of input port 1 form " + SizeOf(extent[1] + 1, extent[3] + 1) +
+    vtkAvianLidarRequire("the beams of input port 1 form " + SizeOf(extent[1] + 1, extent[3] + 1) +
       ", but the size announced is " + SizeOf(announced[1] + 1, announced[3] + 1) +
-      ": set Columns and Rows to those of the beams";
+      ": set Columns and Rows to those of the beams");
   }
   vtkNew<vtkImageData> image;
   image->SetExtent(extent);
   image->SetOrigin(origin);
   image->SetSpacing(spacing);
   const vtkIdType cells = vtkStructuredData::GetNumberOfPoints(extent);
-  if (problem.empty() && cells > 0)
+  if (cells > 0)
   {
     const auto beamOfCell =
       beams.Grid.empty() ? NoBeams(cells) : BeamsOfCells(echoes, beams.Grid, strongest);
-    ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image, problem);
-    ImageArrays::AddReport(input, beamOfCell, image, problem);
+    ImageArrays::AddEchoes(echoes, beamOfCell, strongest, image);
+    ImageArrays::AddReport(input, beamOfCell, image);
   }
-  if (problem.empty() && !beams.Grid.empty())
+  if (!beams.Grid.empty())
   {
     image->GetFieldData()->AddArray(
       Arrays::MakeOf<vtkDoubleArray>(Arrays::ColumnAzimuths, beams.Grid.azimuths));
     image->GetFieldData()->AddArray(
       Arrays::MakeOf<vtkDoubleArray>(Arrays::RowElevations, beams.Grid.elevations));
-  }
-  if (!problem.empty())
-  {
-    return problem;
   }
   for (const Arrays::Name& name : { Arrays::LowerEnergyLimit, Arrays::UpperEnergyLimit })
   {
@@ -340,7 +321,6 @@ std::string vtkAvianLidarRangeImage::MakeImage(
   {
     CutOut(info, output);
   }
-  return {};
 }
 
 //------------------------------------------------------------------------------

@@ -38,13 +38,10 @@
 #ifndef vtkAvianLidarRangeImage_h
 #define vtkAvianLidarRangeImage_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkImageAlgorithm.h"
 
-#include <string>
-
-class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarRangeImage : public vtkImageAlgorithm
@@ -55,22 +52,19 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** Number of columns, for beams that are not from a beam source. Default 0: automatic. */
+  /// Number of columns, for beams that are not from a beam source. Default 0: automatic.
   vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
   vtkGetMacro(Columns, int);
   ///@}
 
   ///@{
-  /** Number of rows, for beams that are not from a beam source. Default 0: automatic. */
+  /// Number of rows, for beams that are not from a beam source. Default 0: automatic.
   vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
   vtkGetMacro(Rows, int);
   ///@}
 
-  ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  /// Processes that may work together; null: only this one. Default: the global controller.
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -81,19 +75,17 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int Columns = 0;
   int Rows = 0;
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;
   void operator=(const vtkAvianLidarRangeImage&) = delete;
 
   bool SizeIsGiven() const { return this->Columns > 0 && this->Rows > 0; }
-  std::string MakeImage(
+  void MakeImage(
     vtkPolyData* echoes, vtkPolyData* input, vtkInformation* beamsInfo, vtkInformation* info);
 };
 

@@ -8,12 +8,14 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
 #include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkDataObject.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -49,6 +51,8 @@ vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int p
   return all;
 }
 }
+
+vtkAvianLidarCxxModifyRequestMacro(vtkAvianLidarScanFilter);
 
 //------------------------------------------------------------------------------
 const std::vector<vtkAvianLidarScanFilter::vtkInternals::Property>& vtkAvianLidarScanFilter::
@@ -139,7 +143,8 @@ vtkTypeBool vtkAvianLidarScanFilter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   // RequestData says what is missing; all else has nothing to ask for.
-  const bool ready = request->Has(Pipeline::REQUEST_DATA()) || this->MissingInput().empty();
+  const bool ready =
+    request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || this->MissingInput().empty();
   return ready ? this->Superclass::ProcessRequest(request, inputVector, outputVector) : 1;
 }
 
@@ -177,16 +182,10 @@ int vtkAvianLidarScanFilter::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarScanFilter::ModifyRequest(vtkInformation* request, int when)
-{
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarScanFilter::PrepareSettings()
+void vtkAvianLidarScanFilter::PrepareSettings()
 {
   avianlidar::EchoSettings& s = this->Internals->Setup.settings;
+  const avianlidar::Sensor& sensor = this->Internals->Setup.sensor;
   for (const vtkInternals::Property& property : vtkInternals::Properties())
   {
     for (const avianlidar::EchoSetting& setting : avianlidar::echoSettings())
@@ -200,61 +199,49 @@ std::string vtkAvianLidarScanFilter::PrepareSettings()
   if (this->Visibility > 0.0)
   {
     s.attenuationCoefficient = avianlidar::attenuationOfVisibility(
-      this->Visibility, avianlidar::SpeedOfLight / this->Internals->Setup.sensor.frequency);
+      this->Visibility, avianlidar::SpeedOfLight / sensor.frequency);
+  }
+  const bool isDense = this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30);
+  if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) || isDense)
+  {
+    vtkAvianLidarRequire(avianlidar::valueError(
+      "Visibility", this->Visibility, "0, or up to 1e9 m and enough for air of at most 1e30 1/m"));
+  }
+  if (!(this->RainRate >= 0.0 && this->RainRate <= avianlidar::MaximumRainRate))
+  {
+    vtkAvianLidarRequire(avianlidar::valueError("RainRate", this->RainRate, "0 to 500 mm/h"));
   }
   std::vector<avianlidar::PlacedMedium>& media = this->Internals->Setup.media;
   media.clear();
-  const bool isDense = this->Visibility > 0.0 && !(s.attenuationCoefficient <= 1e30);
-  std::string problem;
-  if (!(this->RainRate >= 0.0 && this->RainRate <= avianlidar::MaximumRainRate))
+  if (this->AirBackscatter && this->Visibility > 0.0)
   {
-    problem = avianlidar::valueError("RainRate", this->RainRate, "0 to 500 mm/h");
+    media.push_back({ vtkAvianLidarMedia::HazeOf(this->Visibility, s.attenuationCoefficient), {} });
+    s.attenuationCoefficient = 0.0;
   }
-  else
+  if (this->RainRate > 0.0)
   {
-    if (this->AirBackscatter && this->Visibility > 0.0)
-    {
-      media.push_back(
-        { vtkAvianLidarMedia::HazeOf(this->Visibility, s.attenuationCoefficient), {} });
-      s.attenuationCoefficient = 0.0;
-    }
-    if (this->RainRate > 0.0)
-    {
-      media.push_back({ vtkAvianLidarMedia::RainOf(
-                          this->RainRate, avianlidar::viewOf(this->Internals->Setup.sensor)),
-        {} });
-    }
+    media.push_back({ vtkAvianLidarMedia::RainOf(this->RainRate, avianlidar::viewOf(sensor)), {} });
   }
-  if (!media.empty() && !(this->Internals->Setup.sensor.receiverAperture > 0.0))
-  {
-    problem = NoAperture;
-  }
-  if (!(this->Visibility >= 0.0 && this->Visibility <= 1e9) || isDense)
-  {
-    problem = avianlidar::valueError(
-      "Visibility", this->Visibility, "0, or up to 1e9 m and enough for air of at most 1e30 1/m");
-  }
-  if (problem.empty())
-  {
-    problem = avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s);
-  }
-  if (problem.empty())
-  {
-    problem = avianlidar::checkSettings(s);
-  }
-  if (problem.empty() && this->NumberOfThreads < 0)
-  {
-    problem = "NumberOfThreads is negative, expected at least 0 (0: all cores)";
-  }
-  if (problem.empty() && this->MaximumCacheSize < 0)
-  {
-    problem = "MaximumCacheSize is negative, expected at least 0 MiB";
-  }
-  return problem;
+  const bool hasAperture = media.empty() || sensor.receiverAperture > 0.0;
+  vtkAvianLidarRequire(hasAperture ? "" : NoAperture);
+  vtkAvianLidarRequire(
+    avianlidar::applyPreset(static_cast<avianlidar::EchoPreset>(this->Preset), s));
+  vtkAvianLidarRequire(avianlidar::checkSettings(s));
+  vtkAvianLidarRequire(this->NumberOfThreads >= 0
+      ? ""
+      : "NumberOfThreads is negative, expected at least 0 (0: all cores)");
+  vtkAvianLidarRequire(
+    this->MaximumCacheSize >= 0 ? "" : "MaximumCacheSize is negative, expected at least 0 MiB");
+  const std::string units = avianlidar::checkUnits(sensor, s);
+  const std::string preset = this->Preset == PRESET_CUSTOM
+    ? std::string()
+    : " (Preset " + std::to_string(this->Preset) + " says RaysPerBeam)";
+  vtkAvianLidarRequire(
+    units.empty() ? units : units + preset, "Input port 0 (beams), field data: ");
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarScanFilter::PlaceMedia()
+void vtkAvianLidarScanFilter::PlaceMedia()
 {
   vtkInternals& in = *this->Internals;
   const avianlidar::LidarView view = avianlidar::viewOf(in.Setup.sensor);
@@ -278,14 +265,14 @@ std::string vtkAvianLidarScanFilter::PlaceMedia()
     if (placed.volume.velocity != avianlidar::Vec3(0.0) && in.Beams.beams.size() > 0 &&
       !in.Beams.isTimed)
     {
-      return "Input port 0 (beams), point array 'timestamp' is missing, expected the time in "
-             "microseconds at which each beam meets the media that move (input port 1)";
+      vtkAvianLidarRequire(
+        "Input port 0 (beams), point array 'timestamp' is missing, expected the time in "
+        "microseconds at which each beam meets the media that move (input port 1)");
     }
     media.push_back(placed);
   }
   std::stable_partition(media.begin(), media.end(),
     [](const avianlidar::PlacedMedium& one) { return one.fillsScene(); });
-  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -306,35 +293,18 @@ void vtkAvianLidarScanFilter::AddAirTo(vtkFieldData* fields) const
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarScanFilter::CheckUnits() const
-{
-  const vtkInternals& in = *this->Internals;
-  const std::string problem = avianlidar::checkUnits(in.Setup.sensor, in.Setup.settings);
-  const std::string preset = this->Preset == PRESET_CUSTOM
-    ? std::string()
-    : " (Preset " + std::to_string(this->Preset) + " says RaysPerBeam)";
-  return problem.empty() ? problem : "Input port 0 (beams), field data: " + problem + preset;
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
 {
   vtkInternals& in = *this->Internals;
   ranks.Together(this,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      const std::string missing = this->MissingInput();
-      if (!missing.empty())
-      {
-        return missing;
-      }
+      vtkAvianLidarRequire(this->MissingInput());
       in.Beams.Read(input);
       in.Setup.sensor = in.Beams.sensor;
       in.Setup.revolution = in.Beams.revolution;
-      std::string problem = vtkInternals::WrongWithBeams(in.Beams.problem);
-      problem = problem.empty() ? this->PrepareSettings() : problem;
-      return problem.empty() ? this->CheckUnits() : problem;
+      this->PrepareSettings();
     });
   ranks.AgreeOn(this,
     SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient,
@@ -399,13 +369,9 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
   ranks.Together(this,
-    [&]() -> std::string
+    [&]()
     {
-      const std::string problem = this->PlaceMedia();
-      if (!problem.empty())
-      {
-        return problem;
-      }
+      this->PlaceMedia();
       this->FindTree(input);
       if (!in.Setup.tree)
       {
@@ -415,7 +381,6 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
         in.TreeBuilds += in.OwnTree != nullptr;
       }
       vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
-      return {};
     });
 }
 

@@ -13,8 +13,8 @@
 #ifndef vtkAvianLidarScanFilter_h
 #define vtkAvianLidarScanFilter_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
@@ -22,7 +22,6 @@
 
 class vtkAvianLidarRanks;
 class vtkDataObject;
-class vtkMultiProcessController;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarScanFilter : public vtkPolyDataAlgorithm
 {
@@ -74,27 +73,24 @@ public:
   };
 
   ///@{
-  /**
-   * Preset of the fidelity. At execution all presets but PRESET_CUSTOM override RaysPerBeam,
-   * NumberOfConnections, Sampling and NumberOfReflections; the field data hold the values used.
-   * PRESET_PAPER and PRESET_PREVIEW also override BeamSamples. In brackets are the rms error of
-   * energy and the processor time of 15,360 beams, first at the shipped airport, then at Hongqiao
-   * with structures:
-   *
-   * - PRESET_PREVIEW: only 100 stratified rays, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
-   * - PRESET_DRAFT: 25 rays, 0 connections, 2 reflections (0.41 %, 0.13 s; 0.97 %, 0.52 s)
-   * - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.21 %, 0.24 s; 0.40 %, 0.94 s)
-   * - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.85 s; 0.14 %, 4.4 s)
-   * - PRESET_PAPER: the method of the paper. Only 100 independent rays, 2 connections, 2
-   *   reflections (16 %, 0.11 s; 16 %, 0.16 s). The preset also overrides BatchCollisionDetection
-   *   (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
-   *   ReflectanceModel (the paper's) and ReturnMode (a point for each range unit). The paper's
-   *   tree: vtkAvianLidarCollisionTree::PRESET_PAPER.
-   *
-   * Errors and times: Documentation/evidence/accuracy.md. Default: PRESET_CUSTOM.
-   */
-  vtkSetMacro(Preset, int);
-  vtkGetMacro(Preset, int);
+  /// Preset of the fidelity. At execution all presets but PRESET_CUSTOM override RaysPerBeam,
+  /// NumberOfConnections, Sampling and NumberOfReflections; the field data hold the values used.
+  /// PRESET_PAPER and PRESET_PREVIEW also override BeamSamples. In brackets are the rms error of
+  /// energy and the processor time of 15,360 beams, first at the shipped airport, then at Hongqiao
+  /// with structures:
+  ///
+  /// - PRESET_PREVIEW: only 100 stratified rays, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
+  /// - PRESET_DRAFT: 25 rays, 0 connections, 2 reflections (0.41 %, 0.13 s; 0.97 %, 0.52 s)
+  /// - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.21 %, 0.24 s; 0.40 %, 0.94 s)
+  /// - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.85 s; 0.14 %, 4.4 s)
+  /// - PRESET_PAPER: the method of the paper. Only 100 independent rays, 2 connections, 2
+  ///   reflections (16 %, 0.11 s; 16 %, 0.16 s). The preset also overrides BatchCollisionDetection
+  ///   (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
+  ///   ReflectanceModel (the paper's) and ReturnMode (a point for each range unit). The paper's
+  ///   tree: vtkAvianLidarCollisionTree::PRESET_PAPER.
+  ///
+  /// Errors and times: Documentation/evidence/accuracy.md. Default: PRESET_CUSTOM.
+  vtkAvianLidarPropertyMacro(Preset, int, PRESET_CUSTOM);
   void SetPresetToCustom() { this->SetPreset(PRESET_CUSTOM); }
   void SetPresetToDraft() { this->SetPreset(PRESET_DRAFT); }
   void SetPresetToStandard() { this->SetPreset(PRESET_STANDARD); }
@@ -103,85 +99,53 @@ public:
   void SetPresetToPreview() { this->SetPreset(PRESET_PREVIEW); }
   ///@}
 
-  ///@{
-  /**
-   * Number N of rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS, N sets the density
-   * of rays in cells (about 32 N rays in a beam), and of paths with two reflections. Default: 100.
-   */
-  vtkSetMacro(RaysPerBeam, int);
-  vtkGetMacro(RaysPerBeam, int);
-  ///@}
+  /// Number N of rays per beam (Eq. 1-3), 1 to 1000000. With BEAM_SAMPLES_CELLS, N sets the density
+  /// of rays in cells (about 32 N rays in a beam), and of paths with two reflections. Default: 100.
+  vtkAvianLidarPropertyMacro(RaysPerBeam, int, 100);
 
   ///@{
-  /**
-   * Method that finds the direct echo of a beam (Documentation/method/beam.md):
-   *
-   * - BEAM_SAMPLES_CELLS: integrates over the polygons that the beam sees where few triangles enter
-   *   the beam, and otherwise over a grid of cells with dense rays
-   * - BEAM_SAMPLES_RAYS: sums over RaysPerBeam rays, as in the paper
-   *
-   * Default: BEAM_SAMPLES_CELLS.
-   */
-  vtkSetMacro(BeamSamples, int);
-  vtkGetMacro(BeamSamples, int);
+  /// Method that finds the direct echo of a beam (Documentation/method/beam.md):
+  ///
+  /// - BEAM_SAMPLES_CELLS: integrates over the polygons that the beam sees where few triangles
+  ///   enter the beam, and otherwise over a grid of cells with dense rays
+  /// - BEAM_SAMPLES_RAYS: sums over RaysPerBeam rays, as in the paper
+  ///
+  /// Default: BEAM_SAMPLES_CELLS.
+  vtkAvianLidarPropertyMacro(BeamSamples, int, BEAM_SAMPLES_CELLS);
   void SetBeamSamplesToCells() { this->SetBeamSamples(BEAM_SAMPLES_CELLS); }
   void SetBeamSamplesToRays() { this->SetBeamSamples(BEAM_SAMPLES_RAYS); }
   ///@}
 
   ///@{
-  /**
-   * Distribution of the rays: independent (the paper), or two in each of N/2 cells of equal solid
-   * angle. Default: SAMPLING_STRATIFIED.
-   */
-  vtkSetMacro(Sampling, int);
-  vtkGetMacro(Sampling, int);
+  /// Distribution of the rays: independent (the paper), or two in each of N/2 cells of equal solid
+  /// angle. Default: SAMPLING_STRATIFIED.
+  vtkAvianLidarPropertyMacro(Sampling, int, SAMPLING_STRATIFIED);
   void SetSamplingToMonteCarlo() { this->SetSampling(SAMPLING_MONTE_CARLO); }
   void SetSamplingToStratified() { this->SetSampling(SAMPLING_STRATIFIED); }
   ///@}
 
-  ///@{
-  /** Seed of all random numbers, any int. Default: 0. */
-  vtkSetMacro(Seed, int);
-  vtkGetMacro(Seed, int);
-  ///@}
+  /// Seed of all random numbers, any int. Default: 0.
+  vtkAvianLidarPropertyMacro(Seed, int, 0);
+
+  /// Attenuation of the air (Eq. 9), 1/m, 0 to 1e30, unless Visibility is set. Default: 3.5e-5.
+  vtkAvianLidarPropertyMacro(AttenuationCoefficient, double, 3.5e-5);
+
+  /// Visibility, m, 0 to 1e9, which sets the attenuation by the law of Kruse and Kim
+  /// (Documentation/method/reflectance.md). 0: AttenuationCoefficient is used. Default: 0 in the
+  /// echo filter, 23000 (clear) in vtkAvianLidarCoverage.
+  vtkAvianLidarPropertyMacro(Visibility, double, 0.0);
+
+  /// Whether the air of Visibility sends light back to a sensor with an aperture. Default: off.
+  vtkAvianLidarSwitchMacro(AirBackscatter, false);
+
+  /// Rain rate, mm/h, 0 to 500. Rain weakens light and sends it back. Default: 0.
+  vtkAvianLidarPropertyMacro(RainRate, double, 0.0);
 
   ///@{
-  /** Attenuation of the air (Eq. 9), 1/m, 0 to 1e30, unless Visibility is set. Default: 3.5e-5. */
-  vtkSetMacro(AttenuationCoefficient, double);
-  vtkGetMacro(AttenuationCoefficient, double);
-  ///@}
-
-  ///@{
-  /**
-   * Visibility, m, 0 to 1e9, which sets the attenuation by the law of Kruse and Kim
-   * (Documentation/method/reflectance.md). 0: AttenuationCoefficient is used. Default: 0 in the
-   * echo filter, 23000 (clear) in vtkAvianLidarCoverage.
-   */
-  vtkSetMacro(Visibility, double);
-  vtkGetMacro(Visibility, double);
-  ///@}
-
-  ///@{
-  /** Whether the air of Visibility sends light back to a sensor with an aperture. Default: off. */
-  vtkSetMacro(AirBackscatter, bool);
-  vtkGetMacro(AirBackscatter, bool);
-  vtkBooleanMacro(AirBackscatter, bool);
-  ///@}
-
-  ///@{
-  /** Rain rate, mm/h, 0 to 500. Rain weakens light and sends it back. Default: 0. */
-  vtkSetMacro(RainRate, double);
-  vtkGetMacro(RainRate, double);
-  ///@}
-
-  ///@{
-  /**
-   * Reflectance model (Documentation/method/reflectance.md): the model of the paper (Eq. 5-8), the
-   * models that Fig. 10 compares with the paper's, or the model of Oren and Nayar for rough
-   * surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
-   */
-  vtkSetMacro(ReflectanceModel, int);
-  vtkGetMacro(ReflectanceModel, int);
+  /// Reflectance model (Documentation/method/reflectance.md): the model of the paper (Eq. 5-8), the
+  /// models that Fig. 10 compares with the paper's, or the model of Oren and Nayar for rough
+  /// surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+  vtkAvianLidarPropertyMacro(ReflectanceModel, int, REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG);
   void SetReflectanceModelToLambertBlinnPhong()
   {
     this->SetReflectanceModel(REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG);
@@ -194,40 +158,23 @@ public:
   void SetReflectanceModelToOrenNayar() { this->SetReflectanceModel(REFLECTANCE_MODEL_OREN_NAYAR); }
   ///@}
 
-  ///@{
-  /** Number of reflections, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2. */
-  vtkSetMacro(NumberOfReflections, int);
-  vtkGetMacro(NumberOfReflections, int);
-  ///@}
+  /// Number of reflections, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2.
+  vtkAvianLidarPropertyMacro(NumberOfReflections, int, 2);
+
+  /// Whether only the beam's cone is searched for second reflections; same echoes. Default: on.
+  vtkAvianLidarSwitchMacro(BeamConstraint, true);
+
+  /// Whether paths below LightEnergyThreshold are dropped (paper, Sec. 3.4). Default: on.
+  vtkAvianLidarSwitchMacro(LightEnergyConstraint, true);
+
+  /// Share of the lower limit that LightEnergyConstraint may drop, 1, 0 to 1e8. Default: 1e-3.
+  vtkAvianLidarPropertyMacro(LightEnergyFraction, double, 1e-3);
 
   ///@{
-  /** Whether only the beam's cone is searched for second reflections; same echoes. Default: on. */
-  vtkSetMacro(BeamConstraint, bool);
-  vtkGetMacro(BeamConstraint, bool);
-  vtkBooleanMacro(BeamConstraint, bool);
-  ///@}
-
-  ///@{
-  /** Whether paths below LightEnergyThreshold are dropped (paper, Sec. 3.4). Default: on. */
-  vtkSetMacro(LightEnergyConstraint, bool);
-  vtkGetMacro(LightEnergyConstraint, bool);
-  vtkBooleanMacro(LightEnergyConstraint, bool);
-  ///@}
-
-  ///@{
-  /** Share of the lower limit that LightEnergyConstraint may drop, 1, 0 to 1e8. Default: 1e-3. */
-  vtkSetMacro(LightEnergyFraction, double);
-  vtkGetMacro(LightEnergyFraction, double);
-  ///@}
-
-  ///@{
-  /**
-   * Energy below which LightEnergyConstraint drops a path: LightEnergyFraction times the lower
-   * limit, divided by the number of paths of the beam; or the lower limit, as in the paper (Sec.
-   * 3.4). Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
-   */
-  vtkSetMacro(LightEnergyThreshold, int);
-  vtkGetMacro(LightEnergyThreshold, int);
+  /// Energy below which LightEnergyConstraint drops a path: LightEnergyFraction times the lower
+  /// limit, divided by the number of paths of the beam; or the lower limit, as in the paper (Sec.
+  /// 3.4). Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+  vtkAvianLidarPropertyMacro(LightEnergyThreshold, int, LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT);
   void SetLightEnergyThresholdToShareOfLimit()
   {
     this->SetLightEnergyThreshold(LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT);
@@ -239,18 +186,15 @@ public:
   ///@}
 
   ///@{
-  /**
-   * Rays that descend the tree together; the echoes are the same:
-   *
-   * - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
-   * - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then packets of rays; the fastest
-   * - BATCH_COLLISION_DETECTION_BEAMS: every beam by itself, then all its rays (the paper, Sec.
-   *   3.2)
-   *
-   * Default: BATCH_COLLISION_DETECTION_GROUPS.
-   */
-  vtkSetMacro(BatchCollisionDetection, int);
-  vtkGetMacro(BatchCollisionDetection, int);
+  /// Rays that descend the tree together; the echoes are the same:
+  ///
+  /// - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
+  /// - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then packets of rays; the fastest
+  /// - BATCH_COLLISION_DETECTION_BEAMS: every beam by itself, then all its rays (the paper, Sec.
+  ///   3.2)
+  ///
+  /// Default: BATCH_COLLISION_DETECTION_GROUPS.
+  vtkAvianLidarPropertyMacro(BatchCollisionDetection, int, BATCH_COLLISION_DETECTION_GROUPS);
   vtkBooleanMacro(BatchCollisionDetection, int);
   void SetBatchCollisionDetectionToRays()
   {
@@ -266,33 +210,20 @@ public:
   }
   ///@}
 
-  ///@{
-  /** Whether parts of the model that `skipped` would name are computed; slower. Default: off. */
-  vtkSetMacro(FullModel, bool);
-  vtkGetMacro(FullModel, bool);
-  vtkBooleanMacro(FullModel, bool);
-  ///@}
+  /// Whether parts of the model that `skipped` would name are computed; slower. Default: off.
+  vtkAvianLidarSwitchMacro(FullModel, false);
+
+  /// Number M of connections of each connecting ray, at least 0. Default: 2, as accurate as 8.
+  vtkAvianLidarPropertyMacro(NumberOfConnections, int, 2);
+
+  /// Number of threads (no effect on echoes). 0, the default: this rank's share of the cores.
+  vtkAvianLidarPropertyMacro(NumberOfThreads, int, 0);
+
+  /// Largest memory for results kept between executions, MiB, at least 0. Default: 1024.
+  vtkAvianLidarPropertyMacro(MaximumCacheSize, int, 1024);
 
   ///@{
-  /** Number M of connections of each connecting ray, at least 0. Default: 2, as accurate as 8. */
-  vtkSetMacro(NumberOfConnections, int);
-  vtkGetMacro(NumberOfConnections, int);
-  ///@}
-
-  ///@{
-  /** Number of threads (no effect on echoes). 0, the default: this rank's share of the cores. */
-  vtkSetMacro(NumberOfThreads, int);
-  vtkGetMacro(NumberOfThreads, int);
-  ///@}
-
-  ///@{
-  /** Largest memory for results kept between executions, MiB, at least 0. Default: 1024. */
-  vtkSetMacro(MaximumCacheSize, int);
-  vtkGetMacro(MaximumCacheSize, int);
-  ///@}
-
-  ///@{
-  /** Input port 1, the surfaces. */
+  /// Input port 1, the surfaces.
   void SetSurfacesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
   void SetSurfacesData(vtkDataObject* surfaces) { this->SetInputData(1, surfaces); }
   ///@}
@@ -312,11 +243,8 @@ public:
   /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
   double GetNumberOfBytesSent() const;
 
-  ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  /// Processes that may work together; null: only this one. Default: the global controller.
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -327,41 +255,17 @@ protected:
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   // Adds the media of the surfaces to the scan, and all air to the field data.
-  std::string PlaceMedia();
+  void PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
   // Passes of an execution, which all ranks make together; a failure on one rank throws on all.
   void PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   void PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-
-  int Preset = PRESET_CUSTOM;
-  int RaysPerBeam = 100;
-  int BeamSamples = BEAM_SAMPLES_CELLS;
-  int Sampling = SAMPLING_STRATIFIED;
-  int Seed = 0;
-  double AttenuationCoefficient = 3.5e-5;
-  double Visibility = 0.0;
-  bool AirBackscatter = false;
-  double RainRate = 0.0;
-  int ReflectanceModel = REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG;
-  int NumberOfReflections = 2;
-  bool BeamConstraint = true;
-  bool LightEnergyConstraint = true;
-  double LightEnergyFraction = 1e-3;
-  int LightEnergyThreshold = LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT;
-  int BatchCollisionDetection = BATCH_COLLISION_DETECTION_GROUPS;
-  bool FullModel = false;
-  int NumberOfConnections = 2;
-  int NumberOfThreads = 0;
-  int MaximumCacheSize = 1024;
-
-  vtkMultiProcessController* Controller = nullptr;
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
@@ -371,8 +275,7 @@ private:
   void operator=(const vtkAvianLidarScanFilter&) = delete;
 
   std::string MissingInput();
-  std::string PrepareSettings();
-  std::string CheckUnits() const;
+  void PrepareSettings();
   void SummarizeSurfaces(vtkDataObject* input, bool warn);
   void FindTree(vtkDataObject* input);
 };

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarSensorReader.h"
 
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
@@ -49,7 +50,7 @@ int vtkAvianLidarSensorReader::RequestData(
   {
     return this->Superclass::RequestData(request, inputs, outputs);
   }
-  return vtkAvianLidarGuarded(this, outputs, [this]() { return this->Problem; });
+  return vtkAvianLidarGuarded(this, outputs, [this]() { vtkAvianLidarRequire(this->Problem); });
 }
 
 //------------------------------------------------------------------------------

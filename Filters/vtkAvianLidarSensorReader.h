@@ -27,7 +27,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The file to read. Only Reload() notices changes on disk. Default: null. */
+  /// The file to read. Only Reload() notices changes on disk. Default: null.
   void SetFileName(VTK_FILEPATH const char* fileName);
   vtkGetFilePathMacro(FileName);
   ///@}

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScanStream.h"
 
 #include "vtkCellArray.h"
@@ -23,7 +24,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -41,10 +41,11 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::Vec3;
-using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 constexpr Arrays::Name HalfBeamwidthName{ "half_beamwidth", "rad" };
 constexpr Arrays::Name SensorPositionName{ "sensor_position", "m" };
+/// Prefix of errors.
+constexpr char TrackerPrefix[] = "Tracker: ";
 /// Largest coordinate of a point, m.
 constexpr double LargestCoordinate = 1e9;
 
@@ -62,26 +63,17 @@ struct CloudFacts
   double HalfBeamwidth = 0.0;           // rad
 };
 
-std::string ReadFacts(const vtkAvianLidarScanStream& stream, vtkPolyData* cloud, CloudFacts& facts)
+void ReadFacts(const vtkAvianLidarScanStream& stream, vtkPolyData* cloud, CloudFacts& facts)
 {
   facts.Points = cloud->GetNumberOfPoints();
-  std::string problem = stream.ReadTime(cloud, facts.Time);
-  problem = problem.empty() ? vtkAvianLidarScanStream::ReadPosition(cloud, facts.Sensor) : problem;
-  if (problem.empty() && !IsNear(facts.Sensor))
-  {
-    problem = "field data 'position' is too far away, expected x, y and z up to 1e9 m";
-  }
-  problem = problem.empty()
-    ? Arrays::ReadFieldValue(cloud->GetFieldData(), HalfBeamwidthName, facts.HalfBeamwidth)
-    : problem;
-  return !problem.empty() || (facts.HalfBeamwidth >= 0.0 && facts.HalfBeamwidth <= 1.0)
-    ? problem
-    : avianlidar::valueError("field data 'half_beamwidth'", facts.HalfBeamwidth, "0 to 1 rad");
-}
-
-std::string TrackerError(const std::string& problem)
-{
-  return problem.empty() ? problem : "Tracker: " + problem;
+  facts.Time = stream.TimeOf(cloud);
+  vtkAvianLidarScanStream::ReadPosition(cloud, facts.Sensor);
+  vtkAvianLidarRequire(IsNear(facts.Sensor)
+      ? ""
+      : "field data 'position' is too far away, expected x, y and z up to 1e9 m");
+  Arrays::ReadFieldValue(cloud->GetFieldData(), HalfBeamwidthName, facts.HalfBeamwidth);
+  vtkAvianLidarRequire(avianlidar::rangeError(
+    "field data 'half_beamwidth'", facts.HalfBeamwidth, 0.0, 1.0, "0 to 1 rad"));
 }
 
 /// All ranks take what the first one with points says. @return the number of points of those before
@@ -109,21 +101,15 @@ vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
   return before;
 }
 
-/// What is wrong with the arrays of a cloud, or nothing.
-std::string CheckArrays(vtkPolyData* cloud)
+void CheckArrays(vtkPolyData* cloud)
 {
   for (const Arrays::Name& name :
     { Arrays::IsClutter, Arrays::Timestamp, Arrays::DistanceStdError })
   {
-    std::string problem = Arrays::CheckNumeric(cloud->GetPointData(), name, "point array");
-    vtkDataArray* array = cloud->GetPointData()->GetArray(name.name);
-    problem += Arrays::CheckShape(array, "point array", 1, cloud->GetNumberOfPoints());
-    if (!problem.empty())
-    {
-      return problem;
-    }
+    Arrays::RequireNumeric(cloud->GetPointData(), name, "point array");
+    Arrays::RequireShape(
+      cloud->GetPointData()->GetArray(name.name), "point array", 1, cloud->GetNumberOfPoints());
   }
-  return {};
 }
 
 /// The points that are not clutter.
@@ -134,8 +120,9 @@ struct Targets
   bool AreTimed = false;          // else all times are 0
 };
 
-std::string ReadTargets(vtkPolyData* cloud, double rangeError, Targets& targets)
+Targets ReadTargets(vtkPolyData* cloud, double rangeError)
 {
+  Targets targets;
   vtkPointData* arrays = cloud->GetPointData();
   vtkDataArray* clutter = arrays->GetArray(Arrays::IsClutter.name);
   vtkDataArray* times = arrays->GetArray(Arrays::Timestamp.name);
@@ -155,14 +142,14 @@ std::string ReadTargets(vtkPolyData* cloud, double rangeError, Targets& targets)
     if (!IsNear(p) || !std::isfinite(point.time) ||
       !(point.rangeError >= 0.0 && point.rangeError <= LargestCoordinate))
     {
-      return "point " + std::to_string(i) +
+      vtkAvianLidarRequire("point " + std::to_string(i) +
         ": its coordinates, 'timestamp' or 'distance_std_error' are not finite, expected "
-        "coordinates up to 1e9 m and errors from 0 to 1e9 m";
+        "coordinates up to 1e9 m and errors from 0 to 1e9 m");
     }
     targets.Points.push_back(point);
     targets.Indices.push_back(i);
   }
-  return {};
+  return targets;
 }
 
 /// Those of one position first: cells of vertices come before those of lines.
@@ -265,8 +252,9 @@ struct vtkAvianLidarTracker::vtkInternals
   CloudFacts Facts; // of the cloud at hand
 
   static avianlidar::TrackerSettings SettingsOf(const vtkAvianLidarTracker& self);
-  std::string Track(vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns,
-    std::vector<int>& trackOfPoint);
+  // Track of each point of the cloud, or -1.
+  std::vector<int> Track(
+    vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns);
 };
 
 //------------------------------------------------------------------------------
@@ -326,16 +314,11 @@ avianlidar::TrackerSettings vtkAvianLidarTracker::vtkInternals::SettingsOf(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarTracker::vtkInternals::Track(vtkAvianLidarTracker* self,
-  vtkPolyData* input, vtkPolyData* cloud, bool warns, std::vector<int>& trackOfPoint)
+std::vector<int> vtkAvianLidarTracker::vtkInternals::Track(
+  vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns)
 {
   const CloudFacts& facts = this->Facts;
-  Targets targets;
-  std::string problem = ReadTargets(cloud, self->RangeError, targets);
-  if (!problem.empty())
-  {
-    return problem;
-  }
+  Targets targets = ReadTargets(cloud, self->RangeError);
   const double time = facts.Time;
   const bool isFirst = !this->After.Stream.Begun();
   const bool isLater = !isFirst && time > this->After.Stream.Time();
@@ -368,7 +351,7 @@ std::string vtkAvianLidarTracker::vtkInternals::Track(vtkAvianLidarTracker* self
   vtkAvianLidarAbort::StopIfWanted(self);
   const std::vector<int> ids =
     next.Tracker.update(clusters.all, sensor, time, settings, vtkAvianLidarAbort::KeepGoing(self));
-  trackOfPoint.assign(static_cast<std::size_t>(cloud->GetNumberOfPoints()), -1);
+  std::vector<int> trackOfPoint(static_cast<std::size_t>(cloud->GetNumberOfPoints()), -1);
   for (std::size_t i = 0; i < targets.Indices.size(); ++i)
   {
     trackOfPoint[static_cast<std::size_t>(targets.Indices[i])] = ids[clusters.ofPoint[i]];
@@ -389,11 +372,11 @@ std::string vtkAvianLidarTracker::vtkInternals::Track(vtkAvianLidarTracker* self
       << "Tracker: the 'timestamp' of points do not lie after those of the cloud before: the time "
          "of the cloud is used. Whole scans are expected, whose timestamps go on.");
   }
-  return {};
+  return trackOfPoint;
 }
 
 vtkStandardNewMacro(vtkAvianLidarTracker);
-vtkCxxSetObjectMacro(vtkAvianLidarTracker, Controller, vtkMultiProcessController);
+vtkAvianLidarCxxControllerMacro(vtkAvianLidarTracker);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarTracker::vtkAvianLidarTracker()
@@ -432,32 +415,20 @@ int vtkAvianLidarTracker::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarTracker::ModifyRequest(vtkInformation* request, int when)
-{
-  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
-    this->Superclass::ModifyRequest(request, when);
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarTracker::CheckSettings() const
+void vtkAvianLidarTracker::CheckSettings() const
 {
   for (const vtkInternals::Setting& setting : vtkInternals::Settings())
   {
-    const double value = setting.ValueOf(*this);
-    if (!(value >= setting.Least && value <= setting.Most))
-    {
-      std::ostringstream expected;
-      expected << setting.Least << " to " << setting.Most << " " << setting.Field.unit;
-      return avianlidar::valueError(setting.Property, value, expected.str().c_str());
-    }
+    std::ostringstream expected;
+    expected << setting.Least << " to " << setting.Most << " " << setting.Field.unit;
+    vtkAvianLidarRequire(avianlidar::rangeError(
+      setting.Property, setting.ValueOf(*this), setting.Least, setting.Most, expected.str()));
   }
-  if (!IsNear(this->SensorPosition))
-  {
-    return "SensorPosition has a number that is not finite or beyond 1e9, expected metres";
-  }
-  return this->ConfirmHits <= this->ConfirmScans
-    ? std::string()
-    : avianlidar::valueError("ConfirmHits", this->ConfirmHits, "at most ConfirmScans");
+  vtkAvianLidarRequire(IsNear(this->SensorPosition)
+      ? ""
+      : "SensorPosition has a number that is not finite or beyond 1e9, expected metres");
+  vtkAvianLidarRequire(avianlidar::rangeError(
+    "ConfirmHits", this->ConfirmHits, 1, this->ConfirmScans, "at most ConfirmScans"));
 }
 
 //------------------------------------------------------------------------------
@@ -473,13 +444,16 @@ int vtkAvianLidarTracker::RequestData(
       std::copy(this->SensorPosition, this->SensorPosition + 3, facts.Sensor);
       facts.HalfBeamwidth = this->HalfBeamwidth;
       ranks.Together(this,
-        [&]() -> std::string
+        [&]()
         {
           vtkAvianLidarAbort::StopIfWanted(this);
-          std::string problem = this->CheckSettings();
-          problem =
-            problem.empty() ? ReadFacts(this->Internals->After.Stream, input, facts) : problem;
-          return TrackerError(problem.empty() ? CheckArrays(input) : problem);
+          vtkAvianLidarWithin(TrackerPrefix,
+            [&]()
+            {
+              this->CheckSettings();
+              ReadFacts(this->Internals->After.Stream, input, facts);
+              CheckArrays(input);
+            });
         });
       vtkAvianLidarRanks::Settings settings;
       for (const vtkInternals::Setting& setting : vtkInternals::Settings())
@@ -493,14 +467,12 @@ int vtkAvianLidarTracker::RequestData(
       ranks.Together(this,
         [&]()
         {
-          return TrackerError(
-            this->Internals->Track(this, input, cloud, ranks.Rank() == 0, trackOfPoint));
+          trackOfPoint = vtkAvianLidarWithin(TrackerPrefix,
+            [&]() { return this->Internals->Track(this, input, cloud, ranks.Rank() == 0); });
         });
-      const int asked = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-      const int piece =
-        outputVector->GetInformationObject(asked)->Get(Pipeline::UPDATE_PIECE_NUMBER());
-      this->FillOutputs(piece == 0, input,
-        ranks.Alone() && piece > 0 ? nullptr : trackOfPoint.data() + first, outputVector);
+      const bool isOther = ranks.Alone() && ranks.Piece() > 0;
+      this->FillOutputs(
+        ranks.Piece() == 0, input, isOther ? nullptr : trackOfPoint.data() + first, outputVector);
     });
 }
 
@@ -547,9 +519,7 @@ void vtkAvianLidarTracker::FillOutputs(bool hasTracks, vtkPolyData* input, const
     }
     Arrays::SetFieldValue(fields, HalfBeamwidthName, facts.HalfBeamwidth);
     Arrays::SetFieldValue(fields, Arrays::Time, time);
-    auto sensor = Arrays::Make<vtkDoubleArray>(SensorPositionName, 1, 3);
-    sensor->SetTypedTuple(0, facts.Sensor);
-    fields->AddArray(sensor);
+    Arrays::SetFieldVector(fields, SensorPositionName, facts.Sensor);
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
   }
 }

@@ -38,14 +38,12 @@
 #ifndef vtkAvianLidarTracker_h
 #define vtkAvianLidarTracker_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr
-#include <string> // For messages
 
-class vtkMultiProcessController;
 class vtkPolyData;
 
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarTracker : public vtkPolyDataAlgorithm
@@ -61,136 +59,75 @@ public:
     MOTION_COORDINATED_TURN = 1
   };
 
-  ///@{
-  /** Largest gap in a cluster, m, 0 to 1000; see also ClusterAngle. Default 1.5. */
-  vtkSetMacro(ClusterDistance, double);
-  vtkGetMacro(ClusterDistance, double);
-  ///@}
+  /// Largest gap in a cluster, m, 0 to 1000; see also ClusterAngle. Default 1.5.
+  vtkAvianLidarPropertyMacro(ClusterDistance, double, 1.5);
+
+  /// Largest gap in a cluster as an angle at the sensor, deg, 0 to 20. Default 0.6.
+  vtkAvianLidarPropertyMacro(ClusterAngle, double, 0.6);
+
+  /// Standard error of ranges if the points do not give it, m, 0.001 to 1000. Default 0.5.
+  vtkAvianLidarPropertyMacro(RangeError, double, 0.5);
+
+  /// Half of the beam's divergence if the cloud does not give it, rad, 0 to 1. Default 0.0056.
+  vtkAvianLidarPropertyMacro(HalfBeamwidth, double, 0.0056);
+
+  /// Position of the sensor, m, for clouds without the field data `position`. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(SensorPosition, 3, 0.0, 0.0, 0.0);
+
+  /// Rms distance of echoes from the target's centre, m, 0.001 to 1000. Default 0.2 (assumed).
+  vtkAvianLidarPropertyMacro(TargetExtent, double, 0.2);
 
   ///@{
-  /** Largest gap in a cluster as an angle at the sensor, deg, 0 to 20. Default 0.6. */
-  vtkSetMacro(ClusterAngle, double);
-  vtkGetMacro(ClusterAngle, double);
-  ///@}
-
-  ///@{
-  /** Standard error of ranges if the points do not give it, m, 0.001 to 1000. Default 0.5. */
-  vtkSetMacro(RangeError, double);
-  vtkGetMacro(RangeError, double);
-  ///@}
-
-  ///@{
-  /** Half of the beam's divergence if the cloud does not give it, rad, 0 to 1. Default 0.0056. */
-  vtkSetMacro(HalfBeamwidth, double);
-  vtkGetMacro(HalfBeamwidth, double);
-  ///@}
-
-  ///@{
-  /** Position of the sensor, m, for clouds without the field data `position`. Default (0, 0, 0). */
-  vtkSetVector3Macro(SensorPosition, double);
-  vtkGetVector3Macro(SensorPosition, double);
-  ///@}
-
-  ///@{
-  /** Rms distance of echoes from the target's centre, m, 0.001 to 1000. Default 0.2 (assumed). */
-  vtkSetMacro(TargetExtent, double);
-  vtkGetMacro(TargetExtent, double);
-  ///@}
-
-  ///@{
-  /** Model of the birds' motion between scans. Default MOTION_COORDINATED_TURN. */
-  vtkSetMacro(MotionModel, int);
-  vtkGetMacro(MotionModel, int);
+  /// Model of the birds' motion between scans. Default MOTION_COORDINATED_TURN.
+  vtkAvianLidarPropertyMacro(MotionModel, int, MOTION_COORDINATED_TURN);
   void SetMotionModelToConstantVelocity() { this->SetMotionModel(MOTION_CONSTANT_VELOCITY); }
   void SetMotionModelToCoordinatedTurn() { this->SetMotionModel(MOTION_COORDINATED_TURN); }
   ///@}
 
-  ///@{
-  /** Power spectral density of the acceleration, m2/s3, 0 to 1e6. Default 10. */
-  vtkSetMacro(AccelerationDensity, double);
-  vtkGetMacro(AccelerationDensity, double);
-  ///@}
+  /// Power spectral density of the acceleration, m2/s3, 0 to 1e6. Default 10.
+  vtkAvianLidarPropertyMacro(AccelerationDensity, double, 10.0);
 
-  ///@{
-  /** Power spectral density of the turn rate's change, deg2/s3, 0 to 1e6. Default 40. */
-  vtkSetMacro(TurnRateDensity, double);
-  vtkGetMacro(TurnRateDensity, double);
-  ///@}
+  /// Power spectral density of the turn rate's change, deg2/s3, 0 to 1e6. Default 40.
+  vtkAvianLidarPropertyMacro(TurnRateDensity, double, 40.0);
 
-  ///@{
-  /** Largest speed over ground of a new track, m/s, 0.1 to 1000. Default 25 (assumed). */
-  vtkSetMacro(MaximumSpeed, double);
-  vtkGetMacro(MaximumSpeed, double);
-  ///@}
+  /// Largest speed over ground of a new track, m/s, 0.1 to 1000. Default 25 (assumed).
+  vtkAvianLidarPropertyMacro(MaximumSpeed, double, 25.0);
 
-  ///@{
-  /** Largest climb or descent of a new track, m/s, 0.1 to 1000. Default 5 (assumed). */
-  vtkSetMacro(MaximumClimbRate, double);
-  vtkGetMacro(MaximumClimbRate, double);
-  ///@}
+  /// Largest climb or descent of a new track, m/s, 0.1 to 1000. Default 5 (assumed).
+  vtkAvianLidarPropertyMacro(MaximumClimbRate, double, 5.0);
 
-  ///@{
-  /** Largest turn rate of a new track, deg/s, 0 to 360. Default 40 (assumed). */
-  vtkSetMacro(MaximumTurnRate, double);
-  vtkGetMacro(MaximumTurnRate, double);
-  ///@}
+  /// Largest turn rate of a new track, deg/s, 0 to 360. Default 40 (assumed).
+  vtkAvianLidarPropertyMacro(MaximumTurnRate, double, 40.0);
 
-  ///@{
-  /** Probability that a track's own cluster lies in its gate, 1, 0.5 to 0.999999. Default 0.99. */
-  vtkSetMacro(GateProbability, double);
-  vtkGetMacro(GateProbability, double);
-  ///@}
+  /// Probability that a track's own cluster lies in its gate, 1, 0.5 to 0.999999. Default 0.99.
+  vtkAvianLidarPropertyMacro(GateProbability, double, 0.99);
 
-  ///@{
-  /** Number of hits in the last ConfirmScans scans that confirm a track, at least 1. Default 3. */
-  vtkSetMacro(ConfirmHits, int);
-  vtkGetMacro(ConfirmHits, int);
-  ///@}
+  /// Number of hits in the last ConfirmScans scans that confirm a track, at least 1. Default 3.
+  vtkAvianLidarPropertyMacro(ConfirmHits, int, 3);
 
-  ///@{
-  /** Number of last scans in which ConfirmHits hits confirm a track, 1 to 32. Default 4. */
-  vtkSetMacro(ConfirmScans, int);
-  vtkGetMacro(ConfirmScans, int);
-  ///@}
+  /// Number of last scans in which ConfirmHits hits confirm a track, 1 to 32. Default 4.
+  vtkAvianLidarPropertyMacro(ConfirmScans, int, 4);
 
-  ///@{
-  /** Least speed at which a track is confirmed, m/s, 0 to 1000. Default 0. */
-  vtkSetMacro(MinimumSpeed, double);
-  vtkGetMacro(MinimumSpeed, double);
-  ///@}
+  /// Least speed at which a track is confirmed, m/s, 0 to 1000. Default 0.
+  vtkAvianLidarPropertyMacro(MinimumSpeed, double, 0.0);
 
-  ///@{
-  /** Number of successive misses after which a confirmed track ends, 1 to 1000. Default 3. */
-  vtkSetMacro(MaximumMisses, int);
-  vtkGetMacro(MaximumMisses, int);
-  ///@}
+  /// Number of successive misses after which a confirmed track ends, 1 to 1000. Default 3.
+  vtkAvianLidarPropertyMacro(MaximumMisses, int, 3);
 
-  ///@{
-  /** Time without a cluster after which any track ends, s, 0.001 to 1e9. Default 30. */
-  vtkSetMacro(MaximumPause, double);
-  vtkGetMacro(MaximumPause, double);
-  ///@}
+  /// Time without a cluster after which any track ends, s, 0.001 to 1e9. Default 30.
+  vtkAvianLidarPropertyMacro(MaximumPause, double, 30.0);
 
-  ///@{
-  /** Time for which an ended track stays in the output, s, 0 to 1e9. Default 60. */
-  vtkSetMacro(KeepTime, double);
-  vtkGetMacro(KeepTime, double);
-  ///@}
+  /// Time for which an ended track stays in the output, s, 0 to 1e9. Default 60.
+  vtkAvianLidarPropertyMacro(KeepTime, double, 60.0);
 
-  ///@{
-  /** Number of positions that a track keeps, 1 to 1,000,000. Default 200. */
-  vtkSetMacro(HistoryLength, int);
-  vtkGetMacro(HistoryLength, int);
-  ///@}
+  /// Number of positions that a track keeps, 1 to 1,000,000. Default 200.
+  vtkAvianLidarPropertyMacro(HistoryLength, int, 200);
 
   /// Empty the memory: the next cloud counts as the first, and ids begin at 0.
   void Reset();
 
-  ///@{
-  /** Processes that may work together; null: only this one. Default: the global controller. */
-  void SetController(vtkMultiProcessController* controller);
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);
-  ///@}
+  /// Processes that may work together; null: only this one. Default: the global controller.
+  vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
 
@@ -200,36 +137,13 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  int ModifyRequest(vtkInformation* request, int when) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  double ClusterDistance = 1.5;
-  double ClusterAngle = 0.6;
-  double RangeError = 0.5;
-  double HalfBeamwidth = 0.0056;
-  double TargetExtent = 0.2;
-  double SensorPosition[3] = { 0.0, 0.0, 0.0 };
-  int MotionModel = MOTION_COORDINATED_TURN;
-  double AccelerationDensity = 10.0;
-  double TurnRateDensity = 40.0;
-  double MaximumSpeed = 25.0;
-  double MaximumClimbRate = 5.0;
-  double MaximumTurnRate = 40.0;
-  double GateProbability = 0.99;
-  int ConfirmHits = 3;
-  int ConfirmScans = 4;
-  double MinimumSpeed = 0.0;
-  int MaximumMisses = 3;
-  double MaximumPause = 30.0;
-  int HistoryLength = 200;
-  double KeepTime = 60.0;
-  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkAvianLidarTracker(const vtkAvianLidarTracker&) = delete;
   void operator=(const vtkAvianLidarTracker&) = delete;
 
-  std::string CheckSettings() const;
+  void CheckSettings() const;
   void FillOutputs(bool hasTracks, vtkPolyData* input, const int* trackOfPoint,
     vtkInformationVector* outputVector) const;
 

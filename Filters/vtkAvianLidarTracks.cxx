@@ -9,6 +9,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBirds.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"
@@ -73,32 +74,23 @@ public:
     , CellSpecies(StringsOf(input->GetCellData(), "cell array"))
     , FieldSpecies(StringsOf(input->GetFieldData(), "field data"))
   {
-    const vtkIdType lines = input->GetNumberOfLines();
-    std::string bad = Arrays::CheckNumeric(input->GetPointData(), Arrays::Time, "point array");
-    if (bad.empty() && !this->Times)
-    {
-      bad = "has no point array 'time', expected the times of its points in s";
-    }
-    bad = !bad.empty()
-      ? bad
-      : Arrays::CheckShape(this->Times, "point array", 1, input->GetNumberOfPoints());
-    if (bad.empty() && !this->CellSpecies && this->FieldSpecies &&
-      this->FieldSpecies->GetNumberOfValues() != 1 &&
-      this->FieldSpecies->GetNumberOfValues() != lines)
-    {
-      bad = "field data 'species' has " + std::to_string(this->FieldSpecies->GetNumberOfValues()) +
-        " values, expected 1 or " + std::to_string(lines);
-    }
-    if (bad.empty() && this->CellSpecies &&
-      this->CellSpecies->GetNumberOfValues() != input->GetNumberOfCells())
-    {
-      bad = "cell array 'species' has " + std::to_string(this->CellSpecies->GetNumberOfValues()) +
-        " values, expected " + std::to_string(input->GetNumberOfCells());
-    }
-    if (!bad.empty())
-    {
-      throw std::runtime_error("Input port 0: " + bad);
-    }
+    vtkAvianLidarWithin("Input port 0: ",
+      [&]()
+      {
+        Arrays::RequireNumeric(input->GetPointData(), Arrays::Time, "point array");
+        vtkAvianLidarRequire(
+          this->Times ? "" : "has no point array 'time', expected the times of its points in s");
+        Arrays::RequireShape(this->Times, "point array", 1, input->GetNumberOfPoints());
+        const bool byCell = this->CellSpecies != nullptr;
+        vtkStringArray* names = byCell ? this->CellSpecies : this->FieldSpecies;
+        const vtkIdType wanted = byCell ? input->GetNumberOfCells() : input->GetNumberOfLines();
+        const vtkIdType count = names ? names->GetNumberOfValues() : wanted;
+        vtkAvianLidarRequire(count == wanted || (!byCell && count == 1)
+            ? ""
+            : (byCell ? "cell array" : "field data") + std::string(" 'species' has ") +
+              std::to_string(count) + " values, expected " + (byCell ? "" : "1 or ") +
+              std::to_string(wanted));
+      });
   }
 
   bool HasSpecies() const { return this->CellSpecies || this->FieldSpecies; }
@@ -387,11 +379,7 @@ private:
     settings.heights = { this->Self->Heights[0], this->Self->Heights[1] };
     settings.thresholdPosition = VectorOf(this->Self->ThresholdPosition);
     settings.thresholdHeading = this->Self->ThresholdHeading;
-    const std::string bad = avianlidar::checkFlights(settings);
-    if (!bad.empty())
-    {
-      throw std::runtime_error(bad);
-    }
+    vtkAvianLidarRequire(avianlidar::checkFlights(settings));
     avianlidar::requireMemory(
       settings.numberOfBirds, "birds (NumberOfBirds)", settings.numberOfBirds * BytesOfBird);
     return settings;
@@ -400,10 +388,8 @@ private:
   void Read()
   {
     const double* origin = this->Self->Origin;
-    if (this->Self->FileName.empty())
-    {
-      throw std::runtime_error("FileName is empty, expected a file of tracks");
-    }
+    vtkAvianLidarRequire(
+      this->Self->FileName.empty() ? "FileName is empty, expected a file of tracks" : "");
     this->Flights =
       avianlidar::readFlights(vtkAvianLidarBirds::TextOf("FileName", this->Self->FileName),
         this->Self->FileName, this->Known, { origin[0], origin[1], origin[2] }, this->Self->Seed);
@@ -411,21 +397,20 @@ private:
 
   void Take(vtkPolyData* input)
   {
-    if (!input)
+    vtkAvianLidarRequire(input ? ""
+                               : "Input port 0 has no connection, expected lines with the "
+                                 "point array 'time', as Pattern is Lines");
+    if (input->GetNumberOfLines() > 0)
     {
-      throw std::runtime_error("Input port 0 has no connection, expected lines with the point "
-                               "array 'time', as Pattern is Lines");
+      LineTracks lines(input, this->Known);
+      this->Flights = lines.Read(lines.HasSpecies() ? 0 : this->Own(), this->Self->Seed);
     }
-    if (input->GetNumberOfLines() == 0)
+    else
     {
-      if (input->GetNumberOfPoints() > 0)
-      {
-        throw std::runtime_error("Input port 0 has points but no lines, expected lines");
-      }
-      return;
+      vtkAvianLidarRequire(input->GetNumberOfPoints() > 0
+          ? "Input port 0 has points but no lines, expected lines"
+          : "");
     }
-    LineTracks lines(input, this->Known);
-    this->Flights = lines.Read(lines.HasSpecies() ? 0 : this->Own(), this->Self->Seed);
   }
 
   vtkAvianLidarTracks* Self;
@@ -439,9 +424,6 @@ vtkAvianLidarTracks::vtkAvianLidarTracks()
   this->SetNumberOfInputPorts(1);
   this->SetNumberOfOutputPorts(2);
 }
-
-//------------------------------------------------------------------------------
-vtkAvianLidarTracks::~vtkAvianLidarTracks() = default;
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarTracks::FillInputPortInformation(int, vtkInformation* info)
@@ -463,31 +445,22 @@ int vtkAvianLidarTracks::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      if (this->Pattern < PATTERN_CROSSINGS || this->Pattern > PATTERN_LINES)
-      {
-        return avianlidar::valueError("Pattern", this->Pattern,
-          "0 (crossings), 1 (circles), 2 (flock), 3 (approach), 4 (file) or 5 (lines)");
-      }
+      vtkAvianLidarRequire(
+        avianlidar::rangeError("Pattern", this->Pattern, PATTERN_CROSSINGS, PATTERN_LINES,
+          "0 (crossings), 1 (circles), 2 (flock), 3 (approach), 4 (file) or 5 (lines)"));
       const double* origin = this->Origin;
-      const std::string misplaced =
-        avianlidar::GeodeticFrame::checkOrigin(origin[0], origin[1], origin[2]);
-      if (!misplaced.empty())
-      {
-        return "Origin: " + misplaced;
-      }
+      vtkAvianLidarRequire(
+        avianlidar::GeodeticFrame::checkOrigin(origin[0], origin[1], origin[2]), "Origin: ");
       vtkAvianLidarBirds::CheckReflectance(this->Reflectance);
       vtkFlights made(this);
       made.Make(vtkPolyData::GetData(inputVector[0]));
       const std::vector<Flight>& flights = made.Flights;
       const std::size_t most = std::numeric_limits<int>::max() - flights.size();
-      if (this->FirstObjectId < 0 || static_cast<std::size_t>(this->FirstObjectId) > most)
-      {
-        return avianlidar::valueError("FirstObjectId", this->FirstObjectId,
-          ("0 to " + std::to_string(most) + " for this many birds").c_str());
-      }
+      vtkAvianLidarRequire(avianlidar::rangeError("FirstObjectId", this->FirstObjectId, 0.0,
+        static_cast<double>(most), "0 to " + std::to_string(most) + " for this many birds"));
       auto* blocks = vtkMultiBlockDataSet::GetData(outputVector, 0);
       blocks->SetNumberOfBlocks(static_cast<unsigned int>(flights.size()));
       Movers movers(made.Known, this->Reflectance);
@@ -504,15 +477,10 @@ int vtkAvianLidarTracks::RequestData(
         if (i % 1024 == 1023)
         {
           this->UpdateProgress(static_cast<double>(i) / static_cast<double>(flights.size()));
-          if (vtkAvianLidarAbort::Wanted(this))
-          {
-            blocks->Initialize();
-            return {};
-          }
+          vtkAvianLidarAbort::StopIfWanted(this);
         }
       }
       trails.Fill(vtkPolyData::GetData(outputVector, 1));
-      return {};
     });
 }
 

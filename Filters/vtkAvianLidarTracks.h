@@ -33,9 +33,8 @@
 #ifndef vtkAvianLidarTracks_h
 #define vtkAvianLidarTracks_h
 
-#include "vtkAvianLidarErrorsAsData.h"
-#include "vtkAvianLidarFilePath.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkMultiBlockDataSetAlgorithm.h"
 
 #include <string> // For std::string
@@ -58,9 +57,8 @@ public:
   };
 
   ///@{
-  /** Pattern of the flights, or source of the tracks. Default PATTERN_CROSSINGS. */
-  vtkSetMacro(Pattern, int);
-  vtkGetMacro(Pattern, int);
+  /// Pattern of the flights, or source of the tracks. Default PATTERN_CROSSINGS.
+  vtkAvianLidarPropertyMacro(Pattern, int, PATTERN_CROSSINGS);
   void SetPatternToCrossings() { this->SetPattern(PATTERN_CROSSINGS); }
   void SetPatternToCircles() { this->SetPattern(PATTERN_CIRCLES); }
   void SetPatternToFlock() { this->SetPattern(PATTERN_FLOCK); }
@@ -69,119 +67,59 @@ public:
   void SetPatternToLines() { this->SetPattern(PATTERN_LINES); }
   ///@}
 
-  ///@{
-  /**
-   * File of tracks for PATTERN_FILE (CSV), with the header "id,species,time,x,y,z" (s, m) or
-   * "id,species,time,longitude,latitude,height" (s, deg, m above WGS84). Default: none.
-   */
+  /// File of tracks for PATTERN_FILE (CSV), with the header "id,species,time,x,y,z" (s, m) or
+  /// "id,species,time,longitude,latitude,height" (s, deg, m above WGS84). Default: none.
   vtkAvianLidarFilePathMacro(FileName);
-  ///@}
 
-  ///@{
-  /**
-   * Origin of the scene for a file with longitude and latitude: latitude in [-90, 90] and longitude
-   * in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
-   */
-  vtkSetVector3Macro(Origin, double);
-  vtkGetVector3Macro(Origin, double);
-  ///@}
+  /// Origin of the scene for a file with longitude and latitude: latitude in [-90, 90] and
+  /// longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Origin, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Name of a species. Default: empty (starling for flocks, herring gull otherwise). */
-  vtkSetMacro(Species, std::string);
-  vtkGetMacro(Species, std::string);
-  ///@}
+  /// Name of a species. Default: empty (starling for flocks, herring gull otherwise).
+  vtkAvianLidarPropertyMacro(Species, std::string, {});
 
-  ///@{
-  /** Table of the user's species, as for vtkAvianLidarBirdSource. Default: none. */
+  /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: none.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
-  ///@}
 
-  ///@{
-  /** Number of birds, 0 to 100,000; not used by files and lines. Default 10. */
-  vtkSetMacro(NumberOfBirds, int);
-  vtkGetMacro(NumberOfBirds, int);
-  ///@}
+  /// Number of birds, 0 to 100,000; not used by files and lines. Default 10.
+  vtkAvianLidarPropertyMacro(NumberOfBirds, int, 10);
 
-  ///@{
-  /** Seed of all random numbers, any int. Default 0. */
-  vtkSetMacro(Seed, int);
-  vtkGetMacro(Seed, int);
-  ///@}
+  /// Seed of all random numbers, any int. Default 0.
+  vtkAvianLidarPropertyMacro(Seed, int, 0);
 
-  ///@{
-  /** Start and end of the flights, s, rising, at most 1e9 in magnitude. Default (0, 60). */
-  vtkSetVector2Macro(TimeRange, double);
-  vtkGetVector2Macro(TimeRange, double);
-  ///@}
+  /// Start and end of the flights, s, rising, at most 1e9 in magnitude. Default (0, 60).
+  vtkAvianLidarVectorMacro(TimeRange, 2, 0.0, 60.0);
 
-  ///@{
-  /** Centre of the region, m, at most 1e9 in magnitude. Default (0, 0, 0). */
-  vtkSetVector3Macro(Center, double);
-  vtkGetVector3Macro(Center, double);
-  ///@}
+  /// Centre of the region, m, at most 1e9 in magnitude. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(Center, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Half of the horizontal width of the region, m, 0 to 1e9. Default 500. */
-  vtkSetMacro(Radius, double);
-  vtkGetMacro(Radius, double);
-  ///@}
+  /// Half of the horizontal width of the region, m, 0 to 1e9. Default 500.
+  vtkAvianLidarPropertyMacro(Radius, double, 500.0);
 
-  ///@{
-  /** Lowest and highest flight above Center, m, at most 1e9 in magnitude. Default (10, 150). */
-  vtkSetVector2Macro(Heights, double);
-  vtkGetVector2Macro(Heights, double);
-  ///@}
+  /// Lowest and highest flight above Center, m, at most 1e9 in magnitude. Default (10, 150).
+  vtkAvianLidarVectorMacro(Heights, 2, 10.0, 150.0);
 
-  ///@{
-  /** Runway's threshold, for PATTERN_APPROACH, m, at most 1e9 in magnitude. Default (0, 0, 0). */
-  vtkSetVector3Macro(ThresholdPosition, double);
-  vtkGetVector3Macro(ThresholdPosition, double);
-  ///@}
+  /// Runway's threshold, for PATTERN_APPROACH, m, at most 1e9 in magnitude. Default (0, 0, 0).
+  vtkAvianLidarVectorMacro(ThresholdPosition, 3, 0.0, 0.0, 0.0);
 
-  ///@{
-  /** Direction of landing, deg from north, clockwise, at most 1e9 in magnitude. Default 0. */
-  vtkSetMacro(ThresholdHeading, double);
-  vtkGetMacro(ThresholdHeading, double);
-  ///@}
+  /// Direction of landing, deg from north, clockwise, at most 1e9 in magnitude. Default 0.
+  vtkAvianLidarPropertyMacro(ThresholdHeading, double, 0.0);
 
-  ///@{
-  /** Reflectance of the plumage at the lidar's wavelength, 1, 0 to 1. Default 0.3 (assumed). */
-  vtkSetMacro(Reflectance, double);
-  vtkGetMacro(Reflectance, double);
-  ///@}
+  /// Reflectance of the plumage at the lidar's wavelength, 1, 0 to 1. Default 0.3 (assumed).
+  vtkAvianLidarPropertyMacro(Reflectance, double, 0.3);
 
-  ///@{
-  /** First of the birds' successive `object_id`, at least 0, unique in the scene. Default 10000. */
-  vtkSetMacro(FirstObjectId, int);
-  vtkGetMacro(FirstObjectId, int);
-  ///@}
+  /// First of the birds' successive `object_id`, at least 0, unique in the scene. Default 10000.
+  vtkAvianLidarPropertyMacro(FirstObjectId, int, 10000);
 
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:
   vtkAvianLidarTracks();
-  ~vtkAvianLidarTracks() override;
+  ~vtkAvianLidarTracks() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  int Pattern = PATTERN_CROSSINGS;
-  std::string FileName;
-  double Origin[3] = { 0.0, 0.0, 0.0 };
-  std::string Species;
-  std::string SpeciesFileName;
-  int NumberOfBirds = 10;
-  int Seed = 0;
-  double TimeRange[2] = { 0.0, 60.0 };
-  double Center[3] = { 0.0, 0.0, 0.0 };
-  double Radius = 500.0;
-  double Heights[2] = { 10.0, 150.0 };
-  double ThresholdPosition[3] = { 0.0, 0.0, 0.0 };
-  double ThresholdHeading = 0.0;
-  double Reflectance = 0.3;
-  int FirstObjectId = 10000;
 
 private:
   vtkAvianLidarTracks(const vtkAvianLidarTracks&) = delete;

@@ -43,17 +43,13 @@ void vtkAvianLidarCloudWriter::WriteData()
   this->SetErrorCode(vtkErrorCode::UserError);
   try
   {
-    const std::string failed = vtkAvianLidarGuard::FailedInput(this);
     if (!this->FileName || !*this->FileName)
     {
       this->SetErrorCode(vtkErrorCode::NoFileNameError);
       vtkErrorMacro("FileName is not set, expected the name of the file to write.");
       return;
     }
-    if (!failed.empty())
-    {
-      throw std::runtime_error(failed);
-    }
+    vtkAvianLidarGuard::RequireInputs(this);
     vtkAvianLidarAbort::StopIfWanted(this);
     this->WriteCloud(input);
     this->SetErrorCode(vtkErrorCode::NoError);

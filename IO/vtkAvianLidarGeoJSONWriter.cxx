@@ -170,7 +170,8 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   if (this->UseFieldDataLimit)
   {
     limit = 0.0;
-    fields::Require(names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit));
+    fields::Require(
+      [&] { names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit); });
   }
   else if (std::isnan(limit))
   {

@@ -239,8 +239,8 @@ private:
 };
 
 /// Chooses the frame of the written points. Sets origin and zone of `geodesy` and the output's WKT.
-Frame Place(vtkPointSet* input, int system, int zone, const std::function<void(std::string)>& warn,
-  GeodeticFrame& geodesy, formats::LasOutput& output)
+Frame PlaceFile(vtkPointSet* input, int system, int zone,
+  const std::function<void(std::string)>& warn, GeodeticFrame& geodesy, formats::LasOutput& output)
 {
   const std::optional<Point> origin = fields::FindOrigin(input);
   output.crs = fields::FindText(input, CrsName);
@@ -299,7 +299,8 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
     warn(" has other values or names of the point arrays " + extra.Changed + ".");
   }
   GeodeticFrame geodesy;
-  const Frame target = Place(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
+  const Frame target =
+    PlaceFile(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
   output.position = [&](std::int64_t i)
   {
     Point point;

@@ -61,15 +61,15 @@ std::string ReadPattern(vtkPointSet* input, avianlidar::ScanPattern& pattern)
   pattern.azimuthStart = range->GetComponent(0, 0);
   pattern.azimuthEnd = range->GetComponent(1 / width, 1 % width);
   pattern.channels = formats::nearest(Scalar::Int32, channels);
-  for (const std::string& wrong :
-    { names::ReadFieldValue(data, names::MinimumElevation, pattern.minimumElevation),
-      names::ReadFieldValue(data, names::ElevationStep, pattern.elevationStep),
-      names::CheckNumeric(data, names::ChannelElevations, "field data") })
+  try
   {
-    if (!wrong.empty())
-    {
-      return "the " + wrong;
-    }
+    names::ReadFieldValue(data, names::MinimumElevation, pattern.minimumElevation);
+    names::ReadFieldValue(data, names::ElevationStep, pattern.elevationStep);
+    names::RequireNumeric(data, names::ChannelElevations, "field data");
+  }
+  catch (const std::runtime_error& error)
+  {
+    return std::string("the ") + error.what();
   }
   vtkDataArray* table = data->GetArray(names::ChannelElevations.name);
   for (vtkIdType i = 0; table && i < table->GetNumberOfValues(); ++i)

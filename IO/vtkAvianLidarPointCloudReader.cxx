@@ -8,6 +8,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkInformation.h"
@@ -178,21 +179,21 @@ int vtkAvianLidarPointCloudReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkPolyData* output = vtkPolyData::GetData(info);
       output->Initialize();
-      if (!this->FileName || !*this->FileName)
+      vtkAvianLidarRequire(this->FileName && *this->FileName
+          ? ""
+          : "FileName is not set, expected the name of a " + formats::knownEndings() + " file");
+      if (fields::IsOtherPiece(info))
       {
-        return "FileName is not set, expected the name of a " + formats::knownEndings() + " file";
+        return;
       }
-      if (fields::IsOtherPiece(info) || !this->Internals->Problem.empty())
-      {
-        return fields::IsOtherPiece(info) ? std::string() : this->Internals->Problem;
-      }
+      vtkAvianLidarRequire(this->Internals->Problem);
       vtkAvianLidarAbort::StopIfWanted(this);
-      return fields::ErrorIn(this->FileName, NoMemory,
+      const std::string error = fields::ErrorIn(this->FileName, NoMemory,
         [&]
         {
           const std::vector<double>& times = this->Internals->Times;
@@ -218,6 +219,7 @@ int vtkAvianLidarPointCloudReader::RequestData(
           output->GetPointData()->SetActiveScalars(
             simulated ? names::Energy.name : names::Intensity.name);
         });
+      vtkAvianLidarRequire(error);
     });
 }
 

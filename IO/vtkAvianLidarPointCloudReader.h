@@ -34,8 +34,8 @@
 #ifndef vtkAvianLidarPointCloudReader_h
 #define vtkAvianLidarPointCloudReader_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <memory> // For std::unique_ptr

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"
@@ -192,15 +193,14 @@ int vtkAvianLidarSceneReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkMultiBlockDataSet* output = vtkMultiBlockDataSet::GetData(info);
       output->Initialize();
-      if (!this->FileName || !*this->FileName)
-      {
-        return "FileName is not set, expected the name of a .lidarscene.json file";
-      }
+      vtkAvianLidarRequire(this->FileName && *this->FileName
+          ? ""
+          : "FileName is not set, expected the name of a .lidarscene.json file");
       const int piece = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
         ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
         : 0;
@@ -217,11 +217,10 @@ int vtkAvianLidarSceneReader::RequestData(
         AddFieldData(built, output->GetFieldData());
         AddBlocks(built, piece > 0, output);
         this->UpdateProgress(1.0);
-        return {};
       }
       catch (const std::bad_alloc&)
       {
-        return std::string(this->FileName) + ": there is not enough memory for it";
+        vtkAvianLidarRequire(": there is not enough memory for it", this->FileName);
       }
     });
 }

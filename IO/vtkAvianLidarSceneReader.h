@@ -34,8 +34,8 @@
 #ifndef vtkAvianLidarSceneReader_h
 #define vtkAvianLidarSceneReader_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkMultiBlockDataSetAlgorithm.h"
 
 #include <string> // For std::string

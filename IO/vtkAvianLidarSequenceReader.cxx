@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"
@@ -338,33 +339,33 @@ int vtkAvianLidarSequenceReader::RequestData(
   vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
       vtkInformation* info = outputVector->GetInformationObject(port);
-      if (!this->FileName || !*this->FileName)
-      {
-        return "FileName is not set, expected the times.txt of a sequence";
-      }
+      vtkAvianLidarRequire(this->FileName && *this->FileName
+          ? ""
+          : "FileName is not set, expected the times.txt of a sequence");
       if (vtkAvianLidarCloudFields::IsOtherPiece(info))
       {
-        return {};
+        return;
       }
       vtkAvianLidarAbort::StopIfWanted(this);
-      return vtkAvianLidarCloudFields::ErrorIn(this->FileName,
-        "there is not enough memory for a scan",
-        [&]
-        {
-          const std::vector<double> times = TimesOf(this->FileName);
-          const std::size_t scan = vtkAvianLidarCloudFields::StepOf(times, info);
-          vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
-          vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
-          ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
-          for (vtkPolyData* output : { points, boxes })
+      const std::string error =
+        vtkAvianLidarCloudFields::ErrorIn(this->FileName, "there is not enough memory for a scan",
+          [&]
           {
-            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
-          }
-        });
+            const std::vector<double> times = TimesOf(this->FileName);
+            const std::size_t scan = vtkAvianLidarCloudFields::StepOf(times, info);
+            vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
+            vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
+            ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
+            for (vtkPolyData* output : { points, boxes })
+            {
+              output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
+            }
+          });
+      vtkAvianLidarRequire(error);
     });
 }
 

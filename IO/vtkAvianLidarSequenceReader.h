@@ -27,8 +27,8 @@
 #ifndef vtkAvianLidarSequenceReader_h
 #define vtkAvianLidarSequenceReader_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <vector> // For the times

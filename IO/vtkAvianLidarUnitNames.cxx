@@ -69,7 +69,7 @@ int vtkAvianLidarUnitNames::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
-    [&]() -> std::string
+    [&]()
     {
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
@@ -82,7 +82,6 @@ int vtkAvianLidarUnitNames::RequestData(
           Rename(from, output->GetAttributes(kind));
         }
       }
-      return {};
     });
 }
 

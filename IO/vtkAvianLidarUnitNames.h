@@ -14,8 +14,8 @@
 #ifndef vtkAvianLidarUnitNames_h
 #define vtkAvianLidarUnitNames_h
 
-#include "vtkAvianLidarErrorsAsData.h"
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkPassInputTypeAlgorithm.h"
 
 #include <string> // For std::string

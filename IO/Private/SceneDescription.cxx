@@ -8,7 +8,6 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <cmath>
-#include <sstream>
 
 namespace avianlidar::scene
 {
@@ -512,8 +511,7 @@ bool MatchesPattern(const std::string& pattern, const std::string& name)
 
 Scene ReadDescription(const std::string& file, const std::string& text)
 {
-  std::istringstream stream(text);
-  const Json json = text.empty() ? ReadJson(file) : ReadJson(stream, file);
+  const Json json = text.empty() ? ReadJson(file) : ParseJson(text, file);
   Scene scene;
   scene.file = file;
   const JsonNode root(json, "", scene.file);

@@ -51,7 +51,7 @@ std::string UnitOf(vtkAbstractArray* array)
 /// Returns three numbers of the field data, or no value if the array is missing.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
-  Require(names::CheckNumeric(input->GetFieldData(), name, "field data"));
+  Require([&] { names::RequireNumeric(input->GetFieldData(), name, "field data"); });
   vtkDataArray* array = input->GetFieldData()->GetArray(name.name);
   if (!array)
   {
@@ -155,15 +155,6 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
 }
 
 //------------------------------------------------------------------------------
-void Require(const std::string& wrong)
-{
-  if (!wrong.empty())
-  {
-    throw FormatError("the " + wrong);
-  }
-}
-
-//------------------------------------------------------------------------------
 bool IsTooLongForDouble(vtkDataArray* array)
 {
   constexpr double limit = 9007199254740992.0; // 2^53, to which 2^53 + 1 is rounded
@@ -183,13 +174,14 @@ bool IsTooLongForDouble(vtkDataArray* array)
 //------------------------------------------------------------------------------
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
 {
-  Require(names::CheckShape(array, "point array", components, input->GetNumberOfPoints()));
+  Require(
+    [&] { names::RequireShape(array, "point array", components, input->GetNumberOfPoints()); });
 }
 
 //------------------------------------------------------------------------------
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
-  Require(names::CheckNumeric(input->GetPointData(), { name, "" }, "point array"));
+  Require([&] { names::RequireNumeric(input->GetPointData(), { name, "" }, "point array"); });
   vtkDataArray* array = input->GetPointData()->GetArray(name);
   RequireShape(array, 1, input);
   return array;
@@ -344,7 +336,7 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
 vtkDataArray* FindColours(vtkPointSet* input)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
-  Require(names::CheckNumeric(input->GetPointData(), names::Rgb, "point array"));
+  Require([&] { names::RequireNumeric(input->GetPointData(), names::Rgb, "point array"); });
   if (!array || array->GetNumberOfComponents() == 1)
   {
     return nullptr;
@@ -417,7 +409,7 @@ std::optional<Point> FindOrigin(vtkPointSet* input)
 //------------------------------------------------------------------------------
 vtkStringArray* FindTexts(vtkPointSet* input, const char* name)
 {
-  Require(names::CheckText(input->GetFieldData(), { name, "" }));
+  Require([&] { names::RequireText(input->GetFieldData(), { name, "" }); });
   return vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
 }
 

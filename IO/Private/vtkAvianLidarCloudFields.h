@@ -18,6 +18,8 @@
 
 #include <new>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 class vtkAbstractArray;
@@ -33,12 +35,21 @@ namespace vtkAvianLidarCloudFields
 using avianlidar::formats::Cloud;
 using avianlidar::formats::CloudNotes;
 using avianlidar::formats::Field;
+using avianlidar::formats::FormatError;
 using avianlidar::formats::Point;
 using avianlidar::formats::SensorPose;
 
-/// Throws FormatError with the fault that a check of vtkAvianLidarArrays found, unless `wrong` is
-/// empty.
-void Require(const std::string& wrong);
+/// Runs a check of vtkAvianLidarArrays. Throws FormatError with the fault that the check finds.
+template <class Check>
+void Require(const Check& check)
+try
+{
+  check();
+}
+catch (const std::runtime_error& error)
+{
+  throw FormatError(std::string("the ") + error.what());
+}
 
 /// Returns the numeric point array of a name, or null. Throws if the array has several components.
 vtkDataArray* Find(vtkPointSet* input, const char* name);

@@ -294,6 +294,15 @@ class Legal(Faults):
         self.warnings(echo, [own, box((0, 50, 0), (10, 1, 10), "Wall")])
         self.assertEqual(echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0), 0.0)
 
+    def test_orientation_without_numbers(self):
+        source, text = make("BeamSource", BeamOutline=1), vtk.vtkStringArray()
+        source.Update()
+        slits = copy_of(source.GetOutput())
+        text.SetName("orientation")
+        text.InsertNextValue("north")
+        slits.GetFieldData().AddArray(text)
+        self.fails(make("EchoFilter"), [slits, surfaces()], r"port 0 \(beams\), field data 'orientation' holds no numbers")
+
     def test_partitions_are_chosen_by_the_name_of_their_set(self):
         sets = vtk.vtkPartitionedDataSetCollection()
         for i, name in enumerate(("fence", "wall")):

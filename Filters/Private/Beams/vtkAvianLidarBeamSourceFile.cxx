@@ -5,6 +5,7 @@
 
 #include "AvailableMemory.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkPointData.h"
@@ -74,65 +75,42 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeamSource::vtkInternals::ReadTable(
+void vtkAvianLidarBeamSource::vtkInternals::ReadTable(
   vtkPolyData* beams, avianlidar::BeamTable& table)
 {
   const vtkIdType count = beams->GetNumberOfPoints();
-  if (count == 0)
-  {
-    return "it has no points, expected one for each beam";
-  }
+  vtkAvianLidarRequire(count > 0 ? "" : "it has no points, expected one for each beam");
   avianlidar::requireMemory(static_cast<double>(count), "beams", sizeof(double) * 7.0 * count);
-  for (const Arrays::Name& name : { Arrays::Direction, Arrays::Timestamp })
-  {
-    const std::string text = Arrays::CheckNumeric(beams->GetPointData(), name, "point array");
-    if (!text.empty())
-    {
-      return text;
-    }
-  }
-  vtkDataArray* directions = beams->GetPointData()->GetArray(Arrays::Direction.name);
-  vtkDataArray* timestamps = beams->GetPointData()->GetArray(Arrays::Timestamp.name);
-  if (!directions)
-  {
-    return std::string("point array '") + Arrays::Direction.name +
-      "' is missing, expected 3 numbers per beam";
-  }
-  for (const std::string& wrong : { Arrays::CheckShape(directions, "point array", 3, count),
-         Arrays::CheckShape(timestamps, "point array", 1, count) })
-  {
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
-  }
+  vtkPointData* arrays = beams->GetPointData();
+  Arrays::RequireNumeric(arrays, Arrays::Direction, "point array");
+  Arrays::RequireNumeric(arrays, Arrays::Timestamp, "point array");
+  vtkDataArray* directions = arrays->GetArray(Arrays::Direction.name);
+  vtkDataArray* timestamps = arrays->GetArray(Arrays::Timestamp.name);
+  vtkAvianLidarRequire(
+    directions ? "" : "point array 'direction' is missing, expected 3 numbers per beam");
+  Arrays::RequireShape(directions, "point array", 3, count);
+  Arrays::RequireShape(timestamps, "point array", 1, count);
   table.times.assign(static_cast<std::size_t>(count), 0.0);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const std::string beam = "beam " + std::to_string(i) + ": ";
     avianlidar::Vec3 d;
     avianlidar::Vec3 origin;
     directions->GetTuple(i, &d.x);
     beams->GetPoint(i, &origin.x);
-    if (!avianlidar::isFinite(d) || (d.x == 0.0 && d.y == 0.0 && d.z == 0.0))
-    {
-      return beam + "point array '" + Arrays::Direction.name +
-        "' is zero or not finite, expected any length above 0";
-    }
-    const std::string bad = avianlidar::checkPosition(origin);
+    const std::string bad = !avianlidar::isFinite(d) || (d.x == 0.0 && d.y == 0.0 && d.z == 0.0)
+      ? "point array 'direction' is zero or not finite, expected any length above 0"
+      : avianlidar::checkPosition(origin);
     if (!bad.empty())
     {
-      return beam + bad;
+      vtkAvianLidarRequire(bad, "beam " + std::to_string(i) + ": ");
     }
-    const avianlidar::Vec3 unit = avianlidar::unitVector(d);
-    table.directions.push_back(unit);
+    table.directions.push_back(avianlidar::unitVector(d));
     table.origins.push_back(origin);
     if (timestamps)
     {
       table.times[static_cast<std::size_t>(i)] = 1e-6 * timestamps->GetComponent(i, 0);
     }
   }
-  return {};
 }
 
 //------------------------------------------------------------------------------
@@ -153,58 +131,40 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
           entry, "expected " + std::to_string(count) + (count == 1 ? " number" : " numbers"));
       }
     };
-    const auto whole = [&](const Arrays::Name& name)
-    {
-      require(name, 1);
-      if (!Arrays::IsInt(entry.values[0]))
-      {
-        file.Fail(entry, "expected a whole number");
-      }
-      return static_cast<int>(entry.values[0]);
-    };
     const auto is = [&](const Arrays::Name& name) { return entry.name == name.name; };
+    const auto findIn = [&](const auto& all) {
+      return std::find_if(all.begin(), all.end(), [&](const auto& one) { return is(one.first); });
+    };
     const std::vector<Scalar>& all = Scalars();
     const auto scalar =
       std::find_if(all.begin(), all.end(), [&](const Scalar& one) { return is(one.name); });
-    const auto& tables = Tables();
-    const auto table =
-      std::find_if(tables.begin(), tables.end(), [&](const auto& one) { return is(one.first); });
+    const auto integer = findIn(Integers());
+    const auto table = findIn(Tables());
     if (scalar != all.end())
     {
       require(scalar->name, 1);
       self.*scalar->property = entry.values[0];
+    }
+    else if (integer != Integers().end())
+    {
+      require(integer->first, 1);
+      if (!Arrays::IsInt(entry.values[0]))
+      {
+        file.Fail(entry, "expected a whole number");
+      }
+      self.*integer->second = static_cast<int>(entry.values[0]);
     }
     else if (is(Arrays::Wavelength))
     {
       require(Arrays::Wavelength, 1);
       self.Frequency = avianlidar::SpeedOfLight / (1e-9 * entry.values[0]);
     }
-    else if (is(Arrays::NumberOfChannels))
-    {
-      self.NumberOfChannels = whole(Arrays::NumberOfChannels);
-    }
-    else if (is(Arrays::BeamOutline))
-    {
-      self.BeamOutline = whole(Arrays::BeamOutline);
-    }
-    else if (is(Arrays::BeamProfile))
-    {
-      self.BeamProfile = whole(Arrays::BeamProfile);
-    }
-    else if (is(Arrays::ThresholdLaw))
-    {
-      self.ThresholdLaw = whole(Arrays::ThresholdLaw);
-    }
-    else if (is(Arrays::ReceiverModel))
-    {
-      self.ReceiverModel = whole(Arrays::ReceiverModel);
-    }
     else if (is(Arrays::AzimuthRange))
     {
       require(Arrays::AzimuthRange, 2);
       std::copy(entry.values.begin(), entry.values.end(), self.AzimuthRange);
     }
-    else if (table != tables.end())
+    else if (table != Tables().end())
     {
       require(table->first, 0);
       self.*table->second = entry.values;
@@ -245,6 +205,13 @@ std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
       return { self.*scalar.property };
     }
   }
+  for (const auto& [integer, value] : Integers())
+  {
+    if (name == integer.name)
+    {
+      return { static_cast<double>(self.*value) };
+    }
+  }
   for (const auto& [table, values] : Tables())
   {
     if (name == table.name)
@@ -256,12 +223,7 @@ std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
   {
     return { self.AzimuthRange[0], self.AzimuthRange[1] };
   }
-  return { name == Arrays::Wavelength.name    ? WavelengthOf(self)
-      : name == Arrays::NumberOfChannels.name ? self.NumberOfChannels
-      : name == Arrays::BeamOutline.name      ? self.BeamOutline
-      : name == Arrays::BeamProfile.name      ? self.BeamProfile
-      : name == Arrays::ThresholdLaw.name     ? self.ThresholdLaw
-                                              : self.ReceiverModel };
+  return { WavelengthOf(self) };
 }
 
 //------------------------------------------------------------------------------

@@ -56,6 +56,19 @@ struct vtkAvianLidarBeamSource::vtkInternals
     return self.Table ? ofPattern : ofColumns && self.GetNumberOfPrisms() > 0;
   }
 
+  // Properties that are whole numbers, in sensor files.
+  static const std::vector<std::pair<vtkAvianLidarArrays::Name, int Source::*>>& Integers()
+  {
+    static const std::vector<std::pair<vtkAvianLidarArrays::Name, int Source::*>> all = {
+      { vtkAvianLidarArrays::NumberOfChannels, &Source::NumberOfChannels },
+      { vtkAvianLidarArrays::BeamOutline, &Source::BeamOutline },
+      { vtkAvianLidarArrays::BeamProfile, &Source::BeamProfile },
+      { vtkAvianLidarArrays::ThresholdLaw, &Source::ThresholdLaw },
+      { vtkAvianLidarArrays::ReceiverModel, &Source::ReceiverModel }
+    };
+    return all;
+  }
+
   // Properties that are tables.
   static const std::vector<std::pair<vtkAvianLidarArrays::Name, std::vector<double> Source::*>>&
   Tables()
@@ -85,11 +98,11 @@ struct vtkAvianLidarBeamSource::vtkInternals
   // Names of the properties in use whose values are assumed.
   static std::vector<std::string> AssumedOf(const Source& self);
 
-  // Read the user's beams. Returns an error text, or an empty string.
-  static std::string ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
+  // Read the user's beams. Throws std::runtime_error.
+  static void ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
 
-  // The sensor with the limits in use. Returns an error text if a value is bad.
-  static std::string SensorOf(const Source& self, avianlidar::Sensor& sensor);
+  // The sensor with the limits in use. Throws std::runtime_error if a value is bad.
+  static avianlidar::Sensor SensorOf(const Source& self);
   static avianlidar::ScanPattern PatternOf(const Source& self);
   // Wavelength, nm, rounded to 1e-9 nm, so that it equals the value that the user gave.
   static double WavelengthOf(const Source& self)
@@ -101,11 +114,11 @@ struct vtkAvianLidarBeamSource::vtkInternals
   {
     return { self.SwayAmplitude, self.SwayFrequency, self.EncoderJitter, self.MotionSeed };
   }
-  // Finds the requested part and revolution. Returns an error text, or an empty string.
-  static std::string FindMoment(
+  // Finds the requested part and revolution. Throws std::runtime_error.
+  static void FindMoment(
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
-  // An error text for the first bad value, or an empty string.
-  static std::string CheckProperties(const Source& self);
+  // Throws std::runtime_error for the first bad value.
+  static void RequireProperties(const Source& self);
   // The sensor as field data of its beams.
   static void AddSensor(const Source& self, int revolution, vtkFieldData* fields);
 };

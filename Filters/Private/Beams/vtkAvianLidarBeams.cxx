@@ -2,10 +2,9 @@
 #include "vtkAvianLidarBeams.h"
 
 #include "Hash.h"
-#include "Scan.h"
 #include "ScanPattern.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarIdRuns.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
 #include "vtkNew.h"
@@ -14,221 +13,173 @@
 #include "vtkPolyData.h"
 #include "vtkTypeUInt64Array.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 namespace
 {
+namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::Vec3;
 
-/// What is up for the sensor, if its beams are not round and say its orientation.
-std::string ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
+/// Prefix of all errors.
+constexpr char BeamsPort[] = "Input port 0 (beams), ";
+
+[[noreturn]] void FailAt(vtkIdType beam, const std::string& what)
 {
-  const char* const name = vtkAvianLidarArrays::Orientation.name;
-  if (sensor.hasRoundBeam() || !fields || !fields->GetAbstractArray(name))
-  {
-    return {};
-  }
-  vtkDataArray* angles = fields->GetArray(name);
-  std::string wrong = vtkAvianLidarArrays::CheckShape(angles, "field data", 3, 1);
-  if (wrong.empty())
-  {
-    Vec3 a;
-    angles->GetTuple(0, &a.x);
-    wrong = avianlidar::isFinite(a) ? std::string()
-                                    : std::string("field data '") + name +
-        "' is not finite, expected yaw, pitch and roll in degrees";
-    sensor.up = avianlidar::upOf(a.x, a.y, a.z);
-  }
-  return wrong;
+  throw std::runtime_error("beam " + std::to_string(beam) + ": " + what);
 }
 
-std::string ReadSensor(vtkFieldData* fields, avianlidar::Sensor& sensor)
+/// What is up for the sensor, if its beams are not round and say its orientation.
+void ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
 {
-  const auto missing = [](const char* name)
+  const char* const name = Arrays::Orientation.name;
+  if (sensor.hasRoundBeam() || !fields || !fields->GetAbstractArray(name))
   {
-    return std::string("field data '") + name +
-      "' is missing or not a finite number; expected one value" +
-      " (vtkAvianLidarBeamSource writes it)";
-  };
+    return;
+  }
+  Arrays::RequireNumeric(fields, Arrays::Orientation, "field data");
+  vtkDataArray* angles = fields->GetArray(name);
+  Arrays::RequireShape(angles, "field data", 3, 1);
+  Vec3 a;
+  angles->GetTuple(0, &a.x);
+  if (!avianlidar::isFinite(a))
+  {
+    throw std::runtime_error(std::string("field data '") + name +
+      "' is not finite, expected yaw, pitch and roll in degrees");
+  }
+  sensor.up = avianlidar::upOf(a.x, a.y, a.z);
+}
+
+/// One of two choices, which stays without the array. @param words meaning of 0 and of 1
+template <class Choice>
+void ReadChoice(
+  vtkFieldData* fields, const Arrays::Name& name, const std::string& words, Choice& choice)
+{
+  double value = static_cast<double>(choice);
+  Arrays::ReadFieldValue(fields, name, value);
+  if (value != 0.0 && value != 1.0)
+  {
+    throw std::runtime_error(std::string("field data '") + name.name + "' is neither " + words);
+  }
+  choice = static_cast<Choice>(static_cast<int>(value));
+}
+
+avianlidar::Sensor ReadSensor(vtkFieldData* fields)
+{
   using avianlidar::NeededOf;
-  const auto readNumbers = [&](NeededOf of) -> std::string
+  avianlidar::Sensor sensor;
+  const auto require = [](bool isThere, const char* name)
+  {
+    vtkAvianLidarRequire(isThere ? ""
+                                 : std::string("field data '") + name +
+          "' is missing or not a finite number; expected one value"
+          " (vtkAvianLidarBeamSource writes it)");
+  };
+  const auto readNumbers = [&](NeededOf of)
   {
     for (const avianlidar::SensorField& field : avianlidar::sensorFields())
     {
       const bool isThere = fields && fields->GetAbstractArray(field.name);
-      if (field.neededOf == of && (isThere || of != NeededOf::None) &&
-        !vtkAvianLidarArrays::GetFieldValue(
-          fields, { field.name, field.unit }, sensor.*field.member))
+      if (field.neededOf == of && (isThere || of != NeededOf::None))
       {
-        return missing(field.name);
+        require(Arrays::GetFieldValue(fields, { field.name, field.unit }, sensor.*field.member),
+          field.name);
       }
     }
-    return {};
   };
-  std::string wrong = readNumbers(NeededOf::All);
-  if (!wrong.empty())
-  {
-    return wrong;
-  }
-  wrong = readNumbers(NeededOf::None);
-  if (!wrong.empty())
-  {
-    return wrong;
-  }
+  readNumbers(NeededOf::All);
+  readNumbers(NeededOf::None);
   double profile = 0.0;
-  if (!vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::BeamProfile, profile))
-  {
-    return missing(vtkAvianLidarArrays::BeamProfile.name);
-  }
-  if (profile != 0.0 && profile != 1.0)
-  {
-    return "field data 'beam_profile' is neither 0 (uniform) nor 1 (Gaussian)";
-  }
-  sensor.beamProfile =
-    profile == 0.0 ? avianlidar::BeamProfile::Uniform : avianlidar::BeamProfile::Gaussian;
-  double outline = 0.0; // of beams that do not say: round
-  wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::BeamOutline, outline);
-  if (!wrong.empty() || (outline != 0.0 && outline != 1.0))
-  {
-    return wrong.empty() ? "field data 'beam_outline' is neither 0 (ellipse) nor 1 (rectangle)"
-                         : wrong;
-  }
-  sensor.beamOutline = static_cast<avianlidar::BeamOutline>(static_cast<int>(outline));
-  wrong = ReadUp(fields, sensor);
-  if (!wrong.empty())
-  {
-    return wrong;
-  }
-  double model = 0.0; // of beams that do not say: the paper's
-  wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ReceiverModel, model);
-  if (!wrong.empty() || (model != 0.0 && model != 1.0))
-  {
-    return wrong.empty()
-      ? "field data 'receiver_model' is neither 0 (energy limits) nor 1 (photons)"
-      : wrong;
-  }
-  sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(static_cast<int>(model));
-  double law = 1.0; // of beams that do not say
-  wrong = vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::ThresholdLaw, law);
-  if (!wrong.empty() || (law != 0.0 && law != 1.0))
-  {
-    return wrong.empty() ? "field data 'threshold_law' is neither 0 (fixed) nor 1 (follows the air)"
-                         : wrong;
-  }
-  sensor.thresholdLaw = static_cast<avianlidar::ThresholdLaw>(static_cast<int>(law));
+  require(Arrays::GetFieldValue(fields, Arrays::BeamProfile, profile), Arrays::BeamProfile.name);
+  ReadChoice(fields, Arrays::BeamProfile, "0 (uniform) nor 1 (Gaussian)", sensor.beamProfile);
+  ReadChoice(fields, Arrays::BeamOutline, "0 (ellipse) nor 1 (rectangle)", sensor.beamOutline);
+  ReadUp(fields, sensor);
+  ReadChoice(
+    fields, Arrays::ReceiverModel, "0 (energy limits) nor 1 (photons)", sensor.receiverModel);
+  ReadChoice(
+    fields, Arrays::ThresholdLaw, "0 (fixed) nor 1 (follows the air)", sensor.thresholdLaw);
   if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
-    wrong = readNumbers(NeededOf::Photons);
-    if (!wrong.empty())
+    readNumbers(NeededOf::Photons);
+  }
+  vtkAvianLidarRequire(avianlidar::checkSensor(sensor), "field data: ");
+  return sensor;
+}
+
+/// The number of the revolution, 0 if the beams do not say it.
+std::int32_t ReadRevolution(vtkFieldData* fields)
+{
+  double value = 0.0;
+  if (fields && fields->GetAbstractArray(Arrays::Revolution.name))
+  {
+    Arrays::RequireShape(fields->GetArray(Arrays::Revolution.name), "field data", 1, 1);
+    if (!Arrays::GetFieldValue(fields, Arrays::Revolution, value) || !Arrays::IsInt(value))
     {
-      return wrong;
+      throw std::runtime_error(
+        "field data 'revolution' is not a whole number from -2^31 to 2^31 - 1");
     }
   }
-  wrong = avianlidar::checkSensor(sensor);
-  return wrong.empty() ? wrong : "field data: " + wrong;
+  return static_cast<std::int32_t>(value);
 }
 
-/// The length of rays to look at, if the beams say it.
-std::string ReadDisplayLength(vtkFieldData* fields, double& length)
+/// An optional point array of one component.
+vtkDataArray* FindScalar(vtkPolyData* input, const Arrays::Name& name)
 {
-  std::string wrong =
-    vtkAvianLidarArrays::ReadFieldValue(fields, vtkAvianLidarArrays::DisplayLength, length);
-  if (!wrong.empty())
-  {
-    return wrong;
-  }
-  wrong = avianlidar::checkDisplayLength(length);
-  return wrong.empty() ? wrong : "field data: " + wrong;
+  Arrays::RequireNumeric(input->GetPointData(), name, "point array");
+  vtkDataArray* array = input->GetPointData()->GetArray(name.name);
+  Arrays::RequireShape(array, "point array", 1, input->GetNumberOfPoints());
+  return array;
 }
 
-/// The number of the revolution, if the beams say it.
-std::string ReadRevolution(vtkFieldData* fields, std::int32_t& revolution)
+/// The same; its values are finite or, with `whole`, whole numbers that fit an int.
+vtkDataArray* FindNumbers(vtkPolyData* input, const Arrays::Name& name, bool whole)
 {
-  if (!fields || !fields->GetAbstractArray(vtkAvianLidarArrays::Revolution.name))
-  {
-    return {};
-  }
-  const std::string shape = vtkAvianLidarArrays::CheckShape(
-    fields->GetArray(vtkAvianLidarArrays::Revolution.name), "field data", 1, 1);
-  if (!shape.empty())
-  {
-    return shape;
-  }
-  double value = 0.0;
-  const bool number =
-    vtkAvianLidarArrays::GetFieldValue(fields, vtkAvianLidarArrays::Revolution, value);
-  if (!number || !vtkAvianLidarArrays::IsInt(value))
-  {
-    return "field data 'revolution' is not a whole number from -2^31 to 2^31 - 1";
-  }
-  revolution = static_cast<std::int32_t>(value);
-  return {};
-}
-
-/// An optional point array of one component; an error if it is of another kind.
-std::string FindScalar(
-  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, vtkDataArray*& array)
-{
-  array = input->GetPointData()->GetArray(name.name);
-  const std::string text =
-    vtkAvianLidarArrays::CheckNumeric(input->GetPointData(), name, "point array");
-  return text.empty()
-    ? vtkAvianLidarArrays::CheckShape(array, "point array", 1, input->GetNumberOfPoints())
-    : text;
-}
-
-/// The same; an error if a value is not finite or, with `whole`, not a whole number that fits an
-/// int.
-std::string FindNumbers(
-  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, bool whole, vtkDataArray*& array)
-{
-  const std::string wrong = FindScalar(input, name, array);
-  for (vtkIdType i = 0; wrong.empty() && array && i < input->GetNumberOfPoints(); ++i)
+  vtkDataArray* array = FindScalar(input, name);
+  for (vtkIdType i = 0; array && i < input->GetNumberOfPoints(); ++i)
   {
     const double value = array->GetComponent(i, 0);
-    if (!(whole ? vtkAvianLidarArrays::IsInt(value) : std::isfinite(value)))
+    if (!(whole ? Arrays::IsInt(value) : std::isfinite(value)))
     {
-      return "beam " + std::to_string(i) + ": point array '" + name.name +
-        (whole ? "' is not a whole number of 32 bits" : "' is not finite");
+      FailAt(i,
+        std::string("point array '") + name.name +
+          (whole ? "' is not a whole number of 32 bits" : "' is not finite"));
     }
   }
-  return wrong;
+  return array;
 }
 
-/// Unit vectors of an array of directions. Where it is missing: an error if it is `needed`, else
-/// none.
-std::string ReadDirections(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, bool needed,
-  std::vector<Vec3>& directions)
+/// Unit vectors of an array of directions; none if the array is missing and not `needed`.
+std::vector<Vec3> ReadDirections(vtkPolyData* input, const Arrays::Name& name, bool needed)
 {
   const std::string array = std::string("point array '") + name.name + "'";
   vtkDataArray* given = input->GetPointData()->GetArray(name.name);
-  std::string wrong = vtkAvianLidarArrays::CheckNumeric(input->GetPointData(), name, "point array");
-  if (wrong.empty() && needed && !given)
+  Arrays::RequireNumeric(input->GetPointData(), name, "point array");
+  if (needed && !given)
   {
-    return array +
+    throw std::runtime_error(array +
       " is missing, expected 3 numbers per beam, as in the output Beams of a beam source (in "
-      "ParaView: Edit > Change Input > Beams)";
+      "ParaView: Edit > Change Input > Beams)");
   }
   const vtkIdType count = input->GetNumberOfPoints();
-  wrong = wrong.empty() ? vtkAvianLidarArrays::CheckShape(given, "point array", 3, count) : wrong;
-  for (vtkIdType i = 0; wrong.empty() && given && i < count; ++i)
+  Arrays::RequireShape(given, "point array", 3, count);
+  std::vector<Vec3> directions;
+  for (vtkIdType i = 0; given && i < count; ++i)
   {
     Vec3 d;
     given->GetTuple(i, &d.x);
     const bool zero = d.x == 0.0 && d.y == 0.0 && d.z == 0.0;
     if (zero || !avianlidar::isFinite(d))
     {
-      return "beam " + std::to_string(i) + ": " + array + (zero ? " is zero" : " is not finite") +
-        ", expected any length above 0";
+      FailAt(i, array + (zero ? " is zero" : " is not finite") + ", expected any length above 0");
     }
     directions.push_back(avianlidar::unitVector(d));
   }
-  return wrong;
+  return directions;
 }
 
-std::string ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
+void ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
@@ -237,34 +188,62 @@ std::string ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
     const std::string wrong = avianlidar::checkPosition(p);
     if (!wrong.empty())
     {
-      return "beam " + std::to_string(i) + ": " + wrong;
+      FailAt(i, wrong);
     }
     beams.origins.push_back(p);
   }
-  return {};
 }
 
-std::string ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
+/// Consecutive ids, `count` of them, from `first` on. The beams of a sensor are one run, and the
+/// columns of one rank are a few runs.
+struct IdRun
 {
-  vtkDataArray* ids = nullptr;
-  const std::string shape = FindScalar(input, vtkAvianLidarArrays::BeamId, ids);
-  if (!shape.empty())
+  std::uint64_t first;
+  std::uint64_t count;
+};
+
+/// Ascending runs of ids that come in any order. An id that occurs twice begins a new run.
+std::vector<IdRun> RunsOf(std::vector<std::uint64_t> ids)
+{
+  std::sort(ids.begin(), ids.end());
+  std::vector<IdRun> runs;
+  for (const std::uint64_t id : ids)
   {
-    return shape;
+    if (runs.empty() || id != runs.back().first + runs.back().count)
+    {
+      runs.push_back({ id, 0 });
+    }
+    ++runs.back().count;
   }
-  const vtkIdType count = input->GetNumberOfPoints();
-  beams.ids.resize(count);
-  for (vtkIdType i = 0; i < count; ++i)
+  return runs;
+}
+
+/// An error text if an id is in two of the runs, else an empty string.
+std::string RepeatedIdError(std::vector<IdRun> runs)
+{
+  std::sort(
+    runs.begin(), runs.end(), [](const IdRun& a, const IdRun& b) { return a.first < b.first; });
+  const auto twice = std::adjacent_find(runs.begin(), runs.end(),
+    [](const IdRun& a, const IdRun& b) { return b.first < a.first + a.count; });
+  return twice == runs.end() ? std::string()
+                             : "point array 'beam_id' holds " + std::to_string((twice + 1)->first) +
+      " twice; expected the beams of one sensor (use one echo filter for each sensor instead of "
+      "appending beams)";
+}
+
+void ReadIds(vtkPolyData* input, avianlidar::ScanBeams& beams)
+{
+  vtkDataArray* ids = FindScalar(input, Arrays::BeamId);
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
     const double id = ids ? ids->GetComponent(i, 0) : static_cast<double>(i);
     if (!(id >= 0.0) || id > 9007199254740992.0 || id != std::floor(id))
     {
-      return "beam " + std::to_string(i) +
-        ": point array 'beam_id' is not a whole number from 0 to 2^53";
+      FailAt(i, "point array 'beam_id' is not a whole number from 0 to 2^53");
     }
-    beams.ids[i] = static_cast<std::uint64_t>(id);
+    beams.ids.push_back(static_cast<std::uint64_t>(id));
   }
-  return vtkAvianLidarRepeatedIdError(vtkAvianLidarRunsOf(beams.ids));
+  vtkAvianLidarRequire(RepeatedIdError(RunsOf(beams.ids)));
 }
 
 std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
@@ -285,9 +264,8 @@ std::uint64_t HashOf(vtkPolyData* input)
 {
   vtkPoints* points = input->GetPoints();
   std::uint64_t hash = vtkAvianLidarContent::HashOf(points ? points->GetData() : nullptr, 0);
-  for (const auto& array : { vtkAvianLidarArrays::Direction, vtkAvianLidarArrays::ReportedDirection,
-         vtkAvianLidarArrays::BeamId, vtkAvianLidarArrays::LaserId, vtkAvianLidarArrays::Azimuth,
-         vtkAvianLidarArrays::VerticalAngle, vtkAvianLidarArrays::Timestamp })
+  for (const auto& array : { Arrays::Direction, Arrays::ReportedDirection, Arrays::BeamId,
+         Arrays::LaserId, Arrays::Azimuth, Arrays::VerticalAngle, Arrays::Timestamp })
   {
     vtkAbstractArray* any = input->GetPointData()->GetAbstractArray(array.name);
     const std::int64_t type = any ? any->GetDataType() : -1; // text is another state than none
@@ -315,34 +293,45 @@ double vtkAvianLidarBeams::ElevationOf(const Vec3& d)
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeams::Read(vtkPolyData* input)
 {
+  vtkAvianLidarWithin(BeamsPort, [&]() { this->ReadAll(input); });
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
+{
+  const bool isEmpty = input->GetNumberOfPoints() == 0;
   const vtkAvianLidarContent::State state = vtkAvianLidarContent::StateOf(input);
   const bool untouched = !state.empty() && state == this->ReadFrom;
   const std::uint64_t content = untouched ? this->Content : HashOf(input);
   const bool known = !this->ReadFrom.empty() && content == this->Content;
-  if (!known || input->GetNumberOfPoints() == 0)
+  this->ReadFrom.clear(); // where an error follows
+  if (!known || isEmpty)
   {
     *this = vtkAvianLidarBeams{};
-    this->problem = this->ReadBeams(input);
+    this->ReadBeams(input);
     this->beams.checksum = avianlidar::checksumOf(this->beams);
     this->Content = content;
   }
-  avianlidar::Sensor read;
-  const std::string wrong = ReadSensor(input->GetFieldData(), read);
-  if (input->GetNumberOfPoints() == 0)
+  try
   {
-    // No beams on this piece: nothing to check, nothing to say.
-    this->sensor = wrong.empty() ? read : avianlidar::Sensor{};
-    return;
+    this->sensor = ReadSensor(input->GetFieldData());
   }
-  this->sensor = read;
-  this->problem = this->problem.empty() ? wrong : this->problem;
-  this->displayLength = vtkAvianLidarBeams{}.displayLength;
-  const std::string badLength = ReadDisplayLength(input->GetFieldData(), this->displayLength);
-  this->problem = this->problem.empty() ? badLength : this->problem;
-  this->revolution = 0;
-  const std::string badRevolution = ReadRevolution(input->GetFieldData(), this->revolution);
-  this->problem = this->problem.empty() ? badRevolution : this->problem;
-  this->ReadFrom = this->problem.empty() ? state : vtkAvianLidarContent::State{};
+  catch (const std::runtime_error&)
+  {
+    if (!isEmpty)
+    {
+      throw;
+    }
+    this->sensor = {}; // no beams on this piece: nothing to check, nothing to say
+  }
+  if (!isEmpty)
+  {
+    this->displayLength = vtkAvianLidarBeams{}.displayLength;
+    Arrays::ReadFieldValue(input->GetFieldData(), Arrays::DisplayLength, this->displayLength);
+    vtkAvianLidarRequire(avianlidar::checkDisplayLength(this->displayLength), "field data: ");
+    this->revolution = ReadRevolution(input->GetFieldData());
+    this->ReadFrom = state;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -353,8 +342,7 @@ std::uint64_t vtkAvianLidarBeams::Hash() const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  const std::function<std::string(const std::string&)>& inputError)
+void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;
   this->total = static_cast<std::uint64_t>(ranks.Sum(static_cast<double>(ids.size())));
@@ -372,28 +360,28 @@ void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorith
   if (!oneSensor)
   {
     ranks.Together(self,
-      [&]()
+      []()
       {
-        return inputError("the ranks have beams of different sensors or revolutions in field data, "
-                          "expected those of one");
+        vtkAvianLidarRequire("the ranks have beams of different sensors or revolutions in field "
+                             "data, expected those of one",
+          BeamsPort);
       });
   }
   else if (!checked)
   {
-    this->CompareIds(ranks, self, inputError);
+    this->CompareIds(ranks, self);
   }
   this->checkedWith = ranks.Group();
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  const std::function<std::string(const std::string&)>& inputError) const
+void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self) const
 {
   vtkNew<vtkTypeUInt64Array> mine;
   ranks.Together(self,
     [&]()
     {
-      for (const vtkAvianLidarIdRun& run : vtkAvianLidarRunsOf(this->beams.ids))
+      for (const IdRun& run : RunsOf(this->beams.ids))
       {
         mine->InsertNextValue(run.first);
         mine->InsertNextValue(run.count);
@@ -404,42 +392,31 @@ void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorith
   ranks.Together(self,
     [&]()
     {
-      std::vector<vtkAvianLidarIdRun> runs;
+      std::vector<IdRun> runs;
       for (vtkIdType i = 0; i < all->GetNumberOfValues(); i += 2)
       {
         runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
       }
-      return inputError(vtkAvianLidarRepeatedIdError(std::move(runs)));
+      vtkAvianLidarRequire(RepeatedIdError(std::move(runs)), BeamsPort);
     });
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
+void vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
 {
-  vtkDataArray* laser = nullptr;
-  vtkDataArray* azimuth = nullptr;
-  vtkDataArray* vertical = nullptr;
-  vtkDataArray* timestamp = nullptr;
   const vtkIdType count = input->GetNumberOfPoints();
   if (count == 0)
   {
-    return {};
+    return;
   }
-  for (const std::string& wrong :
-    { ReadDirections(input, vtkAvianLidarArrays::Direction, true, this->beams.directions),
-      ReadOrigins(input, this->beams),
-      ReadDirections(
-        input, vtkAvianLidarArrays::ReportedDirection, false, this->reportedDirections),
-      ReadIds(input, this->beams), FindNumbers(input, vtkAvianLidarArrays::LaserId, true, laser),
-      FindNumbers(input, vtkAvianLidarArrays::Azimuth, false, azimuth),
-      FindNumbers(input, vtkAvianLidarArrays::VerticalAngle, false, vertical),
-      FindNumbers(input, vtkAvianLidarArrays::Timestamp, false, timestamp) })
-  {
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
-  }
+  this->beams.directions = ReadDirections(input, Arrays::Direction, true);
+  ReadOrigins(input, this->beams);
+  this->reportedDirections = ReadDirections(input, Arrays::ReportedDirection, false);
+  ReadIds(input, this->beams);
+  vtkDataArray* laser = FindNumbers(input, Arrays::LaserId, true);
+  vtkDataArray* azimuth = FindNumbers(input, Arrays::Azimuth, false);
+  vtkDataArray* vertical = FindNumbers(input, Arrays::VerticalAngle, false);
+  vtkDataArray* timestamp = FindNumbers(input, Arrays::Timestamp, false);
   this->isTimed = timestamp != nullptr;
   for (vtkIdType i = 0; i < count; ++i)
   {
@@ -450,5 +427,4 @@ std::string vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
     this->timestamps.push_back(timestamp ? timestamp->GetComponent(i, 0) : 0.0);
     this->beams.times.push_back(1e-6 * this->timestamps.back());
   }
-  return {};
 }

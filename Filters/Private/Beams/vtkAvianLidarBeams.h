@@ -12,8 +12,6 @@
 #include "vtkAvianLidarRanks.h"
 
 #include <cstdint>
-#include <functional>
-#include <string>
 #include <vector>
 
 class vtkAlgorithm;
@@ -33,7 +31,6 @@ struct vtkAvianLidarBeams
   bool isTimed = false;               ///< true if timestamps were given
   double displayLength = 1000.0;      ///< length of the lines that display beams, m
   std::int32_t revolution = 0;        ///< revolution of the sensor, as given, else 0
-  std::string problem;                ///< error text of the input; empty: no error
 
   /// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
   static double AzimuthOf(const avianlidar::Vec3& d);
@@ -41,14 +38,13 @@ struct vtkAvianLidarBeams
   /// Elevation of a direction, deg.
   static double ElevationOf(const avianlidar::Vec3& d);
 
-  /// Read `input`; earlier results are kept if points and arrays have the same values.
+  /// Read `input`; earlier results are kept if points and arrays have the same values. Throws
+  /// std::runtime_error that names the input and the array.
   void Read(vtkPolyData* input);
 
   /// Check that the beams of all ranks belong to one sensor, and that no id occurs twice. All ranks
-  /// must call this function. @param inputError function that makes the message of `self` from an
-  /// error of the beams
-  void CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    const std::function<std::string(const std::string&)>& inputError);
+  /// must call this function.
+  void CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self);
 
   /// Check ids again at the next CheckRanks(), as the ranks may have changed.
   void ForgetRanks() { this->checkedWith = nullptr; }
@@ -67,9 +63,9 @@ struct vtkAvianLidarBeams
   std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
 
 private:
-  std::string ReadBeams(vtkPolyData* input);
-  void CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-    const std::function<std::string(const std::string&)>& inputError) const;
+  void ReadAll(vtkPolyData* input);
+  void ReadBeams(vtkPolyData* input);
+  void CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self) const;
   const void* checkedWith = nullptr;    ///< ranks among which no id occurs twice; null: not checked
   vtkAvianLidarContent::State ReadFrom; ///< state of the input read last; empty after an error
   std::uint64_t Content = 0;            ///< hash of sensor, revolution and beams

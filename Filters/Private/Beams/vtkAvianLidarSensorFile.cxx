@@ -4,7 +4,6 @@
 #include "JsonNode.h"
 #include "vtkAvianLidarBuiltInTexts.h"
 
-#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -93,8 +92,7 @@ vtkAvianLidarSensorFile vtkAvianLidarSensorFile::Preset(const std::string& name)
 vtkAvianLidarSensorFile vtkAvianLidarSensorFile::OfText(
   const std::string& text, const std::string& name)
 {
-  std::istringstream stream(text);
-  return Parse(avianlidar::ReadJson(stream, name), name);
+  return Parse(avianlidar::ParseJson(text, name), name);
 }
 
 //------------------------------------------------------------------------------

@@ -52,6 +52,21 @@ public:
 private:
   std::vector<std::set<std::string>> Open;
 };
+
+template <class Input>
+Json Parse(Input& input, const std::string& file)
+try
+{
+  return Json::parse(input, Strictness());
+}
+catch (const Json::exception& e)
+{
+  throw FileError(file + ": is not JSON: " + e.what());
+}
+catch (const FileError& e)
+{
+  throw FileError(file + ": " + e.what());
+}
 }
 
 Json ReadJson(const std::string& file)
@@ -66,23 +81,12 @@ Json ReadJson(const std::string& file)
   {
     throw FileError(file + ": cannot be opened");
   }
-  return ReadJson(stream, file);
+  return Parse(stream, file);
 }
 
-Json ReadJson(std::istream& stream, const std::string& file)
+Json ParseJson(const std::string& text, const std::string& file)
 {
-  try
-  {
-    return Json::parse(stream, Strictness());
-  }
-  catch (const Json::exception& e)
-  {
-    throw FileError(file + ": is not JSON: " + e.what());
-  }
-  catch (const FileError& e)
-  {
-    throw FileError(file + ": " + e.what());
-  }
+  return Parse(text, file);
 }
 
 void JsonNode::Fail(const std::string& message) const

@@ -11,7 +11,6 @@
 
 #include <array>
 #include <functional>
-#include <iosfwd>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -26,8 +25,8 @@ namespace avianlidar
  */
 Json ReadJson(const std::string& file);
 
-/// Read a stream as JSON. @param file name for messages
-Json ReadJson(std::istream& stream, const std::string& file);
+/// Read a text as JSON. @param file name for messages
+Json ParseJson(const std::string& text, const std::string& file);
 
 /**
  * A view of one value with its path, such as "objects[3].scale". All getters throw FileError if the

@@ -13,6 +13,7 @@
 #include "vtkStringArray.h"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace vtkAvianLidarArrays
 {
@@ -53,6 +54,20 @@ void SetFieldInteger(vtkFieldData* fields, const Name& name, int value)
   fields->AddArray(array);
 }
 
+void SetFieldVector(vtkFieldData* fields, const Name& name, const double* values, int components)
+{
+  auto array = Make<vtkDoubleArray>(name, 1, components);
+  array->SetTypedTuple(0, values);
+  fields->AddArray(array);
+}
+
+vtkSmartPointer<vtkIntArray> Constant(const Name& name, vtkIdType tuples, int value)
+{
+  auto array = Make<vtkIntArray>(name, tuples);
+  array->FillValue(value);
+  return array;
+}
+
 void SetFieldStrings(vtkFieldData* fields, const Name& name, const std::vector<std::string>& values)
 {
   auto array = Make<vtkStringArray>(name, static_cast<vtkIdType>(values.size()));
@@ -63,38 +78,35 @@ void SetFieldStrings(vtkFieldData* fields, const Name& name, const std::vector<s
   fields->AddArray(array);
 }
 
-std::string CheckShape(vtkDataArray* array, const char* kind, int components, vtkIdType tuples)
+void RequireShape(vtkDataArray* array, const char* kind, int components, vtkIdType tuples)
 {
-  if (!array ||
-    (array->GetNumberOfComponents() == components && array->GetNumberOfTuples() == tuples))
+  const bool width = array && array->GetNumberOfComponents() != components;
+  if (width || (array && array->GetNumberOfTuples() != tuples))
   {
-    return {};
+    throw std::runtime_error(std::string(kind) + " '" + array->GetName() + "' has " +
+      std::to_string(width ? array->GetNumberOfComponents() : array->GetNumberOfTuples()) +
+      (width ? " components, expected " : " values, expected ") +
+      std::to_string(width ? components : tuples));
   }
-  const bool width = array->GetNumberOfComponents() != components;
-  return std::string(kind) + " '" + array->GetName() + "' has " +
-    std::to_string(width ? array->GetNumberOfComponents() : array->GetNumberOfTuples()) +
-    (width ? " components, expected " : " values, expected ") +
-    std::to_string(width ? components : tuples);
 }
 
-std::string NotNumeric(const char* kind, const char* name)
+void RequireNumeric(vtkFieldData* arrays, const Name& name, const char* kind)
 {
-  return std::string(kind) + " '" + name + "' holds no numbers, expected numbers";
+  if (arrays->GetAbstractArray(name.name) && !arrays->GetArray(name.name))
+  {
+    throw std::runtime_error(
+      std::string(kind) + " '" + name.name + "' holds no numbers, expected numbers");
+  }
 }
 
-std::string CheckNumeric(vtkFieldData* arrays, const Name& name, const char* kind)
-{
-  return !arrays->GetAbstractArray(name.name) || arrays->GetArray(name.name)
-    ? std::string()
-    : NotNumeric(kind, name.name);
-}
-
-std::string CheckText(vtkFieldData* fields, const Name& name)
+void RequireText(vtkFieldData* fields, const Name& name)
 {
   vtkAbstractArray* array = fields->GetAbstractArray(name.name);
-  return !array || vtkStringArray::SafeDownCast(array)
-    ? std::string()
-    : std::string("field data '") + name.name + "' holds no text, expected text";
+  if (array && !vtkStringArray::SafeDownCast(array))
+  {
+    throw std::runtime_error(
+      std::string("field data '") + name.name + "' holds no text, expected text");
+  }
 }
 
 bool IsInt(double value)
@@ -113,14 +125,14 @@ bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value)
   return std::isfinite(value);
 }
 
-std::string ReadFieldValue(vtkFieldData* fields, const Name& name, double& value)
+void ReadFieldValue(vtkFieldData* fields, const Name& name, double& value)
 {
   double read = value;
   if (fields && fields->GetAbstractArray(name.name) && !GetFieldValue(fields, name, read))
   {
-    return std::string("field data '") + name.name + "' is not one finite number";
+    throw std::runtime_error(
+      std::string("field data '") + name.name + "' is not one finite number");
   }
   value = read;
-  return {};
 }
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 class vtkFieldData;
+class vtkIntArray;
 class vtkPoints;
 class vtkStringArray;
 
@@ -74,25 +75,28 @@ void SetFieldValue(vtkFieldData* fields, const Name& name, double value);
 /// Put one int value (with unit) into field data, replacing an array of that name.
 void SetFieldInteger(vtkFieldData* fields, const Name& name, int value);
 
+/// Put a vector (with unit) into field data, replacing an array of that name.
+void SetFieldVector(
+  vtkFieldData* fields, const Name& name, const double* values, int components = 3);
+
+/// A new array of one component with the same value everywhere.
+vtkSmartPointer<vtkIntArray> Constant(const Name& name, vtkIdType tuples, int value);
+
 /// Put strings into field data, as UTF-8, replacing an array of that name.
 void SetFieldStrings(
   vtkFieldData* fields, const Name& name, const std::vector<std::string>& values);
 
-/// An error text if the array has another number of components or tuples than expected; empty if
-/// the array is right or null.
-/// @param kind "point array" or "cell array"
-std::string CheckShape(vtkDataArray* array, const char* kind, int components, vtkIdType tuples);
+// The following functions throw std::runtime_error. @param kind "point array", "cell array" or
+// "field data"
 
-/// An error text for an array that does not hold numbers. @param kind "point array", "cell array"
-/// or "field data"
-std::string NotNumeric(const char* kind, const char* name);
+/// The array must have these numbers of components and tuples, or be null.
+void RequireShape(vtkDataArray* array, const char* kind, int components, vtkIdType tuples);
 
-/// An error text if an array of the name exists and does not hold numbers, else an empty string.
-/// @param kind as above
-std::string CheckNumeric(vtkFieldData* arrays, const Name& name, const char* kind);
+/// An array of the name must hold numbers, or be missing.
+void RequireNumeric(vtkFieldData* arrays, const Name& name, const char* kind);
 
-/// An error text if an array of the name exists and does not hold text, else an empty string.
-std::string CheckText(vtkFieldData* fields, const Name& name);
+/// Field data of the name must hold text, or be missing.
+void RequireText(vtkFieldData* fields, const Name& name);
 
 /// True for the whole numbers that an int holds.
 bool IsInt(double value);
@@ -101,9 +105,9 @@ bool IsInt(double value);
 /// not exactly one value, or the value is not finite.
 bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value);
 
-/// Read one finite number like GetFieldValue(). A missing array is not an error; `value` then
-/// stays. @return an error text, or an empty string
-std::string ReadFieldValue(vtkFieldData* fields, const Name& name, double& value);
+/// Read one finite number like GetFieldValue(). `value` stays if the array is missing; throws
+/// std::runtime_error if the array holds something else.
+void ReadFieldValue(vtkFieldData* fields, const Name& name, double& value);
 }
 
 #endif

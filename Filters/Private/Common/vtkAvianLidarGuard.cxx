@@ -2,6 +2,7 @@
 #include "vtkAvianLidarGuard.h"
 
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -64,7 +65,7 @@ std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
+void vtkAvianLidarGuard::RequireInputs(vtkAlgorithm* self)
 {
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -76,11 +77,10 @@ std::string vtkAvianLidarGuard::FailedInput(vtkAlgorithm* self)
         // The first error alone, not those of all filters between.
         const auto first = error.rfind(ProducerFailed);
         error.erase(0, first == std::string::npos ? 0 : first + sizeof(ProducerFailed) - 1);
-        return "Input port " + std::to_string(port) + ProducerFailed + error;
+        vtkAvianLidarRequire("Input port " + std::to_string(port) + ProducerFailed + error);
       }
     }
   }
-  return {};
 }
 
 //------------------------------------------------------------------------------

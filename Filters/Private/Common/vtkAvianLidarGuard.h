@@ -19,6 +19,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <type_traits>
 
 class vtkInformationVector;
 
@@ -26,9 +27,8 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// An error text that names the first input that is empty because its producer failed; else an
-/// empty string.
-std::string FailedInput(vtkAlgorithm* self);
+/// Throw an error that names the first input that is empty because its producer failed.
+void RequireInputs(vtkAlgorithm* self);
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
@@ -43,17 +43,19 @@ int End(vtkInformationVector* outputs, const std::string& problem, bool errorsAs
 /// End an execution whose error does not fit into memory: outputs are emptied. @return 0
 int GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs);
 
-/// The problem that a step returns or throws; an empty string for avianlidar::WorkStopped.
+/// The problem that a step throws; an empty string for avianlidar::WorkStopped.
 template <class Step>
-std::string ProblemOf(Step step)
+std::string ProblemOf(const Step& step)
 {
   try
   {
-    return step();
+    static_assert(std::is_void_v<decltype(step())>, "a step throws its error");
+    step();
+    return {};
   }
   catch (const avianlidar::WorkStopped&)
   {
-    return {}; // outputs are empty and valid
+    return {};
   }
   catch (const std::bad_alloc&)
   {
@@ -66,20 +68,27 @@ std::string ProblemOf(Step step)
 }
 }
 
-/// Run the body of a RequestData, which returns an error text, or an empty string.
+/// Run the body of a RequestData, which throws an error, or avianlidar::WorkStopped to stop with
+/// empty outputs.
 template <class Filter, class Body>
-int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, Body body)
+int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, const Body& body)
 try
 {
+  bool stopped = true;
   const std::string problem = vtkAvianLidarGuard::ProblemOf(
     [&]()
     {
-      const std::string failed = vtkAvianLidarGuard::FailedInput(self);
-      return failed.empty() ? body() : failed;
+      vtkAvianLidarGuard::RequireInputs(self);
+      body();
+      stopped = false;
     });
   if (!problem.empty())
   {
     vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
+  }
+  else if (stopped)
+  {
+    vtkAvianLidarGuard::Empty(outputs);
   }
   return vtkAvianLidarGuard::End(outputs, problem, self->GetErrorsAsData());
 }

@@ -4,6 +4,7 @@
 #include "Hash.h"
 #include "ParallelLoop.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
@@ -42,21 +43,14 @@ constexpr char Stop = 's';
 constexpr char Failure = 'f';
 
 /// What a rank tells the others of its step: nothing if all is well.
-std::string ResultOf(const std::function<std::string()>& step)
+std::string ResultOf(const std::function<void()>& step)
 {
-  bool stopped = false;
+  bool stopped = true;
   const std::string problem = vtkAvianLidarGuard::ProblemOf(
-    [&]() -> std::string
+    [&]()
     {
-      try
-      {
-        return step();
-      }
-      catch (const avianlidar::WorkStopped&)
-      {
-        stopped = true;
-        return {};
-      }
+      step();
+      stopped = false;
     });
   return problem.empty() ? std::string(stopped, Stop) : Failure + problem;
 }
@@ -139,7 +133,7 @@ vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Bo
 {
   Outcome outcome = Outcome::Stopped;
   const std::string thrown = vtkAvianLidarGuard::ProblemOf(
-    [&]() -> std::string
+    [&]()
     {
       try
       {
@@ -149,7 +143,6 @@ vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Bo
       {
         outcome = ended.outcome;
       }
-      return {};
     });
   if (!thrown.empty())
   {
@@ -256,7 +249,7 @@ try
   const vtkAvianLidarRanks together(controller, request, outputs);
   const auto work = [&](const vtkAvianLidarRanks& ranks)
   {
-    ranks.Together(self, [self]() { return vtkAvianLidarGuard::FailedInput(self); });
+    ranks.Together(self, [self]() { vtkAvianLidarGuard::RequireInputs(self); });
     body(ranks);
   };
   const Outcome outcome = together.Run(self, std::cref(work));
@@ -278,14 +271,14 @@ vtkAvianLidarRanks::vtkAvianLidarRanks(
 {
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
   vtkInformation* output = outputs->GetInformationObject(port);
-  if (!all || !output || all->GetNumberOfProcesses() < 2 ||
-    !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) ||
+  if (!output || !output->Has(Pipeline::UPDATE_PIECE_NUMBER()) ||
     !output->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()))
   {
     return;
   }
-  if (output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == all->GetNumberOfProcesses() &&
-    output->Get(Pipeline::UPDATE_PIECE_NUMBER()) == all->GetLocalProcessId())
+  this->Asked = output->Get(Pipeline::UPDATE_PIECE_NUMBER());
+  if (all && all->GetNumberOfProcesses() > 1 && this->Asked == all->GetLocalProcessId() &&
+    output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) == all->GetNumberOfProcesses())
   {
     this->Controller = all;
     this->Mine = all->GetLocalProcessId();
@@ -294,7 +287,7 @@ vtkAvianLidarRanks::vtkAvianLidarRanks(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarRanks::RunStep(vtkAlgorithm* self, const std::function<std::string()>& step) const
+void vtkAvianLidarRanks::RunStep(vtkAlgorithm* self, const std::function<void()>& step) const
 {
   const std::string mine = ResultOf(step);
   if (!this->All(mine.empty()))
@@ -359,7 +352,7 @@ void vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
   }
   std::vector<vtkMultiProcessStream> all = this->Gather(stream);
   this->Together(self,
-    [&]() -> std::string
+    [&]()
     {
       for (const auto& [name, value] : mine.Each)
       {
@@ -371,12 +364,11 @@ void vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
           all[rank] >> other;
           if (other != first)
           {
-            return std::string(name) + " is " + first + " on rank 0 and " + other + " on rank " +
-              std::to_string(rank) + ", expected the same on all ranks";
+            vtkAvianLidarRequire(std::string(name) + " is " + first + " on rank 0 and " + other +
+              " on rank " + std::to_string(rank) + ", expected the same on all ranks");
           }
         }
       }
-      return {};
     });
 }
 
@@ -540,7 +532,7 @@ int vtkAvianLidarRanks::UpdateInputs(
   vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when)
 {
   vtkInformationVector* outputs = self->GetExecutive()->GetOutputInformation();
-  const auto update = [&]() -> std::string
+  const auto update = [&]()
   {
     bool good = true;
     bool stopped = false;
@@ -554,11 +546,12 @@ int vtkAvianLidarRanks::UpdateInputs(
         stopped = stopped || WasAborted(input->GetProducer());
       }
     }
-    if (good && stopped)
+    vtkAvianLidarRequire(
+      good ? "" : "What is needed could not be made, see the errors of filters upstream");
+    if (stopped)
     {
       throw avianlidar::WorkStopped{};
     }
-    return good ? "" : "What is needed could not be made, see the errors of filters upstream";
   };
   const auto work = [&](const vtkAvianLidarRanks& ranks) { ranks.Together(self, update); };
   if (when != vtkExecutive::BeforeForward || !request->Has(Pipeline::REQUEST_DATA()))

@@ -80,31 +80,20 @@ public:
     vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
 
   bool Alone() const { return this->Controller == nullptr; }
+  int Piece() const { return this->Asked; } ///< requested piece; of several ranks, this rank
   const void* Group() const { return this->Controller; } ///< ranks' controller; null: one process
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
   /// Run this rank's part of a step. If the step fails or stops on one rank, the function throws on
   /// all ranks, and Execute() ends.
-  /// @param step returns an error text, an empty string or nothing; throws avianlidar::WorkStopped
-  /// to stop. `self` reports an error on the rank itself, and on rank 0 with the number of the
-  /// rank.
+  /// @param step throws an error, or avianlidar::WorkStopped to stop. `self` reports an error on
+  /// the rank itself, and on rank 0 with the number of the rank.
   template <class Step>
   void Together(vtkAlgorithm* self, const Step& step) const
   {
-    this->RunStep(self,
-      [&step]() -> std::string
-      {
-        if constexpr (std::is_void_v<decltype(step())>)
-        {
-          step();
-          return {};
-        }
-        else
-        {
-          return step();
-        }
-      });
+    static_assert(std::is_void_v<decltype(step())>, "a step throws its error");
+    this->RunStep(self, std::cref(step));
   }
 
   /// Gives an error on all ranks if a rank's setting differs from the setting of rank 0, because
@@ -183,7 +172,7 @@ private:
     vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
   Outcome Run(vtkAlgorithm* self, const Body& body) const;
   Outcome RunTogether(vtkAlgorithm* self, const Body& body) const;
-  void RunStep(vtkAlgorithm* self, const std::function<std::string()>& step) const;
+  void RunStep(vtkAlgorithm* self, const std::function<void()>& step) const;
   /// Make the error of an exception the error of all ranks. @param mine null if another rank threw
   /// @return Outcome::Failed
   Outcome Fail(vtkAlgorithm* self, const char* mine) const noexcept;
@@ -198,10 +187,24 @@ private:
   std::vector<vtkMultiProcessStream> GatherStreams(const vtkMultiProcessStream& mine) const;
 
   vtkMultiProcessController* Controller = nullptr; ///< null: alone
+  int Asked = 0;
   int Mine = 0;
   int Count = 1;
   mutable std::string Problem;     ///< last problem, the same on all ranks
   mutable bool Exchanging = false; ///< true while data are sent
 };
+
+/// Defines ModifyRequest() of a filter whose ranks work together.
+#define vtkAvianLidarCxxModifyRequestMacro(thisClass)               \
+  int thisClass::ModifyRequest(vtkInformation* request, int when)   \
+  {                                                                 \
+    return vtkAvianLidarRanks::UpdateInputs(this, request, when) && \
+      this->Superclass::ModifyRequest(request, when);               \
+  }
+
+/// Defines what vtkAvianLidarControllerMacro() declares.
+#define vtkAvianLidarCxxControllerMacro(thisClass)                        \
+  vtkCxxSetObjectMacro(thisClass, Controller, vtkMultiProcessController); \
+  vtkAvianLidarCxxModifyRequestMacro(thisClass)
 
 #endif

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarScanStream.h"
 
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -17,7 +18,7 @@ namespace Arrays = vtkAvianLidarArrays;
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarScanStream::ReadTime(vtkDataObject* cloud, double& time) const
+double vtkAvianLidarScanStream::TimeOf(vtkDataObject* cloud) const
 {
   vtkFieldData* fields = cloud->GetFieldData();
   double revolution = 0.0;
@@ -27,17 +28,18 @@ std::string vtkAvianLidarScanStream::ReadTime(vtkDataObject* cloud, double& time
     Arrays::GetFieldValue(fields, Arrays::RotationRate, rate) && rate > 0.0;
   if (turns && Arrays::GetFieldValue(fields, Arrays::StepsPerRevolution, steps) && steps > 1.0)
   {
-    time = revolution / rate;
-    return {};
+    return revolution / rate;
   }
   if (cloud->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
   {
-    time = cloud->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
-    return std::isfinite(time) ? std::string() : "its time is not a finite number";
+    const double time = cloud->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
+    vtkAvianLidarRequire(std::isfinite(time) ? "" : "its time is not a finite number");
+    return time;
   }
   const bool same = this->Cloud == cloud && this->MadeAt == Made(cloud);
-  time = turns ? revolution / rate : !this->Has ? 0.0 : this->Last + (same ? 0.0 : 1.0);
-  return Arrays::ReadFieldValue(fields, Arrays::TimeValue, time);
+  double time = turns ? revolution / rate : !this->Has ? 0.0 : this->Last + (same ? 0.0 : 1.0);
+  Arrays::ReadFieldValue(fields, Arrays::TimeValue, time);
+  return time;
 }
 
 //------------------------------------------------------------------------------
@@ -50,12 +52,12 @@ void vtkAvianLidarScanStream::Accept(vtkDataObject* cloud, double time)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarScanStream::ReadPosition(vtkDataObject* cloud, double position[3])
+void vtkAvianLidarScanStream::ReadPosition(vtkDataObject* cloud, double position[3])
 {
   vtkFieldData* fields = cloud->GetFieldData();
   if (!fields || !fields->GetAbstractArray(Arrays::Position.name))
   {
-    return {};
+    return;
   }
   vtkDataArray* array = fields->GetArray(Arrays::Position.name);
   bool good = array && array->GetNumberOfTuples() == 1 && array->GetNumberOfComponents() == 3;
@@ -64,7 +66,7 @@ std::string vtkAvianLidarScanStream::ReadPosition(vtkDataObject* cloud, double p
     position[axis] = array->GetComponent(0, axis);
     good = std::isfinite(position[axis]);
   }
-  return good ? std::string() : "field data 'position' are not 3 finite numbers";
+  vtkAvianLidarRequire(good ? "" : "field data 'position' are not 3 finite numbers");
 }
 
 //------------------------------------------------------------------------------

@@ -14,15 +14,13 @@
 
 #include "vtkType.h"
 
-#include <string>
-
 class vtkDataObject;
 
 class vtkAvianLidarScanStream
 {
 public:
-  /// Read the time of a cloud, without storing it. @return an error text, or an empty string
-  std::string ReadTime(vtkDataObject* cloud, double& time) const;
+  /// Time of a cloud, s, which is not stored. Throws std::runtime_error.
+  double TimeOf(vtkDataObject* cloud) const;
 
   /// Store the cloud and its time as the last cloud and time.
   void Accept(vtkDataObject* cloud, double time);
@@ -31,8 +29,8 @@ public:
   double Time() const { return this->Last; } ///< time of the last cloud
 
   /// Read the position of the sensor from field data `position`; without this array, `position`
-  /// stays. @return an error text, or an empty string
-  static std::string ReadPosition(vtkDataObject* cloud, double position[3]);
+  /// stays. Throws std::runtime_error.
+  static void ReadPosition(vtkDataObject* cloud, double position[3]);
 
 private:
   static vtkMTimeType Made(vtkDataObject* cloud);

@@ -5,6 +5,7 @@
 #include "ScanBeams.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -21,20 +22,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
 
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::Vec3;
-
-void Require(const std::string& problem)
-{
-  if (!problem.empty())
-  {
-    throw std::runtime_error(problem);
-  }
-}
 
 /// How many points lie between two bounds.
 double CountAlong(const double bounds[2], double spacing)
@@ -42,14 +34,14 @@ double CountAlong(const double bounds[2], double spacing)
   return std::floor((bounds[1] - bounds[0]) / spacing * (1.0 + 1e-12)) + 1.0;
 }
 
-/// What is wrong with the extent of structured points: VTK takes any, and counts the points of some
+/// Throws if the extent of structured points is bad: VTK takes any, and counts the points of some
 /// as fewer than none.
-std::string CheckExtent(vtkDataSet* points)
+void CheckExtent(vtkDataSet* points)
 {
   vtkInformation* info = points->GetInformation();
   if (!info->Has(vtkDataObject::DATA_EXTENT()))
   {
-    return {};
+    return;
   }
   const int* extent = info->Get(vtkDataObject::DATA_EXTENT());
   for (int axis = 0; axis < 3; ++axis)
@@ -58,11 +50,11 @@ std::string CheckExtent(vtkDataSet* points)
     const int last = extent[2 * axis + 1];
     if (static_cast<long long>(last) - first < -1)
     {
-      return "extent from " + std::to_string(first) + " to " + std::to_string(last) + " on axis " +
-        std::to_string(axis) + ", expected a last point that is not before the first";
+      vtkAvianLidarRequire("extent from " + std::to_string(first) + " to " + std::to_string(last) +
+        " on axis " + std::to_string(axis) +
+        ", expected a last point that is not before the first");
     }
   }
-  return {};
 }
 }
 
@@ -87,11 +79,11 @@ double vtkAvianLidarPlaces::CountOf(vtkDataSet* points)
 vtkAvianLidarPlaces::vtkAvianLidarPlaces(vtkDataSet* points)
   : Points(points)
 {
-  Require(CheckExtent(points));
+  CheckExtent(points);
   for (std::size_t k = 0; k < this->Size(); ++k)
   {
     const std::string wrong = avianlidar::checkPosition(this->At(k));
-    Require(wrong.empty() ? wrong : "point " + std::to_string(k) + ": " + wrong);
+    vtkAvianLidarRequire(wrong.empty() ? wrong : "point " + std::to_string(k) + ": " + wrong);
   }
   this->ReadRegions();
   this->Ghosts = points->GetPointGhostArray();
@@ -264,10 +256,10 @@ std::uint64_t vtkAvianLidarPlaces::Hash() const
 void vtkAvianLidarPlaces::ReadRegions()
 {
   vtkPointData* arrays = this->Points->GetPointData();
-  Require(Arrays::CheckNumeric(arrays, Arrays::RegionId, "point array"));
+  Arrays::RequireNumeric(arrays, Arrays::RegionId, "point array");
   vtkDataArray* ids = arrays->GetArray(Arrays::RegionId.name);
-  Require(Arrays::CheckShape(ids, "point array", 1, this->Points->GetNumberOfPoints()));
-  Require(Arrays::CheckText(this->Points->GetFieldData(), Arrays::RegionNames));
+  Arrays::RequireShape(ids, "point array", 1, this->Points->GetNumberOfPoints());
+  Arrays::RequireText(this->Points->GetFieldData(), Arrays::RegionNames);
   if (!ids)
   {
     return;
@@ -278,7 +270,7 @@ void vtkAvianLidarPlaces::ReadRegions()
   for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
   {
     const double id = ids->GetComponent(i, 0);
-    Require(Arrays::IsInt(id)
+    vtkAvianLidarRequire(Arrays::IsInt(id)
         ? ""
         : "point array 'region_id' is not a whole number of 32 bits at point " + std::to_string(i));
     numbers[static_cast<int>(id)] = 0;

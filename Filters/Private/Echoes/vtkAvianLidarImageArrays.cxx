@@ -30,16 +30,15 @@ const char* const BeamPort = "input port 1 (beams)";
 // A point array of the image: of each cell the value of its item, the given one where that is -1.
 template <class ArrayT, class T>
 void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* values,
-  const std::vector<vtkIdType>& items, T empty, const char* port, std::string& problem)
+  const std::vector<vtkIdType>& items, T empty, const char* port)
 {
   auto array = Arrays::Make<ArrayT>(name, static_cast<vtkIdType>(items.size()));
   for (std::size_t i = 0; i < items.size(); ++i)
   {
     const double value = items[i] < 0 ? 0.0 : values->GetComponent(items[i], 0);
-    if (std::is_integral_v<T> && !vtkAvianLidarImageArrays::Fits<T>(value))
+    if (std::is_integral_v<T>)
     {
-      problem = vtkAvianLidarImageArrays::NoInteger(name, port, items[i]);
-      return;
+      vtkAvianLidarImageArrays::RequireInteger<T>(value, name, port, items[i]);
     }
     array->SetValue(static_cast<vtkIdType>(i), items[i] < 0 ? empty : static_cast<T>(value));
   }
@@ -49,57 +48,46 @@ void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* value
 // Of each cell what its beam says, if the beams have that array.
 template <class ArrayT, class T>
 void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
-  const std::vector<vtkIdType>& beamOfCell, T empty, std::string& problem)
+  const std::vector<vtkIdType>& beamOfCell, T empty)
 {
   if (beams->GetPointData()->GetAbstractArray(name.name))
   {
-    if (vtkDataArray* values = vtkAvianLidarImageArrays::Find(beams, name, BeamPort, problem))
-    {
-      AddCells<ArrayT>(image, name, values, beamOfCell, empty, BeamPort, problem);
-    }
+    AddCells<ArrayT>(image, name, vtkAvianLidarImageArrays::Find(beams, name, BeamPort), beamOfCell,
+      empty, BeamPort);
   }
 }
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarImageArrays::CheckLengths(vtkPolyData* input, const char* port)
+void vtkAvianLidarImageArrays::RequireLengths(vtkPolyData* input, const char* port)
 {
   for (int i = 0; i < input->GetPointData()->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = input->GetPointData()->GetAbstractArray(i);
     if (array->GetNumberOfTuples() != input->GetNumberOfPoints())
     {
-      return std::string("point array '") + (array->GetName() ? array->GetName() : "") + "' of " +
-        port + " has " + std::to_string(array->GetNumberOfTuples()) + " values, expected " +
-        std::to_string(input->GetNumberOfPoints());
+      vtkAvianLidarRequire(std::string("point array '") +
+        (array->GetName() ? array->GetName() : "") + "' of " + port + " has " +
+        std::to_string(array->GetNumberOfTuples()) + " values, expected " +
+        std::to_string(input->GetNumberOfPoints()));
     }
   }
-  return {};
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarImageArrays::NoInteger(
-  const Arrays::Name& name, const char* port, vtkIdType point)
-{
-  return std::string("point array '") + name.name + "' of " + port +
-    " has a value that is not an integer, at point " + std::to_string(point);
-}
-
-//------------------------------------------------------------------------------
-vtkDataArray* vtkAvianLidarImageArrays::Find(vtkPolyData* input, const Arrays::Name& name,
-  const char* port, std::string& problem, int components)
+vtkDataArray* vtkAvianLidarImageArrays::Find(
+  vtkPolyData* input, const Arrays::Name& name, const char* port, int components)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(name.name);
   if (!array)
   {
-    problem = std::string(port) + " has no numeric point array '" + name.name + "'";
+    vtkAvianLidarRequire(std::string(port) + " has no numeric point array '" + name.name + "'");
   }
   else if (array->GetNumberOfComponents() != components)
   {
-    problem = std::string("point array '") + name.name + "' of " + port + " has " +
+    vtkAvianLidarRequire(std::string("point array '") + name.name + "' of " + port + " has " +
       std::to_string(array->GetNumberOfComponents()) + " components, expected " +
-      std::to_string(components);
-    array = nullptr;
+      std::to_string(components));
   }
   return array;
 }
@@ -107,42 +95,37 @@ vtkDataArray* vtkAvianLidarImageArrays::Find(vtkPolyData* input, const Arrays::N
 //------------------------------------------------------------------------------
 void vtkAvianLidarImageArrays::AddEchoes(vtkPolyData* echoes,
   const std::vector<vtkIdType>& beamOfCell, const std::vector<vtkIdType>& strongest,
-  vtkImageData* image, std::string& problem)
+  vtkImageData* image)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<vtkIdType> items(beamOfCell.size(), -1);
   std::transform(beamOfCell.begin(), beamOfCell.end(), items.begin(),
     [&](vtkIdType beam) { return beam < 0 ? beam : strongest[beam]; });
-  vtkDataArray *distance = nullptr, *energy = nullptr, *object = nullptr;
-  if (echoes->GetNumberOfPoints() > 0)
-  {
-    distance = Find(echoes, Arrays::Distance, EchoPort, problem);
-    energy = distance ? Find(echoes, Arrays::Energy, EchoPort, problem) : nullptr;
-    object = energy ? Find(echoes, Arrays::ObjectId, EchoPort, problem) : nullptr;
-  }
-  if (problem.empty())
-  {
-    AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan, EchoPort, problem);
-    AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan, EchoPort, problem);
-    AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1, EchoPort, problem);
-    image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
-  }
+  const auto find = [echoes](const Arrays::Name& name)
+  { return echoes->GetNumberOfPoints() > 0 ? Find(echoes, name, EchoPort) : nullptr; };
+  vtkDataArray* distance = find(Arrays::Distance);
+  vtkDataArray* energy = find(Arrays::Energy);
+  vtkDataArray* object = find(Arrays::ObjectId);
+  AddCells<vtkDoubleArray>(image, Arrays::Distance, distance, items, nan, EchoPort);
+  AddCells<vtkDoubleArray>(image, Arrays::Energy, energy, items, nan, EchoPort);
+  AddCells<vtkIntArray>(image, Arrays::ObjectId, object, items, -1, EchoPort);
+  image->GetPointData()->SetActiveScalars(Arrays::Distance.name);
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarImageArrays::AddReport(vtkPolyData* beams,
-  const std::vector<vtkIdType>& beamOfCell, vtkImageData* image, std::string& problem)
+void vtkAvianLidarImageArrays::AddReport(
+  vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image)
 {
   for (const Arrays::Name& name : { Arrays::Status, Arrays::Skipped })
   {
-    AddBeams<vtkIntArray>(image, name, beams, beamOfCell, -1, problem);
+    AddBeams<vtkIntArray>(image, name, beams, beamOfCell, -1);
   }
   for (const Arrays::Name& name : { Arrays::Candidates, Arrays::NodesVisited, Arrays::RaysTraced })
   {
-    AddBeams<vtkIdTypeArray>(image, name, beams, beamOfCell, vtkIdType{ -1 }, problem);
+    AddBeams<vtkIdTypeArray>(image, name, beams, beamOfCell, vtkIdType{ -1 });
   }
-  AddBeams<vtkDoubleArray>(image, Arrays::SkippedBound, beams, beamOfCell,
-    std::numeric_limits<double>::quiet_NaN(), problem);
+  AddBeams<vtkDoubleArray>(
+    image, Arrays::SkippedBound, beams, beamOfCell, std::numeric_limits<double>::quiet_NaN());
 }
 
 //------------------------------------------------------------------------------
@@ -167,7 +150,6 @@ bool vtkAvianLidarImageArrays::FillIfFailed(vtkAlgorithm* self, vtkInformationVe
       nothing->Fill(std::numeric_limits<double>::quiet_NaN());
       image->SetExtent(extent);
       image->GetPointData()->SetScalars(nothing);
-      return std::string();
     });
   if (!problem.empty())
   {

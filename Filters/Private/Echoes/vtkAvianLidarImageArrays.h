@@ -8,6 +8,7 @@
 #define vtkAvianLidarImageArrays_h
 
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkType.h"
 
@@ -24,34 +25,36 @@ class vtkPolyData;
 
 namespace vtkAvianLidarImageArrays
 {
-/// A point array with the given number of components, or null with an error text in `problem`.
-/// @param port words for the input in errors
-vtkDataArray* Find(vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port,
-  std::string& problem, int components = 1);
+// All but FillIfFailed() throw std::runtime_error. @param port words for the input in errors
 
-/// An error text unless each point array has one value per point; else an empty string.
-std::string CheckLengths(vtkPolyData* input, const char* port);
+/// A point array with the given number of components.
+vtkDataArray* Find(
+  vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port, int components = 1);
 
-/// True for the whole numbers that an integer type holds.
+/// Each point array must have one value per point.
+void RequireLengths(vtkPolyData* input, const char* port);
+
+/// The value must be a whole number that an integer type holds. @return the number
 template <class T>
-bool Fits(double value)
+T RequireInteger(
+  double value, const vtkAvianLidarArrays::Name& name, const char* port, vtkIdType point)
 {
   const double least = static_cast<double>(std::numeric_limits<T>::min());
-  return value >= least && value < -least && value == std::floor(value);
+  if (!(value >= least && value < -least && value == std::floor(value)))
+  {
+    vtkAvianLidarRequire(std::string("point array '") + name.name + "' of " + port +
+      " has a value that is not an integer, at point " + std::to_string(point));
+  }
+  return static_cast<T>(value);
 }
 
-/// The error text if Fits() is false.
-std::string NoInteger(const vtkAvianLidarArrays::Name& name, const char* port, vtkIdType point);
-
 /// Add the arrays of the strongest echoes. @param beamOfCell beam of each cell, or -1 @param
-/// strongest strongest echo of each beam, or -1 @param problem error text; unchanged without an
-/// error
+/// strongest strongest echo of each beam, or -1
 void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
-  const std::vector<vtkIdType>& strongest, vtkImageData* image, std::string& problem);
+  const std::vector<vtkIdType>& strongest, vtkImageData* image);
 
 /// Add the arrays of a beam report, if `beams` is a beam report.
-void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image,
-  std::string& problem);
+void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image);
 
 /// If output port 0 is an image whose field data hold an error, fill the requested extent with NaN.
 /// VTK's imaging filters read the announced extent, and crash without it. @return false, after an

@@ -24,22 +24,16 @@ const char* const Port = "input port 1 (beams)";
 
 // Azimuth and elevation of each beam in degrees, from their arrays or from the direction that is
 // reported.
-bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations,
-  std::string& problem)
+void ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations)
 {
   vtkPointData* data = input->GetPointData();
   const bool angles =
     data->HasArray(Arrays::Azimuth.name) || data->HasArray(Arrays::VerticalAngle.name);
   const Arrays::Name& direction =
     data->HasArray(Arrays::ReportedDirection.name) ? Arrays::ReportedDirection : Arrays::Direction;
-  vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, Port, problem)
-                               : ImageArrays::Find(input, direction, Port, problem, 3);
-  vtkDataArray* second =
-    angles && first ? ImageArrays::Find(input, Arrays::VerticalAngle, Port, problem) : first;
-  if (!first || !second)
-  {
-    return false;
-  }
+  vtkDataArray* first = angles ? ImageArrays::Find(input, Arrays::Azimuth, Port)
+                               : ImageArrays::Find(input, direction, Port, 3);
+  vtkDataArray* second = angles ? ImageArrays::Find(input, Arrays::VerticalAngle, Port) : first;
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
     double azimuth = first->GetComponent(i, 0);
@@ -59,37 +53,27 @@ bool ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
     }
     if (!std::isfinite(azimuth) || !std::isfinite(elevation))
     {
-      problem = std::string("beam ") + std::to_string(i) + " of " + Port +
+      vtkAvianLidarRequire(std::string("beam ") + std::to_string(i) + " of " + Port +
         " has no finite direction (array '" +
-        (angles ? "azimuth' or 'vertical_angle" : direction.name) + "')";
-      return false;
+        (angles ? "azimuth' or 'vertical_angle" : direction.name) + "')");
     }
     azimuths.push_back(azimuth);
     elevations.push_back(elevation);
   }
-  return true;
 }
 
 // The integers of an optional array; the index of each beam if there is no such array and
 // `numbered`.
 template <class T>
-std::vector<T> ReadIntegers(
-  vtkPolyData* input, const Arrays::Name& name, bool numbered, std::string& problem)
+std::vector<T> ReadIntegers(vtkPolyData* input, const Arrays::Name& name, bool numbered)
 {
   std::vector<T> values;
-  vtkDataArray* array = input->GetPointData()->HasArray(name.name)
-    ? ImageArrays::Find(input, name, Port, problem)
-    : nullptr;
-  for (vtkIdType i = 0; problem.empty() && (array || numbered) && i < input->GetNumberOfPoints();
-       ++i)
+  vtkDataArray* array =
+    input->GetPointData()->HasArray(name.name) ? ImageArrays::Find(input, name, Port) : nullptr;
+  for (vtkIdType i = 0; (array || numbered) && i < input->GetNumberOfPoints(); ++i)
   {
     const double value = array ? array->GetComponent(i, 0) : static_cast<double>(i);
-    if (!ImageArrays::Fits<T>(value))
-    {
-      problem = ImageArrays::NoInteger(name, Port, i);
-      break;
-    }
-    values.push_back(static_cast<T>(value));
+    values.push_back(ImageArrays::RequireInteger<T>(value, name, Port, i));
   }
   return values;
 }
@@ -126,23 +110,19 @@ vtkAvianLidarImageBeams::Beams vtkAvianLidarImageBeams::Read(
 {
   Beams beams;
   std::vector<double> azimuths, elevations;
-  if (input->GetNumberOfPoints() > 0 && !ReadAngles(input, azimuths, elevations, beams.Problem))
+  if (input->GetNumberOfPoints() > 0)
   {
-    return beams;
+    ReadAngles(input, azimuths, elevations);
   }
-  const auto ids = ReadIntegers<vtkIdType>(input, Arrays::BeamId, true, beams.Problem);
-  const auto channels = ReadIntegers<int>(input, Arrays::LaserId, false, beams.Problem);
-  for (std::size_t i = 0; beams.Problem.empty() && i < ids.size(); ++i)
+  const auto ids = ReadIntegers<vtkIdType>(input, Arrays::BeamId, true);
+  const auto channels = ReadIntegers<int>(input, Arrays::LaserId, false);
+  for (std::size_t i = 0; i < ids.size(); ++i)
   {
     if (!beams.IndexOfId.emplace(ids[i], static_cast<vtkIdType>(i)).second)
     {
-      beams.Problem = "input port 1 (beams) has two beams with the 'beam_id' " +
-        std::to_string(ids[i]) + ", expected one sensor with unique ids";
+      vtkAvianLidarRequire("input port 1 (beams) has two beams with the 'beam_id' " +
+        std::to_string(ids[i]) + ", expected one sensor with unique ids");
     }
-  }
-  if (!beams.Problem.empty())
-  {
-    return beams;
   }
   if (!IsPartOf(whole, ids, azimuths, elevations))
   {
@@ -151,12 +131,10 @@ vtkAvianLidarImageBeams::Beams vtkAvianLidarImageBeams::Read(
       return beams;
     }
     beams.Grid = avianlidar::makeScanGrid(azimuths, elevations, channels);
-    if (beams.Grid.empty())
-    {
-      beams.Problem = "the beams of input port 1 form no grid of azimuths and elevations, and "
-                      "'laser_id' does not give "
-                      "every channel as many beams";
-    }
+    vtkAvianLidarRequire(beams.Grid.empty()
+        ? "the beams of input port 1 form no grid of azimuths and elevations, and 'laser_id' does "
+          "not give every channel as many beams"
+        : "");
     return beams;
   }
   beams.Grid = whole.Grid;

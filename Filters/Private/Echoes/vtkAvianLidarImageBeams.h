@@ -11,23 +11,21 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
-#include <string>
 #include <unordered_map>
 
 class vtkPolyData;
 
 namespace vtkAvianLidarImageBeams
 {
-/// The beams of an image. `Problem` is set if the input was bad.
+/// The beams of an image.
 struct Beams
 {
   avianlidar::ScanGrid Grid; ///< columns and rows of the image, and the cell of each beam
   std::unordered_map<vtkIdType, vtkIdType> IndexOfId;
-  std::string Problem;
 };
 
 /// Read beams. The grid is the grid of the whole scan if all beams belong to that scan or if there
-/// are no beams. Otherwise the beams form their own grid.
+/// are no beams. Otherwise the beams form their own grid. Throws std::runtime_error.
 Beams Read(vtkPolyData* input, const vtkAvianLidarScanShape::WholeScan& whole);
 
 /// The beams in the order of their ids, if they have ids.

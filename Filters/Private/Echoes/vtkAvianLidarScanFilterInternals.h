@@ -65,11 +65,6 @@ struct vtkAvianLidarScanFilter::vtkInternals
   };
   /// Properties that all filters of scans have.
   static const std::vector<Property>& Properties();
-
-  static std::string WrongWithBeams(const std::string& what)
-  {
-    return what.empty() ? what : "Input port 0 (beams), " + what;
-  }
 };
 
 #endif

@@ -6,6 +6,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -20,30 +21,17 @@
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
-
-vtkSmartPointer<vtkIntArray> Constant(const Arrays::Name& name, vtkIdType count, int value)
-{
-  auto array = Arrays::Make<vtkIntArray>(name, count);
-  array->FillValue(value);
-  return array;
-}
 }
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarBirds::TextOf(const char* property, const std::string& file)
 {
-  const std::string irregular = avianlidar::whyNotRegular(file);
-  if (!irregular.empty())
-  {
-    throw std::runtime_error(std::string(property) + " " + file + ": " + irregular);
-  }
+  const std::string name = std::string(property) + " " + file;
+  vtkAvianLidarRequire(avianlidar::whyNotRegular(file), name + ": ");
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream)
-  {
-    throw std::runtime_error(std::string(property) + " " + file + " cannot be read");
-  }
+  vtkAvianLidarRequire(stream ? "" : name + " cannot be read");
   return text.str();
 }
 
@@ -76,10 +64,7 @@ catch (const std::runtime_error& error)
 //------------------------------------------------------------------------------
 void vtkAvianLidarBirds::CheckReflectance(double reflectance)
 {
-  if (!(reflectance >= 0.0) || !(reflectance <= 1.0))
-  {
-    throw std::runtime_error(avianlidar::valueError("Reflectance", reflectance, "0 to 1"));
-  }
+  vtkAvianLidarRequire(avianlidar::rangeError("Reflectance", reflectance, 0.0, 1.0, "0 to 1"));
 }
 
 //------------------------------------------------------------------------------
@@ -110,7 +95,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarBirds::Surface(
   bird->SetPolys(cells);
   const vtkIdType count = cells->GetNumberOfCells();
   bird->GetCellData()->AddArray(parts);
-  bird->GetCellData()->AddArray(Constant(Arrays::MaterialId, count, 4));
+  bird->GetCellData()->AddArray(Arrays::Constant(Arrays::MaterialId, count, 4));
   vtkAvianLidarMaterials::AddCoefficients(
     bird->GetCellData(), count, [&](vtkIdType) -> const avianlidar::Material& { return plumage; });
   Arrays::SetFieldStrings(
@@ -121,7 +106,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarBirds::Surface(
 //------------------------------------------------------------------------------
 void vtkAvianLidarBirds::SetObject(vtkPolyData* bird, int id, const std::string& name)
 {
-  bird->GetCellData()->AddArray(Constant(Arrays::ObjectId, bird->GetNumberOfCells(), id));
+  bird->GetCellData()->AddArray(Arrays::Constant(Arrays::ObjectId, bird->GetNumberOfCells(), id));
   Arrays::SetFieldStrings(bird->GetFieldData(), Arrays::ObjectNames, { name });
   Arrays::SetFieldStrings(bird->GetFieldData(), Arrays::ObjectClasses, { "bird" });
 }

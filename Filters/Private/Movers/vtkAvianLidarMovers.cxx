@@ -3,8 +3,8 @@
 
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
-#include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkCellData.h"
@@ -32,10 +32,13 @@ using avianlidar::Vec3;
 /// it leaves has no other array of this name.
 constexpr names::Name BlockName{ "block_name", "" };
 
+/// Prefix of all errors.
+constexpr char MoversPort[] = "Input port 2 (movers), ";
+
 /// Hash of all that is read of a block.
 std::uint64_t HashOfMover(vtkPolyData* block)
 {
-  std::uint64_t hash = vtkAvianLidarSurfaceState::HashOf(block);
+  std::uint64_t hash = Leaf::HashOf(block);
   hash = vtkAvianLidarContent::HashOf(block->GetCellData()->GetArray(names::Part.name), hash);
   for (const names::Name& name :
     { names::PoseTime, names::PosePosition, names::PoseOrientation, names::FlapHinge,
@@ -65,22 +68,24 @@ bool IsNothing(vtkPolyData* block)
     !block->GetFieldData()->HasArray(names::PosePosition.name);
 }
 
-/// The leaves that are movers. @param problem out: what else was found
-std::vector<Leaf> Collect(vtkDataObject* input, std::string& problem)
+/// The leaves that are movers, before anything else that was found.
+std::vector<Leaf> Collect(vtkDataObject* input)
 {
+  std::string problem;
   std::vector<Leaf> leaves = input ? Leaf::Collect(input, problem) : std::vector<Leaf>();
   leaves.erase(std::remove_if(leaves.begin(), leaves.end(),
                  [](const Leaf& leaf) { return IsNothing(leaf.data); }),
     leaves.end());
+  vtkAvianLidarRequire(problem);
   return leaves;
 }
 
-/// The leaves as blocks that know the names given to them. @param problem out: what else was found
-vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input, std::string& problem)
+/// The leaves as blocks that know the names given to them.
+vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input)
 {
   auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   unsigned int count = 0;
-  for (const Leaf& leaf : Collect(input, problem))
+  for (const Leaf& leaf : Collect(input))
   {
     vtkNew<vtkPolyData> copy;
     copy->ShallowCopy(leaf.data);
@@ -121,59 +126,54 @@ vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataO
   return all;
 }
 
-/// Field data of numbers; `rows` is set to how many there are, 0 without the array.
-/// @return what is wrong with it
-std::string ReadNumbers(vtkFieldData* fields, const names::Name& name, int components,
-  std::vector<double>& values, std::size_t& rows)
+/// Field data of numbers. @return how many rows there are, 0 without the array
+std::size_t ReadNumbers(
+  vtkFieldData* fields, const names::Name& name, int components, std::vector<double>& values)
 {
-  std::string wrong = names::CheckNumeric(fields, name, "field data");
+  names::RequireNumeric(fields, name, "field data");
   vtkDataArray* const array = fields->GetArray(name.name);
-  rows = array ? static_cast<std::size_t>(array->GetNumberOfTuples()) : 0;
-  if (!wrong.empty() || !array)
+  if (!array)
   {
-    return wrong;
+    return 0;
   }
-  wrong = names::CheckShape(array, "field data", components, array->GetNumberOfTuples());
+  names::RequireShape(array, "field data", components, array->GetNumberOfTuples());
+  const auto rows = static_cast<std::size_t>(array->GetNumberOfTuples());
   values.resize(rows * static_cast<std::size_t>(components));
-  for (std::size_t i = 0; i < values.size() && wrong.empty(); ++i)
+  for (std::size_t i = 0; i < values.size(); ++i)
   {
     values[i] = array->GetComponent(
       static_cast<vtkIdType>(i / static_cast<std::size_t>(components)), i % components);
   }
-  return wrong;
+  return rows;
 }
 
-std::string WrongCount(
-  const names::Name& name, std::size_t rows, const std::string& expected, std::size_t wanted)
+void RequireCount(const names::Name& name, std::size_t rows, const char* like, std::size_t wanted)
 {
-  return std::string("field data '") + name.name + "' has " + std::to_string(rows) +
-    " values, expected " + expected + " (" + std::to_string(wanted) + ")";
+  if (rows != wanted)
+  {
+    vtkAvianLidarRequire(std::string("field data '") + name.name + "' has " + std::to_string(rows) +
+      " values, expected as many as '" + like + "' (" + std::to_string(wanted) + ")");
+  }
 }
 
-std::string ReadPoses(vtkFieldData* fields, Mover& mover)
+void ReadPoses(vtkFieldData* fields, Mover& mover)
 {
   std::vector<double> times, positions, turns;
-  std::size_t nTimes, nPositions, nTurns;
-  std::string wrong = ReadNumbers(fields, names::PosePosition, 3, positions, nPositions);
-  wrong = wrong.empty() ? ReadNumbers(fields, names::PoseTime, 1, times, nTimes) : wrong;
-  wrong = wrong.empty() ? ReadNumbers(fields, names::PoseOrientation, 4, turns, nTurns) : wrong;
-  if (!wrong.empty())
-  {
-    return wrong;
-  }
-  if (nPositions == 0)
-  {
-    return "field data 'pose_position' is missing or empty, expected a position (x, y, z in "
-           "metres) for each pose";
-  }
+  const std::size_t nPositions = ReadNumbers(fields, names::PosePosition, 3, positions);
+  const std::size_t nTimes = ReadNumbers(fields, names::PoseTime, 1, times);
+  const std::size_t nTurns = ReadNumbers(fields, names::PoseOrientation, 4, turns);
+  vtkAvianLidarRequire(nPositions > 0
+      ? ""
+      : "field data 'pose_position' is missing or empty, expected a position (x, y, z in metres) "
+        "for each pose");
   mover.always = nTimes == 0;
-  if (nTimes != nPositions && !(mover.always && nPositions == 1))
+  if (!mover.always || nPositions != 1)
   {
-    return WrongCount(names::PoseTime, nTimes, "as many as 'pose_position'", nPositions);
+    RequireCount(names::PoseTime, nTimes, "pose_position", nPositions);
   }
-  if (nTurns != nPositions && nTurns != 0)
+  if (nTurns != 0)
   {
-    return WrongCount(names::PoseOrientation, nTurns, "as many as 'pose_position'", nPositions);
+    RequireCount(names::PoseOrientation, nTurns, "pose_position", nPositions);
   }
   mover.poses.resize(nPositions);
   for (std::size_t k = 0; k < nPositions; ++k)
@@ -187,70 +187,56 @@ std::string ReadPoses(vtkFieldData* fields, Mover& mover)
       pose.orientation = { q[0], q[1], q[2], q[3] };
     }
   }
-  return {};
 }
 
-std::string ReadFlaps(vtkFieldData* fields, Mover& mover)
+void ReadFlaps(vtkFieldData* fields, Mover& mover)
 {
   std::vector<double> hinges, axes, numbers[3];
-  std::size_t count, rows;
-  std::string wrong = ReadNumbers(fields, names::FlapHinge, 3, hinges, count);
-  if (!wrong.empty() || count == 0)
+  const std::size_t count = ReadNumbers(fields, names::FlapHinge, 3, hinges);
+  if (count == 0)
   {
-    return wrong;
+    return;
   }
-  wrong = ReadNumbers(fields, names::FlapAxis, 3, axes, rows);
-  if (wrong.empty() && rows != count)
-  {
-    wrong = WrongCount(names::FlapAxis, rows, "as many as 'flap_hinge'", count);
-  }
+  RequireCount(names::FlapAxis, ReadNumbers(fields, names::FlapAxis, 3, axes), "flap_hinge", count);
   int k = 0;
   for (const names::Name& name : { names::FlapAmplitude, names::FlapFrequency, names::FlapPhase })
   {
-    wrong = wrong.empty() ? ReadNumbers(fields, name, 1, numbers[k++], rows) : wrong;
-    if (wrong.empty() && rows != count)
-    {
-      wrong = WrongCount(name, rows, "as many as 'flap_hinge'", count);
-    }
+    RequireCount(name, ReadNumbers(fields, name, 1, numbers[k++]), "flap_hinge", count);
   }
-  for (std::size_t i = 0; i < count && wrong.empty(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
   {
     mover.flaps.push_back({ Vec3(hinges[3 * i], hinges[3 * i + 1], hinges[3 * i + 2]),
       Vec3(axes[3 * i], axes[3 * i + 1], axes[3 * i + 2]), numbers[0][i], numbers[1][i],
       numbers[2][i] });
   }
-  return wrong;
 }
 
 /// The parts of the triangles. @param count of the triangles
-std::string ReadParts(
-  vtkPolyData* poly, std::size_t count, std::size_t flaps, std::vector<std::uint32_t>& parts)
+std::vector<std::uint32_t> ReadParts(vtkPolyData* poly, std::size_t count, std::size_t flaps)
 {
-  parts.assign(count, 0);
+  std::vector<std::uint32_t> parts(count, 0);
   if (flaps == 0)
   {
-    return {}; // all is rigid
+    return parts; // all is rigid
   }
-  std::string wrong = names::CheckNumeric(poly->GetCellData(), names::Part, "cell array");
+  names::RequireNumeric(poly->GetCellData(), names::Part, "cell array");
   vtkDataArray* const array = poly->GetCellData()->GetArray(names::Part.name);
-  if (!wrong.empty() || !array)
-  {
-    return wrong.empty() ? "cell array 'part' is missing, expected with 'flap_hinge': 0 or the row "
-                           "of the flap of each cell, from 1"
-                         : wrong;
-  }
-  wrong = names::CheckShape(array, "cell array", 1, static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count && wrong.empty(); ++i)
+  vtkAvianLidarRequire(array
+      ? ""
+      : "cell array 'part' is missing, expected with 'flap_hinge': 0 or the row of the flap of "
+        "each cell, from 1");
+  names::RequireShape(array, "cell array", 1, static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i)
   {
     const double part = array->GetComponent(static_cast<vtkIdType>(i), 0);
     if (!(part >= 0.0 && part <= static_cast<double>(flaps)) || part != std::floor(part))
     {
-      wrong = "cell " + std::to_string(i) + ": cell array 'part' is neither 0 nor a row of " +
-        "'flap_hinge', from 1";
+      vtkAvianLidarRequire("cell " + std::to_string(i) +
+        ": cell array 'part' is neither 0 nor a row of 'flap_hinge', from 1");
     }
-    parts[i] = wrong.empty() ? static_cast<std::uint32_t>(part) : 0;
+    parts[i] = static_cast<std::uint32_t>(part);
   }
-  return wrong;
+  return parts;
 }
 
 /// The triangles [begin, end) of a mesh, whose points each belong to one part.
@@ -278,19 +264,15 @@ void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::
   }
 }
 
-/// The movers, triangulated. @param triangulated what the leaves point to @return what is wrong
-std::string TakeLeaves(vtkDataObject* input, bool named, std::vector<Leaf>& leaves,
-  std::vector<vtkSmartPointer<vtkPolyData>>& triangulated)
+/// The movers, triangulated. @param triangulated what the leaves point to
+std::vector<Leaf> TakeLeaves(
+  vtkDataObject* input, bool named, std::vector<vtkSmartPointer<vtkPolyData>>& triangulated)
 {
-  std::string problem;
-  leaves = Collect(input, problem);
+  std::vector<Leaf> leaves = Collect(input);
   for (Leaf& leaf : leaves)
   {
     const std::string wrong = leaf.Check(vtkAvianLidarSurfaceArrays(leaf.data));
-    if (!problem.empty() || !wrong.empty())
-    {
-      return problem.empty() ? leaf.Message(wrong) : problem;
-    }
+    vtkAvianLidarRequire(wrong.empty() ? wrong : leaf.Message(wrong));
     vtkFieldData* const fields = leaf.data->GetFieldData();
     if (named && fields->HasArray(BlockName.name))
     {
@@ -300,30 +282,27 @@ std::string TakeLeaves(vtkDataObject* input, bool named, std::vector<Leaf>& leav
     triangulated.push_back(leaf.Triangulated());
     leaf.data = triangulated.back();
   }
-  return problem;
+  return leaves;
 }
 
-/// The mover of leaf `k` of the merged ones. @return what is wrong with it
-std::string ReadMover(vtkPolyData* poly, const vtkAvianLidarSurfaces& merged, std::size_t k,
-  int shift, const std::vector<int>& materialOf, Mover& mover)
+/// The mover of leaf `k` of the merged ones.
+Mover ReadMover(vtkPolyData* poly, const vtkAvianLidarSurfaces& merged, std::size_t k, int shift,
+  const std::vector<int>& materialOf)
 {
   const auto& leaf = merged.leaves[k];
-  std::vector<std::uint32_t> parts;
-  std::string wrong = ReadPoses(poly->GetFieldData(), mover);
-  wrong = wrong.empty() ? ReadFlaps(poly->GetFieldData(), mover) : wrong;
-  wrong = wrong.empty() ? ReadParts(poly, leaf.end - leaf.begin, mover.flaps.size(), parts) : wrong;
-  if (wrong.empty())
+  Mover mover;
+  ReadPoses(poly->GetFieldData(), mover);
+  ReadFlaps(poly->GetFieldData(), mover);
+  TakeTriangles(*merged.mesh, leaf.begin, leaf.end,
+    ReadParts(poly, leaf.end - leaf.begin, mover.flaps.size()), mover);
+  for (std::size_t t = leaf.begin; t < leaf.end; ++t)
   {
-    TakeTriangles(*merged.mesh, leaf.begin, leaf.end, parts, mover);
-    for (std::size_t t = leaf.begin; t < leaf.end; ++t)
-    {
-      mover.materials.push_back(merged.materials[t]);
-      mover.objectIds.push_back(merged.objectIds[t] + shift);
-      mover.materialIds.push_back(materialOf[merged.materialIds[t]]);
-    }
-    wrong = avianlidar::prepareMover(mover);
+    mover.materials.push_back(merged.materials[t]);
+    mover.objectIds.push_back(merged.objectIds[t] + shift);
+    mover.materialIds.push_back(materialOf[merged.materialIds[t]]);
   }
-  return wrong;
+  vtkAvianLidarRequire(avianlidar::prepareMover(mover));
+  return mover;
 }
 }
 
@@ -364,10 +343,8 @@ void vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* se
     ranks.Together(self,
       [&]()
       {
-        std::string problem;
-        mine = Named(input, problem);
+        mine = vtkAvianLidarWithin(MoversPort, [input]() { return Named(input); });
         hash = HashOfMovers(mine);
-        return problem.empty() ? problem : "Input port 2 (movers), " + problem;
       });
     all = mine;
     if (!ranks.Same(hash))
@@ -382,8 +359,7 @@ void vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* se
       {
         all = United(parts);
       }
-      const std::string problem = this->ReadAll(all, !ranks.Alone(), surfaces);
-      return problem.empty() ? problem : "Input port 2 (movers), " + problem;
+      vtkAvianLidarWithin(MoversPort, [&]() { this->ReadAll(all, !ranks.Alone(), surfaces); });
     });
   this->State = std::move(state);
   this->SurfaceNames = std::move(surfaceNames);
@@ -392,7 +368,7 @@ void vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* se
 }
 
 //------------------------------------------------------------------------------
-std::string vtkAvianLidarMovers::ReadAll(
+void vtkAvianLidarMovers::ReadAll(
   vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces)
 {
   this->movers.reset();
@@ -400,19 +376,15 @@ std::string vtkAvianLidarMovers::ReadAll(
   this->objectNames = surfaces.objectNames;
   this->objectClasses = surfaces.objectClasses;
   this->materialNames = surfaces.materialNames;
-  std::vector<Leaf> leaves;
   std::vector<vtkSmartPointer<vtkPolyData>> triangulated;
-  const std::string problem = TakeLeaves(input, named, leaves, triangulated);
-  if (!problem.empty() || leaves.empty())
+  const std::vector<Leaf> leaves = TakeLeaves(input, named, triangulated);
+  if (leaves.empty())
   {
-    return problem;
+    return;
   }
   const vtkAvianLidarSurfaces merged =
     vtkAvianLidarSurfaces::Merge(leaves, input->GetFieldData(), nullptr, 1, true);
-  if (!merged.problem.empty())
-  {
-    return merged.problem;
-  }
+  vtkAvianLidarRequire(merged.problem);
   const auto first = static_cast<int>(surfaces.objectNames.size());
   const auto least = std::min_element(merged.objectIds.begin(), merged.objectIds.end());
   const int shift = least == merged.objectIds.end() ? 0 : std::max(0, first - *least);
@@ -447,12 +419,8 @@ std::string vtkAvianLidarMovers::ReadAll(
   std::vector<Mover> all;
   for (std::size_t k = 0; k < leaves.size(); ++k)
   {
-    Mover mover;
-    const std::string wrong = ReadMover(leaves[k].data, merged, k, shift, materialOf, mover);
-    if (!wrong.empty())
-    {
-      return leaves[k].Message(wrong);
-    }
+    Mover mover = vtkAvianLidarWithin(leaves[k].Message(""),
+      [&]() { return ReadMover(leaves[k].data, merged, k, shift, materialOf); });
     if (mover.mesh.size() > 0)
     {
       all.push_back(std::move(mover));
@@ -463,5 +431,4 @@ std::string vtkAvianLidarMovers::ReadAll(
     this->checksum = avianlidar::orderMovers(all);
     this->movers = std::make_shared<const std::vector<Mover>>(std::move(all));
   }
-  return {};
 }

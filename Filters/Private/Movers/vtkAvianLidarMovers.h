@@ -45,7 +45,7 @@ struct vtkAvianLidarMovers
 
 private:
   /// @param named true if blocks also come from other ranks, with their names as field data
-  std::string ReadAll(vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces);
+  void ReadAll(vtkDataObject* input, bool named, const vtkAvianLidarSurfaces& surfaces);
   vtkAvianLidarContent::State State;     ///< state of the input read last
   std::vector<std::string> SurfaceNames; ///< names of objects, then of classes and materials
   const void* ReadBy = nullptr;          ///< ranks that read the movers

@@ -25,7 +25,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -42,11 +41,7 @@ using avianlidar::Vec3;
 JsonNode Known()
 {
   static const std::string file = "media.json";
-  static const Json all = []()
-  {
-    std::istringstream text(vtkAvianLidarBuiltInText(file));
-    return avianlidar::ReadJson(text, file);
-  }();
+  static const Json all = avianlidar::ParseJson(vtkAvianLidarBuiltInText(file), file);
   return JsonNode(all, "", file).Get("media");
 }
 
@@ -231,12 +226,6 @@ MediumVolume VolumeOf(const JsonNode& node)
   }
   return volume;
 }
-
-Json ParsedText(const std::string& text, const std::string& file)
-{
-  std::istringstream stream(text);
-  return avianlidar::ReadJson(stream, file);
-}
 }
 
 //------------------------------------------------------------------------------
@@ -282,7 +271,7 @@ Medium vtkAvianLidarMedia::RainOf(
 std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
   const std::string& text, const avianlidar::LidarView& view)
 {
-  const Json json = ParsedText(text, "medium");
+  const Json json = avianlidar::ParseJson(text, "medium");
   const std::string file = "medium '" + json.value("name", std::string()) + "'";
   const JsonNode node(json, "", file);
   CheckKeys(json, file);
@@ -422,7 +411,7 @@ vtkSmartPointer<vtkPolyData> Drawn(const MediumVolume& volume)
 vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
   const std::string& text, vtkPolyData* closed, double size)
 {
-  const Json json = ParsedText(text, "medium");
+  const Json json = avianlidar::ParseJson(text, "medium");
   vtkSmartPointer<vtkPolyData> drawn;
   const avianlidar::LidarView any;
   if (json.value("shape", std::string()) == "surface")
@@ -480,7 +469,7 @@ std::string vtkAvianLidarMedia::TextOf(vtkPolyData* leaf, const std::string& nam
   auto* texts = vtkStringArray::SafeDownCast(
     leaf->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Medium.name));
   const std::string file = "medium '" + name + "'";
-  Json json = ParsedText(texts->GetValue(0), file);
+  Json json = avianlidar::ParseJson(texts->GetValue(0), file);
   json.erase("object_id"); // the scene gives ids
   if (JsonNode(json, "", file).Get("shape").String() != "surface" || json.contains("points"))
   {
@@ -512,7 +501,7 @@ std::string vtkAvianLidarMedia::TextOf(vtkPolyData* leaf, const std::string& nam
 //------------------------------------------------------------------------------
 bool vtkAvianLidarMedia::IsObject(const std::string& text, int& id, std::string& name)
 {
-  const Json json = ParsedText(text, "medium");
+  const Json json = avianlidar::ParseJson(text, "medium");
   id = json.value("object_id", -1);
   name = json.value("name", std::string());
   return json.contains("leaf_area_density");
@@ -521,7 +510,7 @@ bool vtkAvianLidarMedia::IsObject(const std::string& text, int& id, std::string&
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarMedia::WithObject(const std::string& text, const std::string& name, int id)
 {
-  Json json = ParsedText(text, "medium");
+  Json json = avianlidar::ParseJson(text, "medium");
   json["name"] = name;
   if (id >= 0)
   {
@@ -538,7 +527,7 @@ std::string vtkAvianLidarMedia::WithCrowns(
   {
     return text;
   }
-  Json json = ParsedText(text, "medium");
+  Json json = avianlidar::ParseJson(text, "medium");
   json["shape"] = "ellipsoid";
   Json ellipsoids = Json::array();
   for (std::size_t i = 0; i < sizes.size(); ++i)
@@ -554,7 +543,7 @@ std::string vtkAvianLidarMedia::WithCrowns(
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarMedia::InWords(const std::string& text)
 {
-  Json json = ParsedText(text, "medium");
+  Json json = avianlidar::ParseJson(text, "medium");
   json.erase("points");
   json.erase("triangles");
   json.erase("ellipsoids");

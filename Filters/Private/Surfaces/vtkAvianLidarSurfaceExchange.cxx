@@ -3,9 +3,9 @@
 
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScene.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
-#include "vtkAvianLidarSurfaceState.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkAppendPolyData.h"
@@ -106,7 +106,7 @@ vtkMultiProcessStream ListOf(const std::vector<Leaf>& leaves, vtkTable* fields)
   {
     const bool empty = leaf.data->GetNumberOfPolys() + leaf.data->GetNumberOfStrips() == 0;
     list << leaf.index << static_cast<int>(leaf.named) << leaf.name
-         << vtkTypeUInt64{ vtkAvianLidarSurfaceState::HashOf(leaf.data) }
+         << vtkTypeUInt64{ Leaf::HashOf(leaf.data) }
          << (empty ? 0.0 : vtkAvianLidarRanks::BytesOf(Lean(leaf.data)));
   }
   return list;
@@ -198,8 +198,7 @@ bool AreAlike(vtkPolyData* one, vtkPolyData* other)
   const auto sameType = [](vtkDataArray* c, vtkDataArray* d)
   { return c && d ? c->GetDataType() == d->GetDataType() : c == d; };
   return std::equal(a.begin(), a.end(), b.begin(), sameType) &&
-    vtkAvianLidarSurfaceState::HashOfNames(one->GetFieldData(), 0) ==
-    vtkAvianLidarSurfaceState::HashOfNames(other->GetFieldData(), 0);
+    Leaf::HashOfNames(one->GetFieldData(), 0) == Leaf::HashOfNames(other->GetFieldData(), 0);
 }
 
 /// Parts that are alike as one, in their order.
@@ -256,7 +255,7 @@ try
   }
   std::shared_ptr<const vtkAvianLidarSurfaces> result = known;
   ranks.Together(self,
-    [&]() -> std::string
+    [&]()
     {
       if (scene.changed)
       {
@@ -264,7 +263,7 @@ try
             ? vtkAvianLidarSurfaces::Merge(input, known.get(), share)
             : vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, known.get(), share, false));
       }
-      return result->problem.empty() ? "" : what + result->problem;
+      vtkAvianLidarRequire(result->problem, what);
     });
   return result;
 }
@@ -292,12 +291,9 @@ void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkA
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());
       vtkAvianLidarScene::Detach(scene.fields); // it cannot be sent
-      if (problem.empty())
-      {
-        lists.push_back(ListOf(scene.leaves, scene.fields));
-        hash = HashOf(lists);
-      }
-      return problem.empty() ? problem : what + problem;
+      vtkAvianLidarRequire(problem, what);
+      lists.push_back(ListOf(scene.leaves, scene.fields));
+      hash = HashOf(lists);
     });
   const bool same = ranks.Same(hash);
   if (same)
@@ -343,7 +339,7 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
           }
         }
       }
-      return wrong.empty() ? wrong : what + wrong;
+      vtkAvianLidarRequire(wrong, what);
     });
   ranks.Broadcast(scene.fields, fieldOwner, this->BytesSent);
   for (auto next = parts.begin(); next != parts.end();)
@@ -352,7 +348,7 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
   }
   this->Fields = scene.fields->GetFieldData();
   const std::uint64_t some = this->Fields->GetNumberOfArrays() > 0;
-  const bool received = ranks.Same(vtkAvianLidarSurfaceState::HashOfNames(this->Fields, some));
+  const bool received = ranks.Same(Leaf::HashOfNames(this->Fields, some));
   ranks.Together(self,
     [&]()
     {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceLeaf.h"
 
+#include "Hash.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarContent.h"
+#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarTriangles.h"
 
 #include "vtkCellArray.h"
@@ -17,21 +20,23 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 
 namespace
 {
 /// Coefficients of polygons and strips must be those of a material, but for ghosts and cells
 /// without triangles.
-std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
+void RequireMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
 {
   if (!arrays.HasMaterials())
   {
-    return {};
+    return;
   }
   const vtkAvianLidarMaterialColumns materials(arrays);
   avianlidar::Material good; // most cells have what the one before had
@@ -53,11 +58,10 @@ std::string CheckMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& 
       }
       else if (cells->GetCellSize(i) >= 3 && !arrays.IsGhost(cell))
       {
-        return "cell " + std::to_string(cell) + ": " + wrong;
+        vtkAvianLidarRequire(wrong, "cell " + std::to_string(cell) + ": ");
       }
     }
   }
-  return {};
 }
 
 /// No surface, and what the beam source gives its beams.
@@ -70,24 +74,22 @@ bool AreBeams(vtkPolyData* poly)
 }
 
 /// Ids must be whole numbers that fit an int.
-std::string CheckIds(vtkDataArray* ids)
+void RequireIds(vtkDataArray* ids)
 {
   if (!ids || vtkIntArray::SafeDownCast(ids))
   {
-    return {};
+    return;
   }
   const vtkAvianLidarColumn column(ids);
   const vtkIdType count = ids->GetNumberOfTuples();
   for (vtkIdType i = 0; i < count; ++i)
   {
-    const double id = column[i];
-    if (!vtkAvianLidarArrays::IsInt(id))
+    if (!vtkAvianLidarArrays::IsInt(column[i]))
     {
-      return std::string("cell ") + std::to_string(i) + ": cell array '" + ids->GetName() +
-        "' is not a whole number of 32 bits";
+      vtkAvianLidarRequire(std::string("cell ") + std::to_string(i) + ": cell array '" +
+        ids->GetName() + "' is not a whole number of 32 bits");
     }
   }
-  return {};
 }
 }
 
@@ -166,41 +168,29 @@ std::string vtkAvianLidarSurfaceLeaf::WarningOnPoints() const
 
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a) const
+try
 {
-  if (this->name.empty() && AreBeams(this->data))
-  {
-    return "these are beams, expected polygons in metres, as of a scene reader or a collision tree "
-           "(in ParaView: Edit > Change Input)";
-  }
+  namespace names = vtkAvianLidarArrays;
+  vtkAvianLidarRequire(this->name.empty() && AreBeams(this->data)
+      ? "these are beams, expected polygons in metres, as of a scene reader or a collision tree "
+        "(in ParaView: Edit > Change Input)"
+      : "");
   for (vtkCellArray* cells : { this->data->GetVerts(), this->data->GetLines() })
   {
     // They are dropped, but the arrays of cells begin with theirs.
-    const std::string wrong = vtkAvianLidarOffsetsError(cells);
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    vtkAvianLidarRequire(vtkAvianLidarOffsetsError(cells));
   }
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
   {
-    const std::string wrong = vtkAvianLidarCellsError(cells, this->data->GetNumberOfPoints());
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    vtkAvianLidarRequire(vtkAvianLidarCellsError(cells, this->data->GetNumberOfPoints()));
   }
-  namespace names = vtkAvianLidarArrays;
   if (a.notNumeric)
   {
-    return names::NotNumeric("cell array", a.notNumeric);
+    names::RequireNumeric(this->data->GetCellData(), { a.notNumeric, "" }, "cell array");
   }
   for (const names::Name& text : names::SurfaceTexts)
   {
-    const std::string wrong = names::CheckText(this->data->GetFieldData(), text);
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    names::RequireText(this->data->GetFieldData(), text);
   }
   bool somePresent = false;
   bool someAbsent = false;
@@ -210,31 +200,24 @@ std::string vtkAvianLidarSurfaceLeaf::Check(const vtkAvianLidarSurfaceArrays& a)
     someAbsent =
       someAbsent || !(a.coefficients[k] || avianlidar::MaterialCoefficients[k].isOptional);
   }
-  if (somePresent && someAbsent)
-  {
-    return "of a material's cell arrays only some are there, expected all of " +
-      avianlidar::namesOfCoefficients() + " or none of a material";
-  }
+  vtkAvianLidarRequire(somePresent && someAbsent
+      ? "of a material's cell arrays only some are there, expected all of " +
+        avianlidar::namesOfCoefficients() + " or none of a material"
+      : "");
   std::vector<vtkDataArray*> arrays = a.Numbers();
   arrays.push_back(a.ghosts);
   for (vtkDataArray* array : arrays)
   {
-    const std::string wrong =
-      vtkAvianLidarArrays::CheckShape(array, "cell array", 1, this->data->GetNumberOfCells());
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
+    names::RequireShape(array, "cell array", 1, this->data->GetNumberOfCells());
   }
-  for (vtkDataArray* ids : { a.object, a.material })
-  {
-    const std::string wrong = CheckIds(ids);
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
-  }
-  return CheckMaterials(this->data, a);
+  RequireIds(a.object);
+  RequireIds(a.material);
+  RequireMaterials(this->data, a);
+  return {};
+}
+catch (const std::runtime_error& error)
+{
+  return error.what();
 }
 
 //------------------------------------------------------------------------------
@@ -262,13 +245,46 @@ std::size_t vtkAvianLidarSurfaceLeaf::NumberOfTriangles() const
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
 {
-  if (this->IsTriangulated())
-  {
-    return this->data;
-  }
-  return vtkAvianLidarTriangles(this->data);
+  return this->IsTriangulated() ? vtkSmartPointer<vtkPolyData>(this->data)
+                                : vtkAvianLidarTriangles(this->data);
 }
 
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarSurfaceLeaf::HashOfNames(vtkFieldData* fields, std::uint64_t seed)
+{
+  for (const auto& name : vtkAvianLidarArrays::SurfaceTexts)
+  {
+    vtkAbstractArray* array = fields ? fields->GetAbstractArray(name.name) : nullptr;
+    auto* names = vtkStringArray::SafeDownCast(array);
+    constexpr vtkIdType none = -1;
+    constexpr vtkIdType noText = -2; // an error: another state than none
+    const vtkIdType count = names ? names->GetNumberOfValues() : array ? noText : none;
+    seed = avianlidar::hashOf(&count, sizeof(count), seed);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const std::string& text = names->GetValue(i);
+      seed = avianlidar::hashOf(text.data(), text.size(), seed);
+    }
+  }
+  return seed;
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarSurfaceLeaf::HashOf(vtkPolyData* poly)
+{
+  namespace Content = vtkAvianLidarContent;
+  const vtkAvianLidarSurfaceArrays arrays(poly);
+  std::uint64_t hash = HashOfNames(poly->GetFieldData(), 0);
+  hash = Content::HashOf(arrays.ghosts, Content::HashOfGeometry(poly, hash));
+  // An array without numbers is an error: another state than no array.
+  const std::string_view odd = arrays.notNumeric ? arrays.notNumeric : "";
+  hash = avianlidar::hashOf(odd.data(), odd.size(), hash);
+  for (vtkDataArray* array : arrays.Numbers())
+  {
+    hash = Content::HashOf(array, hash);
+  }
+  return hash;
+}
 //------------------------------------------------------------------------------
 vtkAvianLidarSurfaceArrays::vtkAvianLidarSurfaceArrays(vtkPolyData* poly)
 {

@@ -14,11 +14,13 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <string>
 #include <vector>
 
 class vtkDataObject;
+class vtkFieldData;
 class vtkPolyData;
 
 /// The cell arrays of a leaf; null for missing arrays.
@@ -55,6 +57,13 @@ struct vtkAvianLidarSurfaceLeaf
   /// The vtkPolyData of a scene in leaf order; `problem` becomes an error text if data of other
   /// types were found.
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
+
+  /// Hash of the names of objects and materials, and of the classes of objects. @param seed hash to
+  /// continue
+  static std::uint64_t HashOfNames(vtkFieldData* fields, std::uint64_t seed);
+
+  /// Hash of everything that vtkAvianLidarSurfaces::Merge() reads of a vtkPolyData.
+  static std::uint64_t HashOf(vtkPolyData* poly);
 
   /// "surfaces, block 'name': what"
   std::string Message(const std::string& what) const;

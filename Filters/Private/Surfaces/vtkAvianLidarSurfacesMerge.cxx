@@ -12,7 +12,6 @@
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarSurfaceIds.h"
 #include "vtkAvianLidarSurfaceLeaf.h"
-#include "vtkAvianLidarSurfaceState.h"
 
 #include "vtkFieldData.h"
 #include "vtkPoints.h"
@@ -111,11 +110,11 @@ private:
   /// Hash of everything that the mesh and the order of its triangles depend on.
   std::uint64_t HashOfGeometry(const std::vector<Leaf>& leaves, vtkFieldData* fields) const
   {
-    std::uint64_t hash = vtkAvianLidarSurfaceState::HashOfNames(fields, 0);
+    std::uint64_t hash = Leaf::HashOfNames(fields, 0);
     for (std::size_t i = 0; i < leaves.size(); ++i)
     {
       hash = avianlidar::hashOf(leaves[i].name.data(), leaves[i].name.size(), hash);
-      hash = vtkAvianLidarSurfaceState::HashOfNames(leaves[i].data->GetFieldData(), hash);
+      hash = Leaf::HashOfNames(leaves[i].data->GetFieldData(), hash);
       hash = vtkAvianLidarContent::HashOfGeometry(leaves[i].data, hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].ghosts, hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].object, hash);

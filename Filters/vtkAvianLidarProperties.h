@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file vtkAvianLidarProperties.h
+ * @brief Declares properties: each macro declares setter, getter and member, with the default, in
+ * the public part of a class.
+ */
+#ifndef vtkAvianLidarProperties_h
+#define vtkAvianLidarProperties_h
+
+#include "vtkSetGet.h" // For set and get macros
+
+#include <string> // For names of files
+
+class vtkInformation;
+class vtkMultiProcessController;
+
+/// Declares a property of any type.
+#define vtkAvianLidarPropertyMacro(name, type, ...) \
+  vtkSetMacro(name, type);                          \
+  vtkGetMacro(name, type);                          \
+                                                    \
+protected:                                          \
+  type name = __VA_ARGS__;                          \
+                                                    \
+public:
+
+/// Declares a property that is on or off.
+#define vtkAvianLidarSwitchMacro(name, value)    \
+  vtkAvianLidarPropertyMacro(name, bool, value); \
+  vtkBooleanMacro(name, bool)
+
+/// Declares a property of `size` doubles: 2, 3 or 6.
+#define vtkAvianLidarVectorMacro(name, size, ...) \
+  vtkSetVector##size##Macro(name, double);        \
+  vtkGetVector##size##Macro(name, double);        \
+                                                  \
+protected:                                        \
+  double name[size] = { __VA_ARGS__ };            \
+                                                  \
+public:
+
+/// Declares the name of a file as a std::string, empty by default; vtkSetFilePathMacro() only takes
+/// a char*.
+#define vtkAvianLidarFilePathMacro(name)                           \
+  virtual void Set##name(VTK_FILEPATH const std::string& fileName) \
+  {                                                                \
+    if (fileName != this->name)                                    \
+    {                                                              \
+      this->name = fileName;                                       \
+      this->Modified();                                            \
+    }                                                              \
+  }                                                                \
+  VTK_FILEPATH virtual std::string Get##name()                     \
+  {                                                                \
+    return this->name;                                             \
+  }                                                                \
+                                                                   \
+protected:                                                         \
+  std::string name;                                                \
+                                                                   \
+public:
+
+/// Declares Controller, of a filter whose ranks work together, and ModifyRequest(), which updates
+/// the inputs of all ranks. vtkAvianLidarCxxControllerMacro() defines both.
+#define vtkAvianLidarControllerMacro()                           \
+  void SetController(vtkMultiProcessController* controller);     \
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);      \
+                                                                 \
+protected:                                                       \
+  int ModifyRequest(vtkInformation* request, int when) override; \
+  vtkMultiProcessController* Controller = nullptr;               \
+                                                                 \
+public:
+
+/// Declares ErrorsAsData, which every algorithm of the module has. If ErrorsAsData is on, an
+/// execution that fails counts as done: the pipeline goes on with empty outputs whose field data
+/// `error` hold the message. ParaView's proxies turn the property on, because ParaView never
+/// updates a failed filter again. Default: off.
+#define vtkAvianLidarErrorsAsDataMacro() vtkAvianLidarSwitchMacro(ErrorsAsData, false)
+
+#endif
