@@ -34,7 +34,7 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-// The piece that is asked for; one that does not exist has no columns.
+// The requested piece. A piece that does not exist has no columns.
 avianlidar::ScanPart PieceOf(vtkInformation* asked)
 {
   avianlidar::ScanPart part;
@@ -52,8 +52,8 @@ avianlidar::ScanPart PieceOf(vtkInformation* asked)
   return part;
 }
 
-// The kernel speaks of values by their names in the field data: the same words as the names of the
-// properties, "range_gate is 0" as "RangeGate is 0".
+// Errors of the kernel name values as the field data do, such as "range_gate is 0". The names of
+// the properties have the same words, such as "RangeGate is 0".
 std::string NameProperties(const std::string& error)
 {
   std::string result;
@@ -154,8 +154,8 @@ void vtkAvianLidarBeamSource::SetTablesOfPreset(const char* name)
   catch (const std::out_of_range&)
   {
     vtkErrorMacro("TablesOfPreset is \"" << name
-                                         << "\", expected the name of a sensor that is "
-                                            "built in, as OS1_64.");
+                                         << "\", expected the name of a built-in sensor, "
+                                            "such as OS1_64.");
     return;
   }
   for (const auto& [array, table] : vtkInternals::Tables())
@@ -260,7 +260,7 @@ void vtkAvianLidarBeamSource::SetNumberOfChannelElevations(int number)
   }
   try
   {
-    // The table itself, and its copies in an execution.
+    // Memory of the table and of its copies in an execution.
     avianlidar::requireMemory(number, "channel elevations", 4.0 * sizeof(double) * number);
     this->ChannelElevations.resize(number, 0.0);
     this->Modified();
@@ -383,8 +383,10 @@ avianlidar::Sensor vtkAvianLidarBeamSource::vtkInternals::SensorOf(const Source&
   std::string error = avianlidar::checkSensor(sensor);
   if (error.rfind("frequency is", 0) == 0)
   {
-    error +=
-      " (" + avianlidar::valueError("Wavelength", WavelengthOf(self), "such a one in nm") + ")";
+    error += " (" +
+      avianlidar::valueError(
+        "Wavelength", WavelengthOf(self), "the nanometres of such a frequency") +
+      ")";
   }
   vtkAvianLidarRequire(NameProperties(error));
   vtkAvianLidarRequire(
@@ -440,7 +442,7 @@ avianlidar::ScanClock vtkAvianLidarBeamSource::vtkInternals::ClockOf(const Sourc
 void vtkAvianLidarBeamSource::vtkInternals::FindMoment(
   const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution)
 {
-  if (asked->Has(Pipeline::UPDATE_TIME_STEP())) // else the whole of revolution 0
+  if (asked->Has(Pipeline::UPDATE_TIME_STEP())) // without a time: whole revolution 0
   {
     avianlidar::ScanMoment moment;
     vtkAvianLidarRequire(
@@ -540,8 +542,8 @@ int vtkAvianLidarBeamSource::RequestData(
     [&]()
     {
       vtkAvianLidarAbort::StopIfWanted(this);
-      // Both outputs are of the piece and the time that one of them is asked for: so VTK's
-      // executive has it.
+      // The piece and the time requested from one output apply to both outputs, as in VTK's
+      // executive.
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
@@ -555,8 +557,8 @@ int vtkAvianLidarBeamSource::RequestData(
           {
             vtkAvianLidarRequire(
               avianlidar::valueError("BeamwidthMilliradians", this->BeamwidthMilliradians,
-                "2000 times HalfBeamwidth (load the plugin in ParaView's client, too, which keeps "
-                "them alike, or set both)"));
+                "2000 times HalfBeamwidth (set both properties, or load the plugin in ParaView's "
+                "client, too, which then sets both properties)"));
           }
           vtkInternals::FindMoment(*this, asked, part, revolution);
         });

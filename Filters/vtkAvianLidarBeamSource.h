@@ -9,19 +9,18 @@
  * - Output port 0, vtkPolyData: one vertex per beam at Position, column by column and channel by
  *   channel within a column, with the point arrays `beam_id`, `direction`, `laser_id`, `azimuth`,
  *   `vertical_angle` and `timestamp`. With sway or jitter, `direction` is the true direction of a
- *   beam, and `reported_direction`, `azimuth` and `vertical_angle` are the values that the sensor
- *   reports.
- * - Output port 1, vtkPolyData: the same beams as lines of DisplayLength, for display.
- * - Field data of both ports: every property in snake case in its own unit, and `wavelength`.
- *   Settings that the sensor does not use are left out. With a photon receiver, the limits are
- *   computed from the receiver's properties.
+ *   beam. The sensor reports `reported_direction`, `azimuth` and `vertical_angle`.
+ * - Output port 1, vtkPolyData: the same beams as lines of the length DisplayLength, for display.
+ * - Field data of both outputs: every property in snake case in its own unit, and `wavelength`.
+ *   Settings that the sensor does not use are left out. With a photon receiver, the energy limits
+ *   are computed from the receiver's properties.
  *
  * The source is time-aware: revolution k lasts from k / RotationRate to (k + 1) / RotationRate
- * seconds. The source serves any number of pieces and deals the columns to them in turn. The beams
- * have the same bits for any number of threads and pieces.
+ * seconds. Any number of pieces can be requested. Columns are distributed to the pieces in turn.
+ * The beams have the same bits for any number of threads and pieces.
  *
- * Setters accept any value; values are checked when the source executes. A bad value, or more beams
- * than fit into memory, gives an error that names the property, and empty outputs.
+ * Setters accept any value. Values are checked when the source executes. A bad value, or more beams
+ * than fit into memory, gives empty outputs and an error that names the property.
  *
  * @code
  * sensor->SetPresetToSearch905();
@@ -90,7 +89,7 @@ public:
 
   ///@{
   /// Set all properties but ErrorsAsData to the values of a built-in sensor's file in
-  /// Filters/Sensors. A property that is not in the file gets its default
+  /// Filters/Sensors. A property that is not in the file is set to its default
   /// (Documentation/reference/sensor-files.md).
   vtkAvianLidarPresetMacro(Airport16);
   vtkAvianLidarPresetMacro(Airport32);
@@ -112,24 +111,25 @@ public:
   vtkAvianLidarPresetMacro(Mid360);
   ///@}
 
-  /// Take only the values without a setter from a built-in sensor: tables, prisms, the names of
-  /// assumed values and the description. Meant for user interfaces that set all properties one by
-  /// one. An unknown name gives an error and changes nothing. @param name name of the sensor's file
-  /// (`OS1_64`); null or empty: no tables
+  /// From a built-in sensor, take only the values that have no setter: tables, prisms, the names of
+  /// assumed values and the description. User interfaces that set all properties one by one need
+  /// this function. An unknown name gives an error and changes nothing. @param name
+  /// name of the sensor's file (`OS1_64`); null or empty: no tables
   void SetTablesOfPreset(const char* name);
 
   /// Set all properties from a file (`.lidarsensor.json`), and the values that only files set:
   /// azimuth offsets and firing times of channels, blanked sectors, prisms
   /// (Documentation/reference/sensor-files.md, Files).
-  /// @return false for a bad file, with an error that names file and key; then nothing changes
+  /// @return false for a bad file. A bad file changes nothing. Its error names file and key.
   bool LoadSensor(VTK_FILEPATH const char* fileName);
 
-  /// Number of rotating prisms that steer the beams, 0 to 3; only a file sets them. Default 0. With
-  /// prisms AzimuthRange and AzimuthStep are not used (Documentation/reference/sensor-files.md).
+  /// Number of rotating prisms that steer the beams, 0 to 3. Only a file sets prisms. Default 0.
+  /// With prisms, AzimuthRange and AzimuthStep are not used
+  /// (Documentation/reference/sensor-files.md).
   int GetNumberOfPrisms() const;
 
-  /// Does the same as LoadSensor() with the text of a file, such as GetDescription() returns.
-  /// Errors name "the text".
+  /// Set all properties from the text of a file, as LoadSensor() does from a file.
+  /// GetDescription() returns such a text. Errors name "the text" instead of a file.
   bool LoadSensorText(const char* text);
 
   /// Text of the file that LoadSensor() or a preset read last, as JSON; empty for a new source. The
@@ -137,18 +137,19 @@ public:
   /// Later changes of properties do not change the text.
   std::string GetDescription() const { return this->Description; }
 
-  /// Use these beams instead of columns and channels. The points (m), the point array
+  /// Use `beams` instead of columns and channels. The source copies the points (m), the point array
   /// `direction` (any length above 0) and the optional array `timestamp` (us, 0 to 1 /
-  /// RotationRate; default 0) are copied. Points and directions are in the frame of the sensor:
-  /// Orientation turns them, and Position is added to the points. `beam_id` is the number of the
-  /// point, and `laser_id` is 0. Null, a preset or a file restores columns and channels.
-  /// @return false for bad beams, with an error that names the array; then nothing changes
+  /// RotationRate; default 0). Points and directions are in the frame of the sensor: Orientation
+  /// turns points and directions, and Position is added to the points. Each beam has the number of
+  /// its point as `beam_id` and 0 as `laser_id`. Null, a preset or a file restores columns and
+  /// channels. @return false for bad beams. Bad beams change nothing. Their error names the array.
   bool SetBeams(vtkPolyData* beams);
 
   /// Position of the sensor in scene coordinates, m, at most 1e30. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Position, 3, 0.0, 0.0, 0.0);
 
-  /// Yaw (from north), pitch (up), roll (right), deg; R = yaw * pitch * roll. Default (0, 0, 0).
+  /// Yaw (from north), pitch (up) and roll (right), deg, applied in the order roll, pitch, yaw.
+  /// Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Orientation, 3, 0.0, 0.0, 0.0);
 
   /// Number of channels, at least 1. Not used with a table of elevations. Default 16.
@@ -157,12 +158,13 @@ public:
   /// Elevation of channel 0, deg, -90 to 90. Not used with a table of elevations. Default 0.
   vtkAvianLidarPropertyMacro(MinimumElevation, double, 0.0);
 
-  /// Elevation step of channels, deg, above 0. Not used with an elevation table. Default 0.375.
+  /// Difference of elevation between channels, deg, above 0. Not used with a table of elevations.
+  /// Default 0.375.
   vtkAvianLidarPropertyMacro(ElevationStep, double, 0.375);
 
   ///@{
   /// Table of the elevations of all channels, deg, -90 to 90, in any order, instead of
-  /// NumberOfChannels, MinimumElevation and ElevationStep. New entries are 0; a bad index is an
+  /// NumberOfChannels, MinimumElevation and ElevationStep. New entries are 0. A bad index gives an
   /// error. Default: empty.
   void SetNumberOfChannelElevations(int number);
   int GetNumberOfChannelElevations() const;
@@ -170,16 +172,18 @@ public:
   double GetChannelElevation(int index);
   ///@}
 
-  /// First azimuth (-360 to 360) and end (at most 360 later), deg, clockwise. Default (0, 360).
+  /// Azimuths at which the columns begin (-360 to 360) and end (at most 360 more), deg from north,
+  /// clockwise. Default (0, 360).
   vtkAvianLidarVectorMacro(AzimuthRange, 2, 0.0, 360.0);
 
   /// Difference of azimuth between columns, deg, above 0. Default 0.375.
   vtkAvianLidarPropertyMacro(AzimuthStep, double, 0.375);
 
-  /// Half of the opening angle, rad, 1e-9 to pi/3 (beams not round: to 0.1). Default 5.6e-3.
+  /// Half of the opening angle, rad, 1e-9 to pi/3, or to 0.1 for beams that are not round. Default
+  /// 5.6e-3.
   vtkAvianLidarPropertyMacro(HalfBeamwidth, double, 5.6e-3);
 
-  /// Opening angle, mrad, 2000 times HalfBeamwidth, else an error. Default 0: not checked.
+  /// Opening angle, mrad, which must be 2000 times HalfBeamwidth. Default 0: not checked.
   vtkAvianLidarPropertyMacro(BeamwidthMilliradians, double, 0.0);
 
   ///@{
@@ -196,11 +200,12 @@ public:
 
   /// Angle from the sensor's horizontal to the direction of HalfBeamwidth, deg, -360 to 360. Seen
   /// along the beam, a positive angle raises the right-hand end of this direction. For a vertical
-  /// beam a fixed direction replaces the horizontal. Default 0.
+  /// beam, a fixed direction replaces the horizontal. Default 0.
   vtkAvianLidarPropertyMacro(BeamRotation, double, 0.0);
 
   ///@{
-  /// Energy within the outline: uniform (the paper) or Gaussian. Default BEAM_PROFILE_UNIFORM.
+  /// Distribution of the energy within the outline: uniform (the paper) or Gaussian. Default
+  /// BEAM_PROFILE_UNIFORM.
   vtkAvianLidarPropertyMacro(BeamProfile, int, BEAM_PROFILE_UNIFORM);
   void SetBeamProfileToUniform() { this->SetBeamProfile(BEAM_PROFILE_UNIFORM); }
   void SetBeamProfileToGaussian() { this->SetBeamProfile(BEAM_PROFILE_GAUSSIAN); }
@@ -210,21 +215,21 @@ public:
   vtkAvianLidarPropertyMacro(GaussianTruncation, double, 1.0);
 
   ///@{
-  /// Threshold of a photon receiver where the air sends light back: fixed, or the mean of the air's
-  /// light plus as many standard deviations of the noise as without air. Default
-  /// THRESHOLD_LAW_FOLLOWS_AIR.
+  /// Threshold of a photon receiver where the air sends light back: fixed, or k standard deviations
+  /// of the noise above the mean of this light. The number k is the same as without this light.
+  /// Default THRESHOLD_LAW_FOLLOWS_AIR.
   vtkAvianLidarPropertyMacro(ThresholdLaw, int, THRESHOLD_LAW_FOLLOWS_AIR);
   void SetThresholdLawToFixed() { this->SetThresholdLaw(THRESHOLD_LAW_FIXED); }
   void SetThresholdLawToFollowsAir() { this->SetThresholdLaw(THRESHOLD_LAW_FOLLOWS_AIR); }
   ///@}
 
-  /// Rate of revolutions, or of scans with prisms, Hz, 1e-20 to 1e20. Default 0.5.
+  /// Number of revolutions (with prisms: of scans) per second, Hz, 1e-20 to 1e20. Default 0.5.
   vtkAvianLidarPropertyMacro(RotationRate, double, 0.5);
 
   /// Time between two firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6.
   vtkAvianLidarPropertyMacro(FiringInterval, double, 30e-6);
 
-  /// Number of revolutions to play, at least 1, at most 1e6 steps in all. Default 1.
+  /// Number of revolutions to play, 1 to 1e6 / StepsPerRevolution. Default 1.
   vtkAvianLidarPropertyMacro(NumberOfRevolutions, int, 1);
 
   /// Number of steps that share a revolution's columns, 1 to the number of columns. Default 1.
@@ -242,42 +247,43 @@ public:
   /// Seed of sway and jitter, any int. Default 0.
   vtkAvianLidarPropertyMacro(MotionSeed, int, 0);
 
-  /// Energy of a pulse Qs, J, 1e-50 to 1e50. Default 3.6e-4.
+  /// Energy Qs of a pulse, J, 1e-50 to 1e50. Default 3.6e-4.
   vtkAvianLidarPropertyMacro(PulseEnergy, double, 3.6e-4);
 
-  /// Length of the rectangular pulse tau_e, s, 0 to 1000 sampling intervals. Default 5e-9.
+  /// Length tau_e of the rectangular pulse, s, 0 to 1000 sampling intervals. Default 5e-9.
   vtkAvianLidarPropertyMacro(PulseWidth, double, 5e-9);
 
-  /// Frequency of the light nu, Hz, 1 to 1e30. Default 3.313e14 (905 nm).
+  /// Frequency nu of the light, Hz, 1 to 1e30. Default 3.313e14 (905 nm).
   vtkAvianLidarPropertyMacro(Frequency, double, 3.313e14);
 
   ///@{
-  /// Wavelength of the light, nm, 1e-6 to 3e17; sets Frequency. Default 904.897247208.
+  /// Wavelength of the light, nm, 1e-6 to 3e17. The setter sets Frequency. Default 904.897247208.
   void SetWavelength(double nanometres);
   double GetWavelength();
   ///@}
 
-  /// Length of a range unit in time tau_s, s, 1e-30 to 1e20. Default 5e-9 (0.75 m).
+  /// Length tau_s of a range unit in time, s, 1e-30 to 1e20. Default 5e-9 (0.75 m).
   vtkAvianLidarPropertyMacro(SamplingInterval, double, 5e-9);
 
   /// Greatest range recorded, m, above 0, at most 1e30 and 2^52 range units. Default 4000.
   vtkAvianLidarPropertyMacro(RangeGate, double, 4000.0);
 
   /// Range, m, beyond which echoes arrive after the next pulse has left; infinite for SetBeams(). A
-  /// larger RangeGate gives one warning; echoes keep their true ranges
+  /// larger RangeGate gives one warning. The ranges of echoes are true even beyond this range
   /// (Documentation/reference/sensor-files.md).
   double GetUnambiguousRange();
 
   /// Mean rate of noise photons at the receiver, Hz, 0 to 1e50 (paper, Eq. 11). Default 20e3.
   vtkAvianLidarPropertyMacro(NoisePhotonRate, double, 20e3);
 
-  /// Lower limit of the dynamic range Qlow, J, 0 to Qhigh (paper, Eq. 12). Default 2e-6.
+  /// Lower limit Qlow of the dynamic range, J, 0 to Qhigh (paper, Eq. 12). Default 2e-6.
   vtkAvianLidarPropertyMacro(LowerEnergyLimit, double, 2e-6);
 
-  /// Upper limit of the dynamic range Qhigh, J, Qlow to 1e50 (paper, Eq. 12). Default 6.25e-5.
+  /// Upper limit Qhigh of the dynamic range, J, Qlow to 1e50 (paper, Eq. 12). Default 6.25e-5.
   vtkAvianLidarPropertyMacro(UpperEnergyLimit, double, 6.25e-5);
 
-  /// Area of the receiver's aperture, m2, 0 to 1e20. Default 0: energies do not fall with 1/r^2.
+  /// Area of the receiver's aperture, m2, 0 to 1e20. Default 0: energies without the factor
+  /// 1 / range^2.
   vtkAvianLidarPropertyMacro(ReceiverAperture, double, 0.0);
 
   ///@{
@@ -289,72 +295,79 @@ public:
   void SetReceiverModelToPhotons() { this->SetReceiverModel(RECEIVER_MODEL_PHOTONS); }
   ///@}
 
-  /// Electrons per photon eta, 1, above 0 to 1. Photon receiver. Default 0.4 (assumed).
+  /// Number eta of electrons per photon in a photon receiver, 1, above 0 to 1. Default 0.4
+  /// (assumed).
   vtkAvianLidarPropertyMacro(ReceiverEfficiency, double, 0.4);
 
-  /// Width of the optical filter, nm, 0 to 1e6. Photon receiver. Default 10 (assumed).
+  /// Width of a photon receiver's optical filter, nm, 0 to 1e6. Default 10 (assumed).
   vtkAvianLidarPropertyMacro(FilterBandwidth, double, 10.0);
 
-  /// Background radiance L, W/(m2 sr nm), 0 to 1e10. Photon receiver. Default 0.05 (assumed).
+  /// Background radiance L on a photon receiver, W/(m2 sr nm), 0 to 1e10. Default 0.05 (assumed).
   vtkAvianLidarPropertyMacro(BackgroundRadiance, double, 0.05);
 
-  /// Noise of the amplifier n_a, electrons, 0 or 1e-3 to 1e20. Photon receiver. Default 60
+  /// Noise n_a of a photon receiver's amplifier, electrons, 0 or 1e-3 to 1e20. Default 60
   /// (assumed).
   vtkAvianLidarPropertyMacro(AmplifierNoise, double, 60.0);
 
-  /// Excess noise factor F of the avalanche, 1, 1 to 1e6. Photon receiver. Default 3 (assumed).
+  /// Excess noise factor F of a photon receiver's avalanche, 1, 1 to 1e6. Default 3 (assumed).
   vtkAvianLidarPropertyMacro(ExcessNoiseFactor, double, 3.0);
 
-  /// Spectral irradiance of the sun, W/(m2 nm), 0 to 1e10. Photon receiver. Default 0: no daylight.
+  /// Spectral irradiance of the sun, W/(m2 nm), 0 to 1e10. Used only with a photon receiver.
+  /// Default 0: no daylight.
   vtkAvianLidarPropertyMacro(Sunlight, double, 0.0);
 
-  /// Azimuth of the sun, deg from north, clockwise, -360 to 360. With Sunlight. Default 180.
+  /// Azimuth of the sun, deg from north, clockwise, -360 to 360. Used only with Sunlight above 0.
+  /// Default 180.
   vtkAvianLidarPropertyMacro(SunAzimuth, double, 180.0);
 
-  /// Elevation of the sun, deg, -90 to 90. With Sunlight. Default 45.
+  /// Elevation of the sun, deg, -90 to 90. Used only with Sunlight above 0. Default 45.
   vtkAvianLidarPropertyMacro(SunElevation, double, 45.0);
 
-  /// Least range recorded, m, 0 to below RangeGate. Nearer surfaces still occlude. Default 0.
+  /// Least range recorded, m, 0 to below RangeGate. Nearer surfaces still hide farther surfaces.
+  /// Default 0.
   vtkAvianLidarPropertyMacro(MinimumRange, double, 0.0);
 
-  /// Range r_o of the share in view 1 - exp(-(r/r_o)^2), m, 0 to 1e9. Default 0: share 1.
+  /// Range r_o in 1 - exp(-(r/r_o)^2), the share of light from range r that lies in the receiver's
+  /// view, m, 0 to 1e9. Default 0: share 1.
   vtkAvianLidarPropertyMacro(OverlapRange, double, 0.0);
 
-  /// Range r_d of the share in focus 1 / (1 + (r_d/r)^2), m, 0 to 1e9. Default 0: share 1.
+  /// Range r_d in 1 / (1 + (r_d/r)^2), the share of light from range r that lies in focus, m, 0 to
+  /// 1e9. Default 0: share 1.
   vtkAvianLidarPropertyMacro(DefocusRange, double, 0.0);
 
   /// Coefficient b of the standard deviation of ranges, sqrt(a^2 + b^2/S^p), m, 0 to 1e9. S is the
   /// signal-to-noise ratio (at least 1), a is RangeNoiseFloor, and p is RangeNoiseExponent
-  /// (Documentation/reference/sensor-files.md). Photon receiver. Default 0: exact.
+  /// (Documentation/reference/sensor-files.md). Used only with a photon receiver. Default 0: exact.
   vtkAvianLidarPropertyMacro(RangeNoise, double, 0.0);
 
-  /// Exponent p of S in RangeNoise, 1, 0 to 10. Photon receiver. Default 2.
+  /// Exponent p of S in RangeNoise, 1, 0 to 10. Used only with a photon receiver. Default 2.
   vtkAvianLidarPropertyMacro(RangeNoiseExponent, double, 2.0);
 
   /// Standard deviation a of the ranges of the strongest echoes, m, 0 to 1e9. Default 0.
   vtkAvianLidarPropertyMacro(RangeNoiseFloor, double, 0.0);
 
-  /// Walk error of an echo at the lower limit, m, 0 to 1e9. Stronger echoes have a smaller error.
-  /// Default 0.
+  /// Range error of an echo at the lower limit (walk), m, 0 to 1e9. Stronger echoes have a smaller
+  /// error. Default 0.
   vtkAvianLidarPropertyMacro(RangeWalk, double, 0.0);
 
   /// Step to which ranges are rounded, m, 0 (exact) or 1e-9 to 1e9. Default 0.
   vtkAvianLidarPropertyMacro(RangeQuantum, double, 0.0);
 
-  /// Expected number of false alarms in a scan of empty sky, 1, above 0 to 1e8. Photon receiver.
-  /// Default 1.
+  /// Expected number of false alarms of a photon receiver in a scan of empty sky, 1, above 0 to
+  /// 1e8. Default 1.
   vtkAvianLidarPropertyMacro(FalseAlarmsPerScan, double, 1.0);
 
-  /// Ratio of upper to lower limit, dB of electrons (10 log10), 0 to 1000. Default 40 (assumed).
+  /// Ratio of the upper to the lower limit, dB of electrons (10 log10), 0 to 1000. Default 40
+  /// (assumed).
   vtkAvianLidarPropertyMacro(DynamicRange, double, 40.0);
 
   ///@{
-  /// Set LowerEnergyLimit from a line of a data sheet, and UpperEnergyLimit so that it
-  /// exceeds LowerEnergyLimit by DynamicRange. The sensor detects a Lambertian surface of
-  /// `reflectance` (above 0 to 1) that fills the beam up to `range`, m, in air of `attenuation`,
-  /// 1/m (default: GetClearAirAttenuation()). Needs ReceiverAperture and
-  /// RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. Limits from one line are only an
-  /// estimate (Documentation/reference/sensor-files.md).
+  /// Set LowerEnergyLimit from a line of a data sheet, and set UpperEnergyLimit so that this limit
+  /// exceeds LowerEnergyLimit by DynamicRange. Up to `range`, m, the sensor then detects a
+  /// Lambertian surface of `reflectance` (above 0 to 1) that fills the beam, in air of
+  /// `attenuation`, 1/m (default: GetClearAirAttenuation()). The function needs ReceiverAperture
+  /// and RECEIVER_MODEL_ENERGY_LIMITS. A bad value changes nothing. Limits from one line are only
+  /// an estimate (Documentation/reference/sensor-files.md).
   void SetLimitsFromDataSheet(double range, double reflectance);
   void SetLimitsFromDataSheet(double range, double reflectance, double attenuation);
   ///@}
@@ -362,7 +375,8 @@ public:
   /// Attenuation of clear air (23 km visibility) at Wavelength, 1/m.
   double GetClearAirAttenuation();
 
-  /// Length of port 1's lines and range of report points without echo, m, to 1e30. Default 1000.
+  /// Length of the lines of port 1 and range of beam report points without an echo, m, above 0 to
+  /// 1e30. Default 1000.
   vtkAvianLidarPropertyMacro(DisplayLength, double, 1000.0);
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -374,14 +388,14 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  /// Read a sensor file. With `keepPlace` position, orientation, revolutions, steps and seed stay.
-  /// @return an error text, in which case nothing changes; else an empty string
+  /// Read a sensor file. With `keepPlace`, position, orientation, revolutions, steps and seed are
+  /// kept. @return an error text if nothing was changed, else an empty string
   std::string ReadSensor(const char* fileName, bool keepPlace);
 
   std::vector<double> ChannelElevations;
   std::vector<double> ChannelAzimuthOffsets;
   std::vector<double> ChannelFiringTimes;
-  std::vector<double> BlankedSectors; ///< azimuths, deg: from, to, from, to, ...
+  std::vector<double> BlankedSectors; ///< azimuths of start and end in turn, deg
   std::vector<double> PrismWedgeAngles;
   std::vector<double> PrismRefractiveIndices;
   std::vector<double> PrismRotationRates;
@@ -404,7 +418,7 @@ private:
   struct vtkInternals;
   struct vtkBeamTable;
   std::string Warned;                        ///< warning given last, which is not repeated
-  std::shared_ptr<const vtkBeamTable> Table; ///< beams of SetBeams(); null: none
+  std::shared_ptr<const vtkBeamTable> Table; ///< beams of SetBeams(), or null
 };
 
 #endif

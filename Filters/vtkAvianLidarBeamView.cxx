@@ -52,7 +52,7 @@ double EnergyOf(const std::vector<SeenSurface>& seen)
   return sum;
 }
 
-/// A column or cell array of a value of each surface.
+/// Array with one value of each surface, for rows or cells.
 template <class ArrayT, class F>
 vtkSmartPointer<ArrayT> ArrayOf(
   const Arrays::Name& name, const std::vector<SeenSurface>& seen, F valueOf)
@@ -65,7 +65,7 @@ vtkSmartPointer<ArrayT> ArrayOf(
   return array;
 }
 
-/// What cells and rows have alike.
+/// Arrays that cells and rows have in common.
 std::vector<vtkSmartPointer<vtkDataArray>> NumbersOf(
   const std::vector<SeenSurface>& seen, double energy)
 {
@@ -90,7 +90,7 @@ void FillSurfaces(
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> cells;
-  std::vector<SeenSurface> shown; // nothing may be left within a polygon of 64 sides
+  std::vector<SeenSurface> shown; // surfaces with a part within the outline
   for (const SeenSurface& one : seen)
   {
     std::vector<vtkIdType> polygon;
@@ -137,7 +137,7 @@ void FillCone(const avianlidar::BeamFrame& frame, double length, vtkPolyData* co
   cone->SetPolys(cells);
 }
 
-/// The surfaces of each object and material together, those that return most first, and the sky.
+/// Sums over the surfaces of each object and material, most energy first, then the sky.
 std::vector<SeenSurface> RowsOf(const std::vector<SeenSurface>& seen)
 {
   std::map<std::pair<int, int>, SeenSurface> sums;
@@ -155,7 +155,7 @@ std::vector<SeenSurface> RowsOf(const std::vector<SeenSurface>& seen)
     }
     SeenSurface& sum = place->second;
     const double weight = sum.weight + one.weight;
-    if (one.weight > 0.0) // else its range is not known
+    if (one.weight > 0.0) // without weight, the range is unknown
     {
       sum.range =
         sum.weight > 0.0 ? (sum.weight * sum.range + one.weight * one.range) / weight : one.range;
@@ -178,7 +178,7 @@ std::vector<SeenSurface> RowsOf(const std::vector<SeenSurface>& seen)
   return rows;
 }
 
-/// The name of an id in field data, or none.
+/// Name of an id in field data; empty if the id has no name.
 std::string NameOf(vtkFieldData* fields, const Arrays::Name& names, int id)
 {
   auto* array = vtkStringArray::SafeDownCast(fields->GetAbstractArray(names.name));
@@ -272,7 +272,7 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
       {
         return;
       }
-      in.Setup.settings.fullModel = true; // faint samples, too
+      in.Setup.settings.fullModel = true; // for faint samples, too
       avianlidar::planModel(in.Setup);
       const auto beam = static_cast<std::size_t>(place - ids.begin());
       const avianlidar::KeepGoing keepGoing =

@@ -4,21 +4,23 @@
  * @brief Shows what one beam of a scan sees: its cone, the surfaces in the cone, and the share of
  * each surface.
  *
- * The filter traces the beam BeamId again as vtkAvianLidarEchoFilter does, without noise, limits
- * and second reflections, and sums the samples of the beam by triangle. Inputs and properties are
- * those of the echo filter; noise, returns and constraints have no effect.
+ * The filter traces the beam BeamId again as vtkAvianLidarEchoFilter does, but without noise,
+ * limits and second reflections. The samples of the beam are summed by triangle. Inputs and
+ * properties are the same as in the echo filter. The properties of noise, returns and constraints
+ * have no effect.
  *
  * - Output port 0, surfaces (vtkPolyData): the part of each triangle, or of two triangles that form
  *   a quadrilateral, within the beam's outline and between the nearest and farthest range at which
  *   the beam sees a point of the triangles. Other surfaces may hide some of this part. Cell arrays:
  *   `solid_angle_share` (if the beam is not round: share of the area in the plane across its axis),
  *   `energy_share`, `energy_received`, `distance_m`, `incidence_angle`, `object_id`, `material_id`.
- * - Output port 1, beam (vtkPolyData): the cone, to the farthest surface that the beam sees, or to
- *   the beams' `display_length` (1000 m by default) if it sees no surface.
+ * - Output port 1, beam (vtkPolyData): the cone, to the farthest surface that the beam sees. If the
+ *   beam sees no surface, the cone has the length `display_length` of the beams (1000 m by
+ *   default).
  * - Output port 2, shares (vtkTable): a row for each pair of object and material, brightest first,
  *   with `object`, `material`, `nearest_m`, `farthest_m` and the arrays of port 0 except
- *   `incidence_angle`. The last row, `no surface`, is the sky. Each share sums to one;
- *   `energy_share` is 0 if no energy is received.
+ *   `incidence_angle`. The last row, `no surface`, is the sky. The shares of a column sum to one.
+ *   If no energy is received, `energy_share` is 0.
  *
  * Shares are exact up to rounding where few triangles enter the beam, and otherwise sampled by
  * about 32 times RaysPerBeam rays. A BeamId that no beam has gives an error. Without beams the
@@ -43,7 +45,7 @@ public:
   vtkTypeMacro(vtkAvianLidarBeamView, vtkAvianLidarEchoFilter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Value of `beam_id` of the beam to view. Default 0.
+  /// Value of `beam_id` of the beam to view, at least 0. Default 0.
   vtkAvianLidarPropertyMacro(BeamId, vtkIdType, 0);
 
 protected:

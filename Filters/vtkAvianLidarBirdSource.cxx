@@ -25,7 +25,7 @@ void RequireFinite(const char* name, double value)
     avianlidar::rangeError(name, value, -LargestFinite, LargestFinite, "a finite number"));
 }
 
-/// Turns from the bird's frame into the scene's: bank to the right, then heading.
+/// Rotation from the frame of the bird to the frame of the scene: bank to the right, then heading.
 class Turn
 {
 public:
@@ -43,7 +43,7 @@ public:
   }
 
 private:
-  std::array<double, 2> Heading, Bank; ///< sines and cosines
+  std::array<double, 2> Heading, Bank; ///< sine and cosine of the angle
 };
 }
 

@@ -5,16 +5,16 @@
  *
  * The source has no input. Output port 0 is vtkPolyData: 72 triangles, m, with the cell arrays of
  * vtkAvianLidarMaterial and `part` (0 body, 1 left wing, 2 right wing), and the field data
- * `material_names` (4, Plumage), `object_names` (the species) and `object_classes` ("bird"). The
- * array `kd` has the value of Reflectance.
+ * `material_names` (entry 4 is Plumage), `object_names` (the species) and `object_classes`
+ * ("bird"). The array `kd` has the value of Reflectance.
  *
  * The body has the effective area of an ellipsoid of revolution, exactly and from every direction.
  * The frontal area of this ellipsoid follows from the mass (Hedenstrom and Rosen 2003; Pennycuick
  * 1988). The wings are thin plates that flap. Shape, assumptions and species:
  * Documentation/guide/birds.md.
  *
- * An unknown species, a bad table or a bad number gives an error that names the property, and an
- * empty output. Setters accept any value.
+ * An unknown species, a bad table or a bad number gives an empty output and an error that names the
+ * property. Setters accept any value.
  *
  * Example: `bird->SetSpecies("crow"); bird->SetPosition(0, 300, 15); bird->SetHeading(60);`
  *
@@ -40,10 +40,11 @@ public:
   vtkAvianLidarPropertyMacro(Species, std::string, "herring gull");
 
   /// Table of the user's species (CSV, with the columns of Filters/Birds/species.csv). These
-  /// species precede the built-in species. Default: none.
+  /// species precede the built-in species. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
-  /// Phase, wingbeats: 0 level and rising, 0.25 up, 0.75 down; not used in a glide. Default 0.
+  /// Phase of the wings, wingbeats, any finite number: 0 level and rising, 0.25 up, 0.75 down. Not
+  /// used if Gliding is on. Default 0.
   vtkAvianLidarPropertyMacro(WingPhase, double, 0.0);
 
   /// Whether the wings are held still, 5 degrees up. Default: off.

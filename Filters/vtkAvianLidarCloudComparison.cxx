@@ -52,7 +52,7 @@ void CheckCloud(vtkPointSet* cloud, int port)
   {
     double p[3];
     cloud->GetPoint(i, p);
-    // Squares and cubes of what is within are numbers.
+    // checkPosition() limits coordinates, so that their squares and cubes are finite.
     const std::string wrong = avianlidar::checkPosition({ p[0], p[1], p[2] });
     if (!wrong.empty())
     {
@@ -61,19 +61,19 @@ void CheckCloud(vtkPointSet* cloud, int port)
   }
 }
 
-// The nearest points of another cloud to the points of one, and of the distances on all ranks the
-// largest, the root mean square and the density-aware mean.
+// Distances from the points of one cloud to the nearest points of the other cloud, with the largest
+// distance, the root mean square and the density-aware mean of all ranks.
 struct Direction
 {
   vtkSmartPointer<vtkDoubleArray> Distances;
-  vtkNew<vtkIdTypeArray> Nearest; // one number for each place, on all ranks the same
+  vtkNew<vtkIdTypeArray> Nearest; // numbers of the nearest places, the same on all ranks
   double Largest = 0.0;
   double RootMeanSquare = 0.0;
   double DensityAware = 0.0;
 };
 
-// The places of a cloud, each with a number. (VTK's locators either divide space into equal cells,
-// which one point far away makes useless, or round coordinates to single precision.)
+// Places of a cloud with their numbers. Some locators of VTK divide space into equal cells, which a
+// single point far away makes useless. The other locators round coordinates to single precision.
 using Place = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
 using NumberedPlace = std::pair<Place, vtkIdType>;
 using PlaceTree = boost::geometry::index::rtree<NumberedPlace, boost::geometry::index::linear<16>>;
@@ -85,7 +85,7 @@ Place PlaceOf(vtkPointSet* cloud, vtkIdType i)
   return { p[0], p[1], p[2] };
 }
 
-// Points in one place share a number. Numbers follow the order of x, then y, then z.
+// Points in one place have one number. Numbers follow the order of x, then y, then z.
 PlaceTree TreeOf(vtkPointSet* cloud)
 {
   std::vector<std::array<double, 3>> points(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
@@ -104,8 +104,8 @@ PlaceTree TreeOf(vtkPointSet* cloud)
   return PlaceTree(places.begin(), places.end());
 }
 
-// The square of the distance to the nearest place, and its number, the least if several places are
-// equally near. `found` is workspace.
+// Square of the distance to the nearest place, and number of this place. If several places are
+// equally near, the least number is returned. `found` is workspace.
 std::pair<double, vtkIdType> NearestIn(
   const PlaceTree& tree, const Place& place, std::vector<NumberedPlace>& found)
 {
@@ -124,14 +124,14 @@ std::pair<double, vtkIdType> NearestIn(
       nearest = std::min(nearest, square);
       farthest = std::max(farthest, square);
     }
-    if (farthest > nearest || found.size() < most) // all that are equally near are among them
+    if (farthest > nearest || found.size() < most) // all equally near places are found
     {
       return { nearest, number };
     }
   }
 }
 
-// Moves the progress of `filter` from `start` to `start` + 0.5.
+// Measures distances. The progress of `filter` goes from `start` to `start` + 0.5.
 void Measure(
   vtkPointSet* from, vtkPointSet* to, vtkAlgorithm* filter, double start, Direction& result)
 {
@@ -154,8 +154,9 @@ void Measure(
   }
 }
 
-// The numbers of all ranks from the distances of this one. All ranks must call it.
-// @param others the number of points of the other cloud on all ranks
+// Computes the measures of all ranks from the distances of each rank. All ranks must call this
+// function.
+// @param others number of points of the other cloud on all ranks
 void Summarize(
   const vtkAvianLidarRanks& ranks, vtkIdType others, double alpha, Direction& direction)
 {
@@ -188,7 +189,7 @@ void Summarize(
   direction.DensityAware = ranks.Sum(densityAware) / number;
 }
 
-// An empty piece of a comparison that another piece has as a whole.
+// Removes the points of a piece, because piece 0 has the whole comparison.
 void LeavePointsOut(vtkPointSet* cloud)
 {
   vtkNew<vtkFieldData> fields;
@@ -307,7 +308,7 @@ int vtkAvianLidarCloudComparison::RequestData(
           {
             vtkAvianLidarRequire(whole[port]->GetNumberOfPoints() > 0
                 ? ""
-                : NameOf(port) + " has no points: the distance to nothing is not defined");
+                : NameOf(port) + " has no points, expected at least one point");
           }
           Measure(clouds[0], whole[1], this, 0.0, directions[0]);
           Measure(clouds[1], whole[0], this, 0.5, directions[1]);

@@ -4,17 +4,18 @@
  * @brief Compares two point clouds by Hausdorff distance, root mean square error and density-aware
  * Chamfer distance, in both directions.
  *
- * - Input ports 0, the simulated cloud, and 1, the reference: any vtkPointSet, in the same
- *   coordinates.
- * - Output ports 0 and 1: shallow copies with the point array `nearest_distance`, and all measures
- *   as field data.
+ * - Input port 0, the simulated cloud: any vtkPointSet.
+ * - Input port 1, the reference: any vtkPointSet, in the coordinates of the simulated cloud.
+ * - Output ports 0 and 1: shallow copies of the clouds with the point array `nearest_distance`, and
+ *   all measures as field data.
  *
- * Hausdorff distance and RMSE are Eq. 19 and 20 of "Research on Ground Object Echo Simulation of
- * Avian Lidar", Photonics 2024, 11(2), 153; here the sum of each direction of Eq. 20 is divided by
- * the number of points in this sum. The Chamfer distance follows Wu et al., NeurIPS 2021,
- * arXiv:2111.12702. Distances are Euclidean, in double precision; the order of points does not
- * matter. The search takes one thread and n log n steps; a point equally far from all points of a
- * cloud is compared with each. Formulas and limits: Documentation/guide/clouds.md.
+ * Hausdorff distance and root mean square error are Eq. 19 and 20 of "Research on Ground Object
+ * Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153. Unlike in the paper, the sum of each
+ * direction of Eq. 20 is divided by the number of points in this sum. The Chamfer distance follows
+ * Wu et al., NeurIPS 2021, arXiv:2111.12702. Distances are Euclidean, in double precision. The
+ * order of points does not matter. The search uses one thread and, for n points, about n log n
+ * steps. A point that is equally far from all points of a cloud is compared with every point.
+ * Formulas and limits: Documentation/guide/clouds.md.
  *
  * A bad ChamferAlpha gives an error. A cloud without points, or with coordinates that are not
  * finite or beyond 1e30 m, gives an error that names port and point. After an error or an abort,
@@ -47,20 +48,23 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Hausdorff distance (paper, Eq. 19), and by direction, m; NaN before the first execution.
+  /// Hausdorff distance (paper, Eq. 19) of both directions together and of each direction, m. NaN
+  /// before the first execution.
   vtkGetMacro(HausdorffDistance, double);
   vtkGetMacro(HausdorffSimulatedToReference, double);
   vtkGetMacro(HausdorffReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /// Root mean square distances (paper, Eq. 20), m; NaN before the first execution.
+  /// Root mean square distance (paper, Eq. 20) of each direction, m. NaN before the first
+  /// execution.
   vtkGetMacro(RMSESimulatedToReference, double);
   vtkGetMacro(RMSEReferenceToSimulated, double);
   ///@}
 
   ///@{
-  /// Density-aware Chamfer distance, 0 (equal) to 1: mean, by direction; NaN before execution.
+  /// Density-aware Chamfer distance, 1, 0 (equal clouds) to 1: mean of both directions, and value
+  /// of each direction. NaN before the first execution.
   vtkGetMacro(DensityAwareChamferDistance, double);
   vtkGetMacro(DensityAwareChamferSimulatedToReference, double);
   vtkGetMacro(DensityAwareChamferReferenceToSimulated, double);
@@ -69,7 +73,8 @@ public:
   /// Alpha of the Chamfer distance, 1/m, 1e-6 to 1e6. Default 1 (assumed, for scans in metres).
   vtkAvianLidarPropertyMacro(ChamferAlpha, double, 1.0);
 
-  /// Processes that may work together; null: only this one. Default: the global controller.
+  /// Controller of the processes that may work together; null: this process works alone. Default:
+  /// the global controller.
   vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -41,14 +41,14 @@ using avianlidar::ClutterMap;
 constexpr char ScanPort[] = "input port 0 (scan): ";
 constexpr char TablePort[] = "input port 1 (table): ";
 
-// What decides whether a memory can go on.
+// Settings and inputs that must not change while a memory is used.
 struct Setup
 {
   ClutterGrid Grid;
   double Window = 0.0;
   bool Learning = true;
   double Position[3] = { 0.0, 0.0, 0.0 };
-  std::uint64_t Table = 0; ///< hash of its content, 0 without one
+  std::uint64_t Table = 0; ///< hash of the table's content, 0 without a table
 
   bool operator==(const Setup& other) const
   {
@@ -60,7 +60,7 @@ struct Setup
   }
 };
 
-// The key of each point.
+// Key of the cell of each point.
 std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup)
 {
   std::vector<ClutterMap::Key> keys(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
@@ -79,7 +79,7 @@ std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup)
   return keys;
 }
 
-// The map that a table holds.
+// Reads the map that a table holds.
 ClutterMap ReadTable(vtkPolyData* table, const ClutterMap& empty)
 {
   vtkFieldData* fields = table->GetFieldData();
@@ -92,7 +92,7 @@ ClutterMap ReadTable(vtkPolyData* table, const ClutterMap& empty)
     vtkAvianLidarRequire(Arrays::GetFieldValue(fields, name, step)
         ? ""
         : std::string("field data '") + name.name + "' is not one finite number");
-    const double rounding = 1e-6 * expected; // by a file of text
+    const double rounding = 1e-6 * expected; // of numbers in text files
     vtkAvianLidarRequire(avianlidar::rangeError(name.name, step, expected - rounding,
       expected + rounding, "the step of the filter, " + std::to_string(expected)));
   }
@@ -100,7 +100,7 @@ ClutterMap ReadTable(vtkPolyData* table, const ClutterMap& empty)
   const bool known = Arrays::GetFieldValue(fields, Arrays::LearnedScans, scans);
   vtkAvianLidarRequire(known && Arrays::IsInt(scans) && scans >= 0.0
       ? ""
-      : "field data 'learned_scans' is not a whole number from 0 on");
+      : "field data 'learned_scans' is not a whole number of at least 0");
   const vtkIdType size = table->GetNumberOfPoints();
   vtkDataArray* persistence = table->GetPointData()->GetArray(Arrays::ClutterProbability.name);
   vtkDataArray* indices = table->GetPointData()->GetArray(Arrays::ClutterCell.name);
@@ -155,7 +155,7 @@ std::uint64_t HashOfTable(vtkPolyData* table)
   return hash;
 }
 
-// The cells of a map as vertices.
+// Writes the cells of a map as vertices.
 void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* output)
 {
   const auto size = static_cast<vtkIdType>(map.keys().size());
@@ -180,13 +180,13 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
 }
 }
 
-// Maps are shared, so a copy that is thrown away when something fails costs nothing.
+// Maps are shared, so that each execution can change a copy and drop the copy after an error.
 struct vtkAvianLidarClutterFilter::Memory
 {
   Setup Of;
   vtkAvianLidarScanStream Stream;
-  std::shared_ptr<const ClutterMap> Before; ///< without the last scan
-  std::shared_ptr<const ClutterMap> With;   ///< with it
+  std::shared_ptr<const ClutterMap> Before; ///< map without the last scan
+  std::shared_ptr<const ClutterMap> With;   ///< map with the last scan
 };
 
 vtkStandardNewMacro(vtkAvianLidarClutterFilter);
@@ -289,7 +289,7 @@ void vtkAvianLidarClutterFilter::Advance(vtkDataObject* cloud, vtkPolyData* tabl
   this->CheckProperties();
   vtkAvianLidarRequire(this->Learning || table
       ? ""
-      : "Learning is off and input port 1 (table) is not connected, expected one of both");
+      : "Learning is off and input port 1 (table) is not connected, expected Learning or a table");
   Setup setup;
   setup.Grid = { this->RangeStep, this->AzimuthStep, this->ElevationStep };
   setup.Window = this->Window;
@@ -317,7 +317,7 @@ void vtkAvianLidarClutterFilter::Advance(vtkDataObject* cloud, vtkPolyData* tabl
   if (back)
   {
     vtkWarningMacro("The time goes back from " << memory.Stream.Time() << " s to " << time
-                                               << " s: what was learned is forgotten.");
+                                               << " s: the memory is emptied.");
   }
   memory.Of = setup;
   memory.Stream.Accept(cloud, time);
@@ -370,7 +370,7 @@ int vtkAvianLidarClutterFilter::RequestData(
     [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPointSet* cloud = vtkPointSet::GetData(inputVector[0]);
-      Memory memory = *this->Kept; // which stays if something is wrong
+      Memory memory = *this->Kept; // copy, so that an error leaves Kept unchanged
       std::vector<ClutterMap::Key> keys;
       ranks.Together(this,
         [&]()

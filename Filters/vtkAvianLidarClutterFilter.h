@@ -4,12 +4,13 @@
  * @brief Finds clutter in a stream of point clouds: points where earlier scans had echoes, too.
  *
  * Space around the sensor is divided into cells of range, azimuth and elevation. The persistence of
- * a cell is the weighted share of scans with an echo in it; the weight of each scan is 1 - 1/Window
- * times the weight of the next scan. The clutter probability of a point is the largest persistence,
- * before this scan, of the point's cell and the cells around it. Method, times and limits:
- * Documentation/guide/filters.md. The sensor must stand still.
+ * a cell is the weighted share of scans with an echo in the cell. The weight of each scan is
+ * 1 - 1/Window times the weight of the next scan. The filter keeps the persistences as its memory.
+ * The clutter probability of a point is the largest persistence, before this scan, of the point's
+ * cell and the cells around this cell. Method, times and limits: Documentation/guide/filters.md.
+ * The sensor must stand still.
  *
- * - Input port 0, a scan: any vtkPointSet, m: echoes, or the cloud of a reader.
+ * - Input port 0, a scan: any vtkPointSet in metres, such as echoes or the cloud of a reader.
  * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run, also from a
  *   file.
  * - Output port 0: a shallow copy of the scan with the point arrays `clutter_probability` and
@@ -17,17 +18,17 @@
  * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell that is kept, in the
  *   order of cells, with `clutter_probability` and `clutter_cell`. Rank 0 has the table of all
  *   ranks.
- * - Field data of both ports: `learned_scans`, `position` and the settings as `clutter_window` and
- *   so on.
+ * - Field data of both output ports: `learned_scans`, `position` and the settings in snake case
+ *   with the prefix `clutter_`, such as `clutter_window`.
  *
  * The time of a scan is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
  * start of its `revolution`, else 1 s after the scan before. A scan of the same time replaces the
- * last scan. An earlier time empties the memory, with a warning; another position, step, Window,
+ * last scan. An earlier time empties the memory, with a warning. Another position, step, Window,
  * table or Learning empties the memory without a warning.
  *
  * Bad settings, coordinates beyond 1e30 m, bad field data or a table of other steps give an error
- * and empty outputs; the memory stays. A scan without points counts as a scan. The result has the
- * same bits for any order of the points and any number of ranks.
+ * and empty outputs. After an error, the memory is unchanged. A scan without points counts as a
+ * scan. The result has the same bits for any order of the points and any number of ranks.
  *
  * @code
  * clutter->SetInputConnection(echoes->GetOutputPort(0));
@@ -63,7 +64,7 @@ public:
   /// Number of scans after which the weight of a scan is 1/e, 1 to 100,000. Default 200.
   vtkAvianLidarPropertyMacro(Window, double, 200.0);
 
-  /// Clutter probability from which on a point is clutter, 1, above 0 to 1. Default 0.05.
+  /// Least clutter probability of a point that is clutter, 1, above 0 to 1. Default 0.05.
   vtkAvianLidarPropertyMacro(ClutterThreshold, double, 0.05);
 
   /// Size of the cells in range, m, 0.001 to 1000. Default 1.5, as for the sensor Search905.
@@ -75,26 +76,30 @@ public:
   /// Size of the cells in elevation, deg, 0.001 to 90. Default 0.375.
   vtkAvianLidarPropertyMacro(ElevationStep, double, 0.375);
 
-  /// Number of cells in range that count on either side of a point's cell, 0 to 10. Default 1.
+  /// Number of cells in range on each side of a point's cell that are searched for clutter, 0 to
+  /// 10. Default 1.
   vtkAvianLidarPropertyMacro(RangeTolerance, int, 1);
 
-  /// Number of cells in angle that count on each side of a point's cell, 0 to 10. Default 1.
+  /// Number of cells in angle on each side of a point's cell that are searched for clutter, 0 to
+  /// 10. Default 1.
   vtkAvianLidarPropertyMacro(AngularTolerance, int, 1);
 
-  /// Number of first scans in which all points are clutter, 0 to 100,000. Scans of a table count.
-  /// Default 5.
+  /// Number of first scans in which all points are clutter, 0 to 100,000. The scans of a table are
+  /// included. Default 5.
   vtkAvianLidarPropertyMacro(WarmUp, int, 5);
 
   /// Position of the sensor, m, for scans without the field data `position`. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(SensorPosition, 3, 0.0, 0.0, 0.0);
 
-  /// Whether scans are learned; if not, only the table on port 1 counts. Default: on.
+  /// Whether scans are added to the memory. Otherwise only the table of port 1 is used. Default:
+  /// on.
   vtkAvianLidarSwitchMacro(Learning, true);
 
   /// Empty the memory, for a new stream whose first scan may have any time.
   void Forget();
 
-  /// Processes that may work together; null: only this one. Default: the global controller.
+  /// Controller of the processes that may work together; null: this process works alone. Default:
+  /// the global controller.
   vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -42,7 +42,7 @@ namespace
 namespace names = vtkAvianLidarArrays;
 using avianlidar::Vec3;
 
-/// Collects the surfaces of volumes, with the number of the node each face belongs to.
+/// Collects the surfaces of volumes, with the number of the node to which each face belongs.
 struct Volumes
 {
   vtkNew<vtkPoints> points;
@@ -115,7 +115,7 @@ void AddVolume(Volumes& surface, const avianlidar::BoundingSphere& sphere)
   }
 }
 /// Fill `display` with the volumes of the nodes at depth `level`, and of the leaves above this
-/// depth; `display` stays empty for level < 0.
+/// depth. For a negative `level`, `display` is left empty.
 void MakeDisplay(const avianlidar::CollisionTree& tree, int level, vtkPolyData* display)
 {
   Volumes surface;
@@ -275,7 +275,7 @@ void vtkAvianLidarCollisionTree::MakeOutputs(
       }
       else
       {
-        // One copy of the surfaces for all; with the others goes what they know of them.
+        // Only rank 0 has the surfaces. The other ranks have the field data of the surfaces.
         output->GetFieldData()->PassData(in.Exchange.Fields);
       }
       vtkNew<vtkAvianLidarScene> scene;

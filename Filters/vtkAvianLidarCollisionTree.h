@@ -4,22 +4,23 @@
  * @brief Builds the collision detection tree of a scene once, so that many scans can share it.
  *
  * The filter implements the tree of "Research on Ground Object Echo Simulation of Avian Lidar",
- * Photonics 2024, 11(2), 153: Sec. 3.1, Eq. 14, Algorithm 1, with its three structures and three
- * bounding volumes, and adds a surface area heuristic. All trees give the same echoes, bit for bit,
- * at different cost.
+ * Photonics 2024, 11(2), 153 (Sec. 3.1, Eq. 14, Algorithm 1), with the paper's three structures and
+ * three bounding volumes. A surface area heuristic is added. All trees give the same echoes, bit
+ * for bit, at different cost.
  *
  * - Input port 0: vtkPolyData, or a composite of vtkPolyData, in which each leaf is an object.
- *   Polygons and strips are triangulated; vertices, lines and ghost cells are dropped. Optional are
+ *   Polygons and strips are triangulated. Vertices, lines and ghost cells are dropped. Optional are
  *   the cell arrays `object_id`, `material_id` and the coefficients of vtkAvianLidarMaterial, and
  *   the field data `object_names`, `object_classes`, `material_names`. Without coefficients the
  *   material is Wall, with a warning.
- * - Output port 0: one vtkPolyData of all triangles with these arrays. The field array
- *   `tree_checksum` holds the tree by reference, for copies within the process but not for files.
+ * - Output port 0: one vtkPolyData of all triangles with the arrays of the input. The field array
+ *   `tree_checksum` refers to the tree, also in copies within the process. Files do not contain the
+ *   tree.
  * - Output port 1: the bounding volumes of DisplayLevel as surfaces, with the cell arrays
  *   `node_id`, `triangles` and `depth`.
  *
- * Object ids are kept if every leaf has ids and no two leaves share an id; otherwise ids are
- * assigned in leaf order. MPI ranks that request their own pieces exchange surfaces; rank 0 has the
+ * Object ids are kept if every leaf has ids and no two leaves share an id. Otherwise ids are
+ * assigned in leaf order. MPI ranks that request their own pieces exchange surfaces. Rank 0 has the
  * output.
  *
  * A bad input or option gives an error and empty outputs. Without triangles the outputs are empty.
@@ -77,9 +78,9 @@ public:
   };
 
   ///@{
-  /// PRESET_PAPER builds the paper's k-D tree (Sec. 3.1, 5.1 and Algorithm 1): at execution it
-  /// overrides SplitRule (median), BoundingVolume (boxes, two per node) and MaximumLeafSize (1).
-  /// Default: PRESET_CUSTOM, which overrides nothing.
+  /// Preset of the tree. PRESET_PAPER builds the paper's k-D tree (Sec. 3.1, 5.1 and Algorithm 1).
+  /// At execution this preset overrides SplitRule (median), BoundingVolume (boxes, two per node)
+  /// and MaximumLeafSize (1). Default: PRESET_CUSTOM, which overrides nothing.
   vtkAvianLidarPropertyMacro(Preset, int, PRESET_CUSTOM);
   void SetPresetToCustom() { this->SetPreset(PRESET_CUSTOM); }
   void SetPresetToPaper() { this->SetPreset(PRESET_PAPER); }
@@ -99,9 +100,9 @@ public:
   ///@}
 
   ///@{
-  /// Volume around a node. BOUNDING_VOLUME_AABB has eight boxes per node in single precision; the
-  /// others have two volumes per node in double precision, as in the paper: oriented boxes, spheres
-  /// or boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
+  /// Volume around a node. BOUNDING_VOLUME_AABB has eight boxes per node in single precision. The
+  /// other choices have two volumes per node in double precision, as in the paper: oriented boxes,
+  /// spheres or boxes (BOUNDING_VOLUME_BINARY_AABB). Default: BOUNDING_VOLUME_AABB.
   vtkAvianLidarPropertyMacro(BoundingVolume, int, BOUNDING_VOLUME_AABB);
   void SetBoundingVolumeToAABB() { this->SetBoundingVolume(BOUNDING_VOLUME_AABB); }
   void SetBoundingVolumeToOBB() { this->SetBoundingVolume(BOUNDING_VOLUME_OBB); }
@@ -112,7 +113,7 @@ public:
   /// Largest number of triangles in a leaf, at least 1 (1: Algorithm 1 as printed). Default: 4.
   vtkAvianLidarPropertyMacro(MaximumLeafSize, int, 4);
 
-  /// Level of the volumes that port 1 shows, with the leaves above this level; negative: no
+  /// Level of the nodes whose volumes port 1 shows, with the leaves above this level; negative: no
   /// volumes. Default: 0, the root.
   vtkAvianLidarPropertyMacro(DisplayLevel, int, 0);
 
@@ -121,17 +122,19 @@ public:
   int GetNumberOfLeaves() const;
   int GetDepth() const;
 
-  /// Number of trees that this filter has built; a tree that comes with the input and fits is
-  /// reused.
+  /// Number of trees that this filter has built. A tree of the input that fits is used again and
+  /// not counted.
   int GetNumberOfBuilds() const;
 
-  /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
+  /// Size of the surfaces that this rank has sent to other ranks so far, bytes, for tests and
+  /// measurements.
   double GetNumberOfBytesSent() const;
 
   /// Key under which the information of the field array `tree_checksum` holds the tree.
   static vtkInformationObjectBaseKey* COLLISION_TREE();
 
-  /// Processes that may work together; null: only this one. Default: the global controller.
+  /// Controller of the processes that may work together; null: this process works alone. Default:
+  /// the global controller.
   vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -147,7 +150,8 @@ private:
   vtkAvianLidarCollisionTree(const vtkAvianLidarCollisionTree&) = delete;
   void operator=(const vtkAvianLidarCollisionTree&) = delete;
 
-  // Passes of an execution, which all ranks make together; a failure on one rank throws on all.
+  // Passes of an execution, which all ranks make together. A failure on one rank throws on all
+  // ranks.
   void MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);

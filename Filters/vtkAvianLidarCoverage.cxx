@@ -43,10 +43,10 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// Of the progress: static scan, lines of sight, and the rest.
+/// Progress at the end of the static scan and at the end of the lines of sight.
 constexpr double ScanShare = 0.4;
 constexpr double ViewShare = 0.9;
-/// View and arrays of a place.
+/// Memory of a place, bytes: line of sight and arrays.
 constexpr double BytesPerPlace =
   sizeof(avianlidar::CoverageSight) + 4 * sizeof(float) + sizeof(int) + 1;
 
@@ -56,20 +56,20 @@ constexpr double BytesPerPlace =
 struct vtkAvianLidarCoverage::vtkTargets
 {
   vtkAvianLidarBirdTargets Birds;
-  std::vector<vtkAvianLidarBirdTargets::Target> Wanted; ///< the first is shown
+  std::vector<vtkAvianLidarBirdTargets::Target> Wanted; ///< the image shows the first target
   vtkAvianLidarPlaces Places;
   avianlidar::CoverageSurvey Survey;
   avianlidar::SurveyRules Rules;
   double TracedPlaces = 0.0;
-  bool Warned = false; ///< that scans differ
+  bool Warned = false; ///< whether scans differed in the last execution
 
-  /// Whether the next scan has other beams. @param beams of one scan
+  /// Whether the next scan has other beams. @param beams beams of one scan
   static bool ScansDiffer(vtkPolyData* beams)
   {
     return beams->GetFieldData()->HasArray(vtkAvianLidarArrays::PrismWedgeAngles.name);
   }
 
-  /// All that decides a bit of the results, but for what the superclass has compared.
+  /// Settings that decide the bits of the results, except the settings of the superclass.
   static vtkAvianLidarRanks::Settings SettingsOf(const vtkAvianLidarCoverage& self, bool hasPlaces);
 
   avianlidar::SurveyPlaces SurveyPlaces() const
@@ -217,7 +217,7 @@ int vtkAvianLidarCoverage::RequestInformation(
   }
   vtkInformation* info = outputVector->GetInformationObject(0);
   vtkInformation* places = inputVector[2]->GetInformationObject(0);
-  // Where there are no extents VTK would make some of nothing.
+  // Without a whole extent, VTK must not request sub-extents.
   info->Remove(CAN_PRODUCE_SUB_EXTENT());
   if (!places || places->Has(Pipeline::WHOLE_EXTENT()))
   {
@@ -232,7 +232,7 @@ int vtkAvianLidarCoverage::RequestInformation(
     vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
     return 1;
   }
-  // What is wrong with the region is said in RequestData.
+  // RequestData reports errors of the region.
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
   const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
   const std::string problem = vtkAvianLidarGuard::ProblemOf([this]()
@@ -256,7 +256,7 @@ int vtkAvianLidarCoverage::RequestUpdateExtent(
   {
     return 0;
   }
-  // Whichever output is asked for, the places are those of its piece.
+  // The piece requested from any output is the piece of the places.
   vtkInformation* info = outputVector->GetInformationObject(0);
   const int port = request->Get(vtkExecutive::FROM_OUTPUT_PORT());
   if (port > 0)
@@ -267,10 +267,10 @@ int vtkAvianLidarCoverage::RequestUpdateExtent(
     info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
     if (info->Has(Pipeline::WHOLE_EXTENT()))
     {
-      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6); // to be cut
+      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
     }
   }
-  // All beams for each place.
+  // Each place may need any beam.
   vtkAvianLidarRanks::RequestAll(inputVector[0]);
   vtkInformation* places = inputVector[2]->GetInformationObject(0);
   if (!places)
@@ -326,9 +326,9 @@ int vtkAvianLidarCoverage::RequestData(
       const bool differ = vtkTargets::ScansDiffer(beams) && this->NumberOfScans > 1;
       if (differ && !this->Targets->Warned && ranks.Piece() == 0)
       {
-        vtkWarningMacro("Input port 0 (beams): rotating prisms give each scan other beams, and "
-                        "track_probability takes all NumberOfScans for the one that is here. "
-                        "detection_probability is right.");
+        vtkWarningMacro("Input port 0 (beams): rotating prisms give each scan other beams. "
+                        "track_probability assumes that all NumberOfScans have the beams of this "
+                        "scan. detection_probability is right.");
       }
       this->Targets->Warned = differ;
     });
@@ -348,7 +348,7 @@ void vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
       this->Targets->Rules = { this->RequiredDetections, this->NumberOfScans,
         this->StrikeHeightWeights, this->HeightLimits };
       this->CheckTarget();
-      in.Beams.total = in.Beams.beams.size(); // all of them, on every rank
+      in.Beams.total = in.Beams.beams.size(); // every rank has all beams
       this->Targets->Wanted = this->Targets->Birds.Choose(
         this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
     });
@@ -401,7 +401,7 @@ void vtkAvianLidarCoverage::PreparePlaces(
     {
       vtkAvianLidarPlaces& where = this->Targets->Places;
       where = {};
-      // Before they are walked. As many as before have their memory.
+      // Checked before the places are read. As many places as before already have memory.
       const auto require = [this](double count)
       {
         if (count != static_cast<double>(this->Targets->Survey.size()))

@@ -4,33 +4,34 @@
  * @brief Maps where a lidar would detect a bird and where it would not, with the reasons, from
  * beams and surfaces.
  *
- * For each place the filter finds the beams that contain it, surfaces in front of it, clutter in
- * the same range units, and the probability of detection in closed form, averaged over the bird's
- * poses. No bird is traced. Lines of sight are kept: for another bird, air or receiver the filter
- * only evaluates these lines again, and the result has the bits of a new run. Method and limits:
- * Documentation/guide/coverage.md. We found no measured detection ranges of birds for this kind of
- * lidar.
+ * For each place the filter finds the beams that contain the place, the surfaces in front of the
+ * place, the clutter in the same range units, and the probability of detection in closed form,
+ * averaged over the bird's poses. No bird is traced. Lines of sight are kept: for another bird, air
+ * or receiver the filter only evaluates these lines again, with the bits of a new run. Method and
+ * limits: Documentation/guide/coverage.md. We found no measured detection ranges of birds for this
+ * kind of lidar.
  *
- * - Input ports 0, beams of one sensor, and 1, surfaces: as for vtkAvianLidarEchoFilter. The filter
- *   requests all beams, whatever the piece.
+ * - Input port 0, beams of one sensor: as for vtkAvianLidarEchoFilter. The filter requests all
+ *   beams for any piece.
+ * - Input port 1, surfaces: as for vtkAvianLidarEchoFilter.
  * - Input port 2, places (optional): any vtkDataSet, whose points are evaluated instead of the
  *   image given by Bounds and Spacing. The point array `region_id` (int) and the field data
- *   `region_names` divide the table.
+ *   `region_names` give the regions of the table.
  * - Output port 0: vtkImageData, or the places with their data. Point arrays (float):
  *   `detection_probability`, `track_probability`, `photoelectrons`, `minimum_effective_area`
  *   (infinite where nothing is detected), `beams_per_scan` (int), `status` (unsigned char, a
  *   StatusType) and, with PoseProbabilities on, `pose_probabilities` (16 headings for each of 5
- *   wing phases; 80 headings for gliding birds; 1 value without a species). Field data: as of the
- *   echo filter, and the settings of this filter and `status_names`.
+ *   wing phases; 80 headings for gliding birds; 1 value without a species). Field data: the field
+ *   data of the echo filter, the settings of this filter, and `status_names`.
  * - Output port 1: vtkTable, a row per region, species and height band, then rows for all bands and
  *   all regions. Columns: means, their standard errors, and a share for each status, such as
- *   `share_outside_the_gate`. With several ranks rank 0 has the table.
+ *   `share_outside_the_gate`. With several ranks, rank 0 has the table.
  * - Output port 2, clutter: vtkPolyData, a vertex per range unit with an echo of a surface, with
  *   the arrays of echoes and `detection_probability`. Piece 0 has the clutter.
  *
- * A bad input or setting gives an error that names port and array or the property, and empty
- * outputs; an aborted run leaves empty outputs. Points have the same bits for any number of threads
- * and pieces; sums over ranks may differ in the last digits.
+ * A bad input or setting gives empty outputs and an error that names the property, or port and
+ * array. An aborted run leaves empty outputs. Points have the same bits for any number of threads
+ * and pieces. Sums over ranks may differ in the last digits.
  *
  * @code
  * coverage->SetInputConnection(sensor->GetOutputPort());
@@ -74,7 +75,8 @@ public:
     STATUS_SEEN = 7
   };
 
-  /// Limits of the image in x, y, z, m. Default: (-1000, 1000, -1000, 1000, 0, 150).
+  /// Limits of the image in x, y and z, m, at most 1e30 in magnitude. Default: (-1000, 1000, -1000,
+  /// 1000, 0, 150).
   vtkAvianLidarVectorMacro(Bounds, 6, -1000.0, 1000.0, -1000.0, 1000.0, 0.0, 150.0);
 
   /// Distances between the image's points in x, y and z, m, above 0. Default: (20, 20, 15).
@@ -84,20 +86,21 @@ public:
   /// gull.
   vtkAvianLidarPropertyMacro(Species, std::string, "herring gull");
 
-  /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: none.
+  /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
   /// Whether the bird glides instead of flapping. Default: off.
   vtkAvianLidarSwitchMacro(Gliding, false);
 
   /// Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird
-  /// is scaled. 0: the area of the species. 0.018 is the standard avian optical target. Default: 0.
+  /// is scaled. The standard avian optical target has 0.018 m2. Default: 0, area of the species.
   vtkAvianLidarPropertyMacro(EffectiveArea, double, 0.0);
 
   /// Reflectance of the plumage, 1, above 0 to 1. Default: 0.3 (assumed; 0.15 dark, 0.6 white).
   vtkAvianLidarPropertyMacro(Reflectance, double, 0.3);
 
-  /// Whether a scan finds clutter; without this scan, the filter is much faster. Default: on.
+  /// Whether the filter scans the surfaces to find clutter. Without this scan, the filter is much
+  /// faster. Default: on.
   vtkAvianLidarSwitchMacro(Clutter, true);
 
   /// Number of detections for a track in NumberOfScans scans, 1 to NumberOfScans. Default: 2.
@@ -107,8 +110,8 @@ public:
   vtkAvianLidarPropertyMacro(NumberOfScans, int, 3);
 
   ///@{
-  /// Limits of the height bands, m (z), rising; each limit belongs to the band above. Default: 0,
-  /// 15, 30, 60, 150.
+  /// Limits of the height bands in z, m, rising. Each limit belongs to the band above the limit.
+  /// Default: 0, 15, 30, 60, 150.
   void AddHeightLimit(double height);
   void RemoveAllHeightLimits();
   int GetNumberOfHeightLimits() const;
@@ -118,9 +121,9 @@ public:
   /// Whether the table weights places by StrikeHeightDensity() at their z. Default: off.
   vtkAvianLidarSwitchMacro(StrikeHeightWeights, false);
 
-  /// Density of bird strikes by height above ground, 1/m: 74 % below 152.4 m, uniform there
-  /// (assumed); above, the density falls by 32 % per 304.8 m (Dolbeer 2006). 0 below ground. @param
-  /// height height, m
+  /// Density of bird strikes by height above ground, 1/m. Below 152.4 m the density is uniform
+  /// (assumed) and contains 74 % of the strikes. Above 152.4 m the density decreases by 32 % per
+  /// 304.8 m (Dolbeer 2006). Below ground the density is 0. @param height height above ground, m
   static double StrikeHeightDensity(double height);
 
   /// Whether the table also has rows for all other species. Default: off.
@@ -161,7 +164,7 @@ private:
 
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
 
-  // Passes of an execution, as in the superclass.
+  // Passes of an execution, which all ranks make together.
   void PrepareTargets(const vtkAvianLidarRanks& ranks);
   void PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
   void View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter);

@@ -24,8 +24,8 @@ vtkStandardNewMacro(vtkAvianLidarEchoFilter);
 struct vtkAvianLidarEchoFilter::vtkMoved
 {
   vtkAvianLidarMovers Movers;
-  double TouchedBeams = 0.0; ///< by movers, of all ranks
-  std::string Coincident;    ///< a warning on what the beams of this rank see
+  double TouchedBeams = 0.0; ///< number of beams touched by movers, on all ranks
+  std::string Coincident;    ///< warning on coincident surfaces seen by beams of this rank
   vtkAvianLidarWarnings Warnings;
 };
 
@@ -158,7 +158,7 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   in.TracedBeams = static_cast<double>(result.beamsTraced);
   this->Moved->TouchedBeams = static_cast<double>(result.beamsTouched);
   this->Moved->Coincident = result.echoes.empty()
-    ? std::string() // it changes nothing
+    ? std::string() // without echoes, coincident surfaces have no effect
     : in.Surfaces->WarningOnCoincidence(result.coincident);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, in.Setup.noise, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);

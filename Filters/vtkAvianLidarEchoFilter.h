@@ -4,8 +4,8 @@
  * @brief Simulates the echoes that a lidar receives from surfaces, as points with energies.
  *
  * The filter implements "Research on Ground Object Echo Simulation of Avian Lidar", Photonics 2024,
- * 11(2), 153 (Algorithm 2, Eq. 1-18); Documentation/evidence/paper.md lists where the code differs
- * and why.
+ * 11(2), 153 (Algorithm 2, Eq. 1-18). Documentation/evidence/paper.md lists the differences from
+ * the paper and the reasons.
  *
  * Passes: read beams and sensor; merge the surfaces; take the tree that came with the surfaces, or
  * build a tree; find what each beam sees; compute energies; sum energies in range units; form
@@ -15,9 +15,9 @@
  *
  * - Input port 0, beams: vtkPolyData, one point per beam at the sensor, with the point array
  *   `direction` and the field data of a vtkAvianLidarBeamSource.
- * - Input port 1, surfaces: vtkPolyData or a composite of vtkPolyData, best the output of a
+ * - Input port 1, surfaces: vtkPolyData or a composite of vtkPolyData, preferably the output of a
  *   vtkAvianLidarCollisionTree. Media (vtkAvianLidarMedium) among the surfaces weaken light and
- *   send it back.
+ *   send light back.
  * - Input port 2, movers (optional): vtkPolyData or a composite, with poses as field data, as from
  *   vtkAvianLidarTracks. Each beam meets movers at their places at the beam's `timestamp`.
  * - Output port 0, echoes: one vertex per return, with `energy`, `distance_m`, `object_id` and
@@ -33,8 +33,8 @@
  * Controller and ErrorsAsData; `avian_lidar_version`, `scene_checksum`, and bounds of everything
  * that the model left out.
  *
- * A bad input gives an error that names port and array, and empty outputs. Without beams or
- * surfaces the echoes are empty. An aborted run leaves empty outputs and keeps no results.
+ * A bad input gives empty outputs and an error that names port and array. Without beams or surfaces
+ * the echoes are empty. An aborted run leaves empty outputs and keeps no results.
  *
  * On one kind of CPU, the echoes have the same bits for any number of threads, any order and pieces
  * of the beams, any order and division of the surfaces, any tree, and any earlier runs. Costs
@@ -81,12 +81,12 @@ public:
     RETURN_MODE_RANGE_UNITS = 4
   };
 
-  /// Whether to compute photon noise (Eq. 11), where noise can matter. Default: on.
+  /// Whether to compute photon noise (Eq. 11) where the noise can change an echo. Default: on.
   vtkAvianLidarSwitchMacro(Noise, true);
 
   ///@{
-  /// Returns that become points. RETURN_MODE_RANGE_UNITS makes a point of each range unit, as the
-  /// paper does. Default: RETURN_MODE_ALL.
+  /// Returns that become points. RETURN_MODE_RANGE_UNITS makes a point of each range unit above the
+  /// limit, as the paper does. Default: RETURN_MODE_ALL.
   vtkAvianLidarPropertyMacro(ReturnMode, int, RETURN_MODE_ALL);
   void SetReturnModeToAll() { this->SetReturnMode(RETURN_MODE_ALL); }
   void SetReturnModeToStrongest() { this->SetReturnMode(RETURN_MODE_STRONGEST); }
@@ -95,7 +95,8 @@ public:
   void SetReturnModeToRangeUnits() { this->SetReturnMode(RETURN_MODE_RANGE_UNITS); }
   ///@}
 
-  /// Whether to report movers (1 ms of one core per mover); does not affect echoes. Default: on.
+  /// Whether to report movers, which takes 1 ms of one core per mover and does not change echoes.
+  /// Default: on.
   vtkAvianLidarSwitchMacro(ReportMovers, true);
 
   ///@{
@@ -115,7 +116,7 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  // A pass of an execution, as in the superclass, and the field data of the outputs.
+  // A pass of an execution, which all ranks make together.
   void PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 

@@ -28,7 +28,7 @@ using avianlidar::Frame;
 using avianlidar::GeodeticFrame;
 
 //------------------------------------------------------------------------------
-// The conversion of one input, block by block.
+// Conversion of one input, block by block.
 class vtkAvianLidarGeodeticTransform::vtkWork
 {
 public:
@@ -82,12 +82,12 @@ public:
     if (this->Self->MovePoints && size > 0)
     {
       output->SetPoints(moved);
-      // A system that a reader left does not hold for them any more.
+      // The coordinate system given by a reader does not apply to the moved points.
       output->GetFieldData()->RemoveArray(Arrays::CrsWkt.name);
     }
   }
 
-  // The same for every block of a composite.
+  // Converts every block of a composite.
   void RunTree(vtkDataObjectTree* input, vtkDataObjectTree* output)
   {
     output->ShallowCopy(input);
@@ -113,7 +113,7 @@ public:
 private:
   bool Uses(Frame frame) const { return this->Source == frame || this->Target == frame; }
 
-  // Sets origin and zone from the field data or the properties; leaves what was used in `output`.
+  // Sets origin and zone from the field data or the properties, and writes both to `output`.
   void PrepareFrame(vtkFieldData* fields, vtkFieldData* output)
   {
     const bool automatic = this->Uses(Frame::UTM) && this->Self->UTMZone == 0;
@@ -160,7 +160,7 @@ private:
     vtkAvianLidarRequire(bad.empty() ? bad : bad + this->Block, where + ": ");
   }
 
-  // Converts point `i` of the block that `where` names.
+  // Converts point `i`. Errors name the block of the point by `where`.
   std::array<double, 3> Convert(
     const std::array<double, 3>& point, Frame to, vtkIdType i, const std::string& where)
   {
@@ -194,7 +194,7 @@ private:
   Frame Source;
   Frame Target;
   GeodeticFrame Geodesy;
-  std::string Block; // for errors of the origin
+  std::string Block; // text that names the block in errors of the origin
   vtkIdType TotalPoints = 0;
   vtkIdType DonePoints = 0;
 };
@@ -205,7 +205,7 @@ vtkStandardNewMacro(vtkAvianLidarGeodeticTransform);
 int vtkAvianLidarGeodeticTransform::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
-  // Composites are taken whole: the origin may be field data of the whole.
+  // A composite is one input, because the origin may be field data of the composite.
   info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   return 1;
 }

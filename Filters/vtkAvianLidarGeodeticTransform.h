@@ -6,8 +6,8 @@
  * - Input port 0: any vtkPointSet, or a composite of vtkPointSet, with coordinates in SourceFrame.
  * - Output port 0: shallow copies of the input with the point arrays `longitude` (in [-180, 180]; 0
  *   at a pole), `latitude` and `height` (above the WGS84 ellipsoid), and, if MovePoints is on, with
- *   the points in TargetFrame. Vectors are not turned. Field data: `geodetic_origin` and `utm_zone`
- *   if they were used; `crs_wkt` is removed if points move.
+ *   the points in TargetFrame. Vectors are not turned. Field data: `geodetic_origin` and
+ *   `utm_zone`, if used. The field data `crs_wkt` are removed if points move.
  *
  * All frames are on WGS84: ENU (metres on the tangent plane of the origin), geodetic (longitude and
  * latitude in degrees, height in metres), ECEF (geocentric metres), UTM (easting, northing, height
@@ -17,10 +17,10 @@
  * within 5000 km of the surface, plus the rounding of the numbers. UTM is valid up to 3900 km from
  * the central meridian. Measured errors: Documentation/reference/scene-files.md.
  *
- * The filter reports an error that names the fault, and gives an empty output, if the origin is
- * missing, an angle or the zone is bad, a coordinate is not finite or lies outside the range of
- * UTM, or a block is not a vtkPointSet. The output is also empty after an abort and without points.
- * The result does not depend on the pieces into which the input is divided.
+ * A missing origin, a bad angle or zone, a coordinate that is not finite or lies outside the range
+ * of UTM, or a block that is not a vtkPointSet gives an empty output and an error that names the
+ * fault. The output is also empty after an abort and without points. The result does not depend on
+ * the pieces into which the input is divided.
  *
  * Example: `toUtm->SetTargetFrameToUTM(); toUtm->MovePointsOn();`
  *
@@ -66,17 +66,18 @@ public:
   void SetTargetFrameToUTM() { this->SetTargetFrame(FRAME_UTM); }
   ///@}
 
-  /// Whether points are moved to TargetFrame; otherwise only arrays are added. Default: off.
+  /// Whether points are moved to TargetFrame. Otherwise only arrays are added. Default: off.
   vtkAvianLidarSwitchMacro(MovePoints, false);
 
-  /// Whether the origin is the field data `geodetic_origin` of block or input. Default: on.
+  /// Whether the origin is the field data `geodetic_origin` of the block, or else of the input.
+  /// Default: on.
   vtkAvianLidarSwitchMacro(UseFieldDataOrigin, true);
 
   /// Origin for ENU and automatic UTM, if UseFieldDataOrigin is off: latitude in [-90, 90],
   /// longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Origin, 3, 0.0, 0.0, 0.0);
 
-  /// Zone of UTM: 1 to 60 north, -1 to -60 south, 0 the zone of the origin. Default 0.
+  /// UTM zone: 1 to 60 in the north, -1 to -60 in the south. Default 0: the zone of the origin.
   vtkAvianLidarPropertyMacro(UTMZone, int, 0);
 
   vtkAvianLidarErrorsAsDataMacro();

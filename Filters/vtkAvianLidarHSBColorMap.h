@@ -5,16 +5,16 @@
  *
  * The hue of an energy Q is 240 degrees (Qhigh - Q) / (Qhigh - Qlow), with saturation and
  * brightness 1 (Eq. 13 of "Research on Ground Object Echo Simulation of Avian Lidar", Photonics
- * 2024, 11(2), 153). Energies outside the limits have the colour of the nearer limit; with equal
+ * 2024, 11(2), 153). Energies outside the limits have the colour of the nearer limit. With equal
  * limits the hue is 0.
  *
- * - Input port 0: any vtkPointSet with a numeric point array of one component, J; by default
- *   `energy`; SetInputArrayToProcess() chooses another array.
+ * - Input port 0: any vtkPointSet with a numeric point array of one component, J, by default
+ *   `energy`. SetInputArrayToProcess() chooses another array.
  * - Output port 0: a shallow copy with the point arrays `hue` and `rgb`. NaN is black, with one
  *   warning.
  *
- * A missing array or limit, several components, and limits that are not finite or in the wrong
- * order give an error that names them, and an empty output. Without points, `hue` and `rgb` are
+ * A missing array or limit, several components, or limits that are not finite or in the wrong order
+ * give an empty output and an error that names the fault. Without points, `hue` and `rgb` are
  * empty.
  *
  * Example: `colors->SetInputConnection(echoes->GetOutputPort());` Documentation:
@@ -39,20 +39,22 @@ public:
   vtkTypeMacro(vtkAvianLidarHSBColorMap, vtkPointSetAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Whether field data `lower_energy_limit`, `upper_energy_limit` are the limits. Default: on.
+  /// Whether the field data `lower_energy_limit` and `upper_energy_limit` are the limits. Default:
+  /// on.
   vtkAvianLidarSwitchMacro(UseFieldDataRange, true);
 
-  /// Qlow and Qhigh if UseFieldDataRange is off, J. Default (2e-6, 6.25e-5), paper, Table 2.
+  /// Qlow and Qhigh if UseFieldDataRange is off, J. Default (2e-6, 6.25e-5), as in the paper's
+  /// Table 2.
   vtkAvianLidarVectorMacro(EnergyRange, 2, 2e-6, 6.25e-5);
 
-  /// Lookup table of these colours for a mapper or a scalar bar, between the limits of the last
-  /// execution or, before the first execution, of EnergyRange. This object owns the table, and the
-  /// next call changes it.
+  /// Lookup table of the colours for a mapper or a scalar bar, between the limits of the last
+  /// execution or, before the first execution, of EnergyRange. The filter owns the table. The next
+  /// call changes the table.
   vtkLookupTable* GetLookupTable();
 
-  /// Give `table` the colours and limits of GetLookupTable(). The number of colours (at least 2)
-  /// stays. The ends are exactly blue and red. Values below, values above and NaN are blue, red and
-  /// black.
+  /// Set the colours and limits of `table` as in GetLookupTable(). The number of colours (at least
+  /// 2) is kept. The ends are exactly blue and red. Values below the limits are blue, values above
+  /// the limits are red, and NaN is black.
   void FillLookupTable(vtkLookupTable* table);
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -67,7 +69,7 @@ private:
   vtkAvianLidarHSBColorMap(const vtkAvianLidarHSBColorMap&) = delete;
   void operator=(const vtkAvianLidarHSBColorMap&) = delete;
 
-  // Finds the limits in use. Throws std::runtime_error if they are bad.
+  // Finds the limits in use. Throws std::runtime_error if the limits are bad.
   void FindLimits(vtkPointSet* input, double limits[2]);
 
   bool Executed = false;

@@ -39,7 +39,7 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 namespace Materials = vtkAvianLidarMaterials;
 
-// The entry of a choice; null for a custom material, which stands behind the paper's, and others.
+// Entry of a value of Material; null for MATERIAL_CUSTOM, which has no entry, and unknown values.
 const Materials::NamedMaterial* Named(int material)
 {
   const int index = material > vtkAvianLidarMaterial::MATERIAL_CUSTOM ? material - 1 : material;
@@ -48,16 +48,16 @@ const Materials::NamedMaterial* Named(int material)
   return is ? &Materials::NamedMaterials[index] : nullptr;
 }
 
-// What is to be written.
+// Values to write to a leaf.
 struct Assignment
 {
-  std::optional<avianlidar::Material> Coefficients; // none: materials stay as they are
+  std::optional<avianlidar::Material> Coefficients; // without value: materials are kept
   std::string MaterialName;
   int ObjectId = -1;
   std::string ObjectName;
 };
 
-// A leaf of the input with the name of its block and whether the pattern fits it.
+// A leaf of the input, the name of its block, and whether the pattern chooses the leaf.
 struct Leaf
 {
   vtkDataObject* Data;
@@ -73,7 +73,7 @@ std::string NameOf(vtkInformation* metaData)
   return name ? name : "";
 }
 
-// The leaves below `node` in the order in which the composite's iterator visits them.
+// Finds the leaves below `node`, in the order of the composite's iterator.
 void FindLeaves(vtkDataObject* node, const std::string& name, const std::string& pattern,
   bool chosen, std::vector<Leaf>& leaves)
 {
@@ -101,7 +101,7 @@ void FindLeaves(vtkDataObject* node, const std::string& name, const std::string&
   }
   else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(node))
   {
-    // Partitions are pieces of one thing: without a name of their own they bear its name.
+    // Partitions are pieces of one data set. A partition without a name has the name of the set.
     for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i)
     {
       visit(parts->GetPartitionAsDataObject(i),
@@ -126,8 +126,8 @@ std::vector<std::string> StringsOf(vtkFieldData* fields, const Arrays::Name& nam
   return strings;
 }
 
-// The materials known to `fields` (else those of the whole, else the standard ones) with `name`
-// among them.
+// Names of materials in `fields`, else in `whole`, else the standard names. `name` is added if the
+// list does not contain it.
 std::vector<std::string> MaterialNames(
   vtkFieldData* fields, vtkFieldData* whole, const std::string& name)
 {
@@ -162,7 +162,7 @@ void AssignMaterial(const Assignment& what, vtkFieldData* whole, vtkPolyData* ou
     [&](vtkIdType) -> const avianlidar::Material& { return *what.Coefficients; });
 }
 
-// The id of the first cell, or -1.
+// Object id of the first cell, or -1.
 int FirstObjectId(vtkPolyData* data)
 {
   vtkDataArray* ids = data->GetCellData()->GetArray(Arrays::ObjectId.name);
@@ -170,7 +170,7 @@ int FirstObjectId(vtkPolyData* data)
   return Arrays::IsInt(id) ? static_cast<int>(id) : -1;
 }
 
-// `output` is a shallow copy of a leaf; `number` counts leaves.
+// Sets the object of `output`, a shallow copy of the leaf with the given number.
 void AssignObject(
   const Assignment& what, int number, const std::string& blockName, vtkPolyData* output)
 {
@@ -199,7 +199,7 @@ void AssignObject(
   }
 }
 
-// Cells must be countable: VTK counts -1 where offsets are missing.
+// Requires offsets of cells. Without offsets, VTK counts -1 cells.
 void RequireCells(vtkPolyData* surface)
 {
   for (vtkCellArray* cells :
@@ -209,7 +209,7 @@ void RequireCells(vtkPolyData* surface)
   }
 }
 
-// The kernel says "kd + ks is 1.2" or "roughness is 2"; the properties are Kd, Ks, Roughness.
+// Changes the names in errors of the kernel, such as "kd + ks is 1.2", to Kd, Ks and Roughness.
 std::string NameCoefficients(std::string problem)
 {
   for (std::size_t i = 0; i < problem.size(); ++i)
@@ -222,14 +222,14 @@ std::string NameCoefficients(std::string problem)
   return problem;
 }
 
-// The names that are there must be texts.
+// Requires that names in the field data are texts.
 void RequireNames(vtkDataObject* data)
 {
   Arrays::RequireText(data->GetFieldData(), Arrays::MaterialNames);
   Arrays::RequireText(data->GetFieldData(), Arrays::ObjectNames);
 }
 
-// All chosen leaves must be good vtkPolyData.
+// Requires that all chosen leaves are valid vtkPolyData.
 void RequireLeaves(const std::vector<Leaf>& leaves)
 {
   for (std::size_t i = 0; i < leaves.size(); ++i)
@@ -332,7 +332,7 @@ bool vtkAvianLidarMaterial::GetMaterialColor(int material, double color[3])
 int vtkAvianLidarMaterial::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  // Composites are taken whole: the pattern has to see their blocks.
+  // A composite is one input, because the pattern needs the names of the blocks.
   info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   return 1;
 }

@@ -4,19 +4,19 @@
  * @brief Gives surfaces a material, which says how they reflect the light of the lidar.
  *
  * - Input port 0: vtkPolyData, or a composite whose leaves are vtkPolyData.
- * - Output port 0: shallow copies of the input with the cell arrays `object_id`, `material_id`
- *   (index into `material_names`) and one for each coefficient; all of them are always present.
- *   Field data of each leaf: `material_names` (the input's names, or else the four of the
- *   paper; this material's name follows them), `object_names` (one value) and `object_classes`,
- *   where the input has them; if a leaf that becomes one object has several classes, they become
- *   one class, which is empty if they differ. A composite also has `material_names`.
+ * - Output port 0: shallow copies of the input. Leaves that match BlockNamePattern have the cell
+ *   array `object_id` and, unless Material is unchanged, `material_id` (index into
+ *   `material_names`) and an array for each coefficient. The field data of these leaves are
+ *   `material_names` (the names of the input, or else the four names of the paper, and the name of
+ *   the material), `object_names` (one value) and `object_classes`, if the input has classes. A
+ *   leaf that becomes one object has one class, which is empty if the classes of the leaf differ. A
+ *   composite also has `material_names`.
  *
- * Only blocks that match BlockNamePattern get the material, so a chain of these filters can give
- * each part of a scene its material. Coefficients are defined as in "Research on Ground Object Echo
- * Simulation of Avian Lidar", Photonics 2024, 11(2), 153 (Eq. 6, 7, Table 1);
- * Documentation/method/reflectance.md.
+ * A chain of these filters, with different patterns, can set the material of each part of a scene.
+ * Coefficients are defined as in "Research on Ground Object Echo Simulation of Avian Lidar",
+ * Photonics 2024, 11(2), 153 (Eq. 6, 7, Table 1). Documentation: method/reflectance.md.
  *
- * Coefficients out of range, kd + ks above 1, an unknown material or a chosen leaf that is not
+ * Coefficients out of range, kd + ks above 1, an unknown material or a matching leaf that is not
  * vtkPolyData gives an error and an empty output. A pattern that matches no block gives a warning.
  *
  * Example: `glass->SetMaterialToGlass(); glass->SetBlockNamePattern("window*");`
@@ -54,9 +54,9 @@ public:
   };
 
   ///@{
-  /// The material: one from the paper's Table 1 (wall, glass, metal, wood); one that only scatters,
-  /// at 905 nm (concrete, asphalt, grass of the USGS Spectral Library 7; plumage, assumed); custom,
-  /// by Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
+  /// Material of the surfaces: wall, glass, metal or wood (paper, Table 1); concrete, asphalt or
+  /// grass (USGS Spectral Library 7, 905 nm) or plumage (assumed), which only scatter; custom, by
+  /// Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
   vtkAvianLidarPropertyMacro(Material, int, MATERIAL_WALL);
   void SetMaterialToWall() { this->SetMaterial(MATERIAL_WALL); }
   void SetMaterialToGlass() { this->SetMaterial(MATERIAL_GLASS); }
@@ -79,7 +79,7 @@ public:
   static bool GetMaterialColor(int material, double color[3]);
   ///@}
 
-  /// Name of the cell array of a coefficient, counted from 0; null beyond the last one.
+  /// Name of the cell array of a coefficient, counted from 0; null beyond the last coefficient.
   static const char* GetCoefficientName(int coefficient);
 
   /// Diffuse coefficient of a custom material, 1, 0 to 1 - Ks. Default 0.146.
@@ -94,16 +94,17 @@ public:
   /// Standard deviation of facet slopes of a custom material, rad, 0 to pi/2. Default 0.
   vtkAvianLidarPropertyMacro(Roughness, double, 0.0);
 
-  /// Object id of the surfaces, at least 0; or -1, the default: leaves keep their ids, and a leaf
-  /// without ids gets its number in leaf order. Ids that are not unique in a scene are replaced
-  /// when surfaces are merged.
+  /// Object id of the surfaces, at least -1. With -1, the default, leaves keep their ids. The id of
+  /// a leaf without ids is then its number in leaf order. Ids that are not unique in a scene are
+  /// replaced when surfaces are merged.
   vtkAvianLidarPropertyMacro(ObjectId, int, -1);
 
-  /// Name of each leaf, which becomes an object; empty: name of leaf or block. Default: empty.
+  /// Name of the object that each leaf becomes. Default: empty, the name of the leaf or the block.
   vtkAvianLidarPropertyMacro(NameOfObject, std::string, {});
 
-  /// Pattern for the names of blocks that get the material with all blocks inside, with `*` (any
-  /// text) and `?` (any character). Default `*`: all blocks, as with an empty pattern.
+  /// Pattern of names, with `*` (any text) and `?` (any character). The material is set in blocks
+  /// whose names match and in all blocks inside these blocks. Default `*`: all blocks, as with an
+  /// empty pattern.
   vtkAvianLidarPropertyMacro(BlockNamePattern, std::string, "*");
 
   vtkAvianLidarErrorsAsDataMacro();

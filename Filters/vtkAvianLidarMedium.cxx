@@ -53,7 +53,7 @@ int vtkAvianLidarMedium::FillInputPortInformation(int port, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
-/// What the properties say, of which only those of the kind and the shape.
+/// Description as JSON, with the values that belong to the kind and the shape.
 std::string vtkAvianLidarMedium::Description() const
 {
   const Word& kind = Chosen("Kind", this->Kind, vtkAvianLidarMedia::Kinds());

@@ -14,8 +14,8 @@
  * LeafAreaDensity or, with BackscatterRatio, Extinction. Documentation/guide/weather.md and
  * Filters/Media/media.json say which quantity belongs to a kind, with sources and assumptions.
  *
- * A bad value or an open surface gives an error that names the key of the description, and an empty
- * output. Setters accept any value. Each rank requests the whole surface.
+ * A bad value or an open surface gives an empty output and an error that names the key of the
+ * description. Setters accept any value. Each rank requests the whole surface.
  *
  * The output is combined with the scene, in ParaView by Group Datasets:
  *
@@ -75,7 +75,7 @@ public:
   void SetKindToCustom() { this->SetKind(KIND_CUSTOM); }
   ///@}
 
-  /// Visibility, m, 0.001 to 1e9. Default 300.
+  /// Visibility in the medium, m, 0.001 to 1e9. Default 300.
   vtkAvianLidarPropertyMacro(Visibility, double, 300.0);
 
   /// Rain rate, mm/h, 1e-6 to 500. Default 10.
@@ -90,8 +90,9 @@ public:
   /// Ratio S of extinction to backscatter of KIND_CUSTOM, sr, 0.001 to 1e9. Default 18.8.
   vtkAvianLidarPropertyMacro(BackscatterRatio, double, 18.8);
 
-  /// Share of drops or leaves that change from scan to scan, 1, 0 to 1; -1, the default: by the
-  /// kind (1 for drops and flakes, 0.3 for leaves, assumed). Not used for haze and fog.
+  /// Share of drops or leaves that change from scan to scan, 1, 0 to 1, or -1. With -1, the
+  /// default, the kind sets the share (1 for drops and flakes, 0.3 for leaves, assumed). Not used
+  /// for haze and fog.
   vtkAvianLidarPropertyMacro(RenewedShare, double, -1.0);
 
   ///@{
@@ -117,19 +118,21 @@ public:
   /// Centre of a box or an ellipsoid, m. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Center, 3, 0.0, 0.0, 0.0);
 
-  /// Full side lengths of a box or axes of an ellipsoid, m, 2e-6 to 2e7. Default (100, 100, 20).
+  /// Lengths of the sides of a box or of the full axes of an ellipsoid, m, 2e-6 to 2e7. Default
+  /// (100, 100, 20).
   vtkAvianLidarVectorMacro(Lengths, 3, 100.0, 100.0, 20.0);
 
-  /// Direction of the second of the Lengths, deg from north, clockwise. Default 0.
+  /// Direction of the second length, deg from north, clockwise. Default 0.
   vtkAvianLidarPropertyMacro(Heading, double, 0.0);
 
-  /// Velocity, m/s; the medium is in its given place at time 0 of the beams. Default (0, 0, 0).
+  /// Velocity, m/s. The medium is in its given place at time 0 of the beams. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Velocity, 3, 0.0, 0.0, 0.0);
 
-  /// Name of the medium and of an object of foliage; empty: block's name. Default "medium".
+  /// Name of the medium and, for foliage, of the object; empty: name of the block. Default
+  /// "medium".
   vtkAvianLidarPropertyMacro(Name, std::string, "medium");
 
-  /// Side of the displayed part of a layer or of SHAPE_EVERYWHERE, m, above 0. Default 2000.
+  /// Side of the displayed part of a layer or of SHAPE_EVERYWHERE, m, above 0 to 1e9. Default 2000.
   vtkAvianLidarPropertyMacro(DisplaySize, double, 2000.0);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -39,8 +39,8 @@ protected:                                        \
                                                   \
 public:
 
-/// Declares the name of a file as a std::string, empty by default; vtkSetFilePathMacro() only takes
-/// a char*.
+/// Declares the name of a file as a std::string, empty by default. VTK's vtkSetFilePathMacro() only
+/// takes a char*.
 #define vtkAvianLidarFilePathMacro(name)                           \
   virtual void Set##name(VTK_FILEPATH const std::string& fileName) \
   {                                                                \
@@ -60,8 +60,9 @@ protected:                                                         \
                                                                    \
 public:
 
-/// Declares Controller, of a filter whose ranks work together, and ModifyRequest(), which updates
-/// the inputs of all ranks. vtkAvianLidarCxxControllerMacro() defines both.
+/// Declares the Controller of a filter whose ranks work together, and ModifyRequest(), which
+/// updates the inputs of all ranks. vtkAvianLidarCxxControllerMacro() defines SetController() and
+/// ModifyRequest().
 #define vtkAvianLidarControllerMacro()                           \
   void SetController(vtkMultiProcessController* controller);     \
   vtkGetObjectMacro(Controller, vtkMultiProcessController);      \

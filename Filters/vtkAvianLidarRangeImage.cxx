@@ -37,10 +37,10 @@ namespace ImageBeams = vtkAvianLidarImageBeams;
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// Its beam and its echo, and the arrays.
+/// Memory of a cell of the image, bytes: beam, echo and arrays.
 constexpr double BytesPerCell = 40.0;
 
-// The strongest echo of each beam, -1 where there is none.
+// Index of the strongest echo of each beam, -1 without an echo.
 std::vector<vtkIdType> StrongestEchoes(vtkPolyData* echoes, const ImageBeams::Beams& beams)
 {
   std::vector<vtkIdType> strongest(beams.IndexOfId.size(), -1);
@@ -84,8 +84,8 @@ std::vector<vtkIdType> StrongestEchoes(vtkPolyData* echoes, const ImageBeams::Be
   return strongest;
 }
 
-// The beam that each cell shows: of those with an echo the one with the strongest, else the first;
-// -1 where there is no beam.
+// Index of the beam that each cell shows: the beam with the strongest echo, else the first beam.
+// The index is -1 without a beam.
 std::vector<vtkIdType> BeamsOfCells(
   vtkPolyData* echoes, const avianlidar::ScanGrid& grid, const std::vector<vtkIdType>& strongest)
 {
@@ -107,7 +107,7 @@ std::vector<vtkIdType> BeamsOfCells(
   return beams;
 }
 
-// The same of an image of a size that was given, for which there are no beams.
+// Indices for an image of given size without beams: -1 in every cell.
 std::vector<vtkIdType> NoBeams(vtkIdType cells)
 {
   const double count = static_cast<double>(cells);
@@ -115,7 +115,7 @@ std::vector<vtkIdType> NoBeams(vtkIdType cells)
   return std::vector<vtkIdType>(static_cast<std::size_t>(cells), -1);
 }
 
-// Extent, origin and spacing of the image; an axis that is not equally spaced counts from 0.
+// Sets extent, origin and spacing of the image. An axis with unequal spacing counts from 0.
 void SetGeometry(
   const avianlidar::ScanGrid& grid, int extent[6], double origin[3], double spacing[3])
 {
@@ -136,7 +136,7 @@ void SetGeometry(
   spacing[2] = 1.0;
 }
 
-// Leave of the whole image what is asked for.
+// Reduces the whole image to the requested extent.
 void CutOut(vtkInformation* info, vtkImageData* output)
 {
   int asked[6];
@@ -190,7 +190,7 @@ int vtkAvianLidarRangeImage::RequestInformation(
     {
       vtkInformation* beamsInfo = inputVector[1]->GetInformationObject(0);
       vtkInformation* info = outputVector->GetInformationObject(0);
-      // VTK's imaging filters read origin and spacing here whether they are set or not.
+      // VTK's imaging filters read origin and spacing here, even if not set.
       int extent[6] = { 0, this->Columns - 1, 0, this->Rows - 1, 0, 0 };
       double origin[3] = { 0.0, 0.0, 0.0 };
       double spacing[3] = { 1.0, 1.0, 1.0 };
@@ -287,7 +287,7 @@ void vtkAvianLidarRangeImage::MakeImage(
   {
     vtkAvianLidarRequire("the beams of input port 1 form " + SizeOf(extent[1] + 1, extent[3] + 1) +
       ", but the size announced is " + SizeOf(announced[1] + 1, announced[3] + 1) +
-      ": set Columns and Rows to those of the beams");
+      ": set Columns and Rows to the numbers of the beams' grid");
   }
   vtkNew<vtkImageData> image;
   image->SetExtent(extent);
@@ -312,7 +312,7 @@ void vtkAvianLidarRangeImage::MakeImage(
   {
     if (vtkDataArray* limit = input->GetFieldData()->GetArray(name.name))
     {
-      image->GetFieldData()->AddArray(limit); // for colours that mean energies
+      image->GetFieldData()->AddArray(limit); // for colours of energies
     }
   }
   vtkImageData* output = vtkImageData::GetData(info);

@@ -4,11 +4,11 @@
  * @brief Makes an image of a scan, azimuth by elevation, from the strongest return of each beam.
  *
  * - Input port 0, echoes: vtkPolyData with `beam_id`, `distance_m`, `energy`, `energy_received` and
- *   `object_id`; may be empty.
+ *   `object_id`, or without points.
  * - Input port 1, beams: vtkPolyData, output 0 of the beam source or output 1 of the echo filter
  *   (the beam report). Required arrays are `azimuth` and `vertical_angle`, or `direction`.
  *   `beam_id` and, for a tilted sensor, `laser_id` are optional.
- * - Output port 0: vtkImageData, a point per column and row (upwards), with `distance_m` and
+ * - Output port 0: vtkImageData, a point per column and row (rows upwards), with `distance_m` and
  *   `energy` (NaN without an echo) and `object_id` (int, -1 without an echo). A beam report adds
  *   `status`, `skipped`, `candidates`, `nodes_visited`, `rays_traced` (-1 without a beam) and
  *   `skipped_bound` (NaN without a beam). Field data: `column_azimuths`, `row_elevations`, and the
@@ -19,14 +19,13 @@
  * given beams. Rows of a tilted sensor are channels. For grids, spacing and maps see
  * Documentation/guide/clouds.md.
  *
- * Before execution, the beam source or Columns and Rows give the size of the image (Columns and
- * Rows with origin 0 and spacing 1). MPI ranks share echoes and beams; each rank makes one
- * sub-extent.
+ * Before execution, the size of the image comes from the beam source, or from Columns and Rows with
+ * origin 0 and spacing 1. MPI ranks share echoes and beams. Each rank makes one sub-extent.
  *
  * An error names array and port and leaves an empty image. Errors are missing or bad arrays, an
  * echo without its beam, a `beam_id` that two beams have, beams that do not form a grid, and a grid
- * of another size than the announced one. Without beams the image has the announced size and no
- * echoes.
+ * whose size differs from the size before execution. Without beams the image has the size given
+ * before execution and no echoes.
  *
  * @code
  * image->SetInputConnection(0, echoes->GetOutputPort(0));
@@ -52,18 +51,19 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Number of columns, for beams that are not from a beam source. Default 0: automatic.
+  /// Number of columns, 0 or more, for beams that are not from a beam source. Default 0: automatic.
   vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
   vtkGetMacro(Columns, int);
   ///@}
 
   ///@{
-  /// Number of rows, for beams that are not from a beam source. Default 0: automatic.
+  /// Number of rows, 0 or more, for beams that are not from a beam source. Default 0: automatic.
   vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
   vtkGetMacro(Rows, int);
   ///@}
 
-  /// Processes that may work together; null: only this one. Default: the global controller.
+  /// Controller of the processes that may work together; null: this process works alone. Default:
+  /// the global controller.
   vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();

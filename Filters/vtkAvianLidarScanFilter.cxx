@@ -27,11 +27,11 @@
 namespace
 {
 
-constexpr char NoAperture[] = "air that scatters (AirBackscatter, RainRate) needs beams of a "
-                              "sensor with a receiver_aperture above 0, expected such a one";
+constexpr char NoAperture[] = "air scatters (AirBackscatter, RainRate), expected beams of a "
+                              "sensor with a receiver_aperture above 0";
 
-/// All that decides a bit of the results. @param air the attenuation coefficient, of no account
-/// where the visibility says it
+/// Settings that decide the bits of the results. @param air attenuation coefficient, 1/m, not used
+/// if `visibility` is above 0
 vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int preset,
   double visibility, double air, bool backscatter, double rain)
 {
@@ -96,7 +96,7 @@ void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controlle
 {
   if (controller != this->Controller)
   {
-    // Both are known by the address of the controller, which another one may get.
+    // State and ranks belong to the old controller, whose address a new controller may have.
     this->Internals->State.clear();
     this->Internals->Beams.ForgetRanks();
   }
@@ -106,15 +106,15 @@ void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controlle
 //------------------------------------------------------------------------------
 int vtkAvianLidarScanFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
-  // Else VTK would refuse, for each output and request anew, without a word on what to connect.
+  // The inputs are optional, because VTK's own error would not say what to connect.
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   if (port == 0)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
     return 1;
   }
-  // Both are declared: otherwise the pipeline would run the filter once per block, and blocks would
-  // not hide each other.
+  // Both types are declared. Otherwise the pipeline would run the filter once per block, and blocks
+  // would not hide each other.
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
@@ -142,7 +142,7 @@ std::string vtkAvianLidarScanFilter::MissingInput()
 vtkTypeBool vtkAvianLidarScanFilter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  // RequestData says what is missing; all else has nothing to ask for.
+  // RequestData reports a missing input. Other requests are then skipped.
   const bool ready =
     request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || this->MissingInput().empty();
   return ready ? this->Superclass::ProcessRequest(request, inputVector, outputVector) : 1;
@@ -171,9 +171,9 @@ int vtkAvianLidarScanFilter::RequestUpdateExtent(
   vtkAvianLidarRevolutions::AskForStart(inputVector);
   if (!vtkAvianLidarRanks(this->Controller, request, outputVector).Alone())
   {
-    return 1; // each rank its piece of all; surfaces are exchanged
+    return 1; // each rank requests its piece of all inputs and exchanges surfaces
   }
-  // A piece of the beams, but all of the others: anything may hide anything.
+  // Whole inputs, except for the beams, because any surface may hide another surface.
   for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
   {
     vtkAvianLidarRanks::RequestAll(inputVector[port]);
@@ -235,7 +235,7 @@ void vtkAvianLidarScanFilter::PrepareSettings()
   const std::string units = avianlidar::checkUnits(sensor, s);
   const std::string preset = this->Preset == PRESET_CUSTOM
     ? std::string()
-    : " (Preset " + std::to_string(this->Preset) + " says RaysPerBeam)";
+    : " (Preset " + std::to_string(this->Preset) + " sets RaysPerBeam)";
   vtkAvianLidarRequire(
     units.empty() ? units : units + preset, "Input port 0 (beams), field data: ");
 }
@@ -337,7 +337,7 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
         in.Exchange.Fields = input->GetFieldData();
         in.Surfaces = merged;
       }
-      this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // the tree has warned
+      this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
     });
   in.State = std::move(state);
   in.MergedBy = ranks.Group();
@@ -393,9 +393,9 @@ void vtkAvianLidarScanFilter::FindTree(vtkDataObject* input)
   in.Setup.tree = found.tree;
   if (found.stale && in.StaleFor != checksum)
   {
-    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces is of another "
-                    "geometry, so one is built here. Put the Collision Tree filter after whatever "
-                    "changes the geometry.");
+    vtkWarningMacro("Input port 1: the collision tree that came with the surfaces belongs to "
+                    "another geometry, so a new tree is built. Put the Collision Tree filter after "
+                    "the filters that change the geometry.");
     in.StaleFor = checksum;
   }
   if (!in.Setup.tree && in.OwnTree && in.OwnTree->checksum == checksum)

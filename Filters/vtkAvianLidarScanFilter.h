@@ -4,9 +4,9 @@
  * @brief Base of filters that trace the beams of a scan to surfaces. The class has the two inputs,
  * the settings of rays and energies, and the results that are kept from one execution to the next.
  *
- * Input port 0 takes the beams, input port 1 the surfaces or their collision tree, as
- * vtkAvianLidarEchoFilter describes them. Paper: "Research on Ground Object Echo Simulation of
- * Avian Lidar", Photonics 2024, 11(2), 153.
+ * Input port 0 takes the beams. Input port 1 takes the surfaces or their collision tree.
+ * vtkAvianLidarEchoFilter describes the inputs. Paper: "Research on Ground Object Echo Simulation
+ * of Avian Lidar", Photonics 2024, 11(2), 153.
  *
  * @sa vtkAvianLidarEchoFilter, vtkAvianLidarCoverage
  */
@@ -74,7 +74,7 @@ public:
 
   ///@{
   /// Preset of the fidelity. At execution all presets but PRESET_CUSTOM override RaysPerBeam,
-  /// NumberOfConnections, Sampling and NumberOfReflections; the field data hold the values used.
+  /// NumberOfConnections, Sampling and NumberOfReflections. The field data hold the values used.
   /// PRESET_PAPER and PRESET_PREVIEW also override BeamSamples. In brackets are the rms error of
   /// energy and the processor time of 15,360 beams, first at the shipped airport, then at Hongqiao
   /// with structures:
@@ -86,8 +86,8 @@ public:
   /// - PRESET_PAPER: the method of the paper. Only 100 independent rays, 2 connections, 2
   ///   reflections (16 %, 0.11 s; 16 %, 0.16 s). The preset also overrides BatchCollisionDetection
   ///   (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
-  ///   ReflectanceModel (the paper's) and ReturnMode (a point for each range unit). The paper's
-  ///   tree: vtkAvianLidarCollisionTree::PRESET_PAPER.
+  ///   ReflectanceModel (model of the paper) and ReturnMode (a point for each range unit). Tree of
+  ///   the paper: vtkAvianLidarCollisionTree::PRESET_PAPER.
   ///
   /// Errors and times: Documentation/evidence/accuracy.md. Default: PRESET_CUSTOM.
   vtkAvianLidarPropertyMacro(Preset, int, PRESET_CUSTOM);
@@ -127,24 +127,25 @@ public:
   /// Seed of all random numbers, any int. Default: 0.
   vtkAvianLidarPropertyMacro(Seed, int, 0);
 
-  /// Attenuation of the air (Eq. 9), 1/m, 0 to 1e30, unless Visibility is set. Default: 3.5e-5.
+  /// Attenuation of the air (Eq. 9), 1/m, 0 to 1e30. Not used if Visibility is above 0. Default:
+  /// 3.5e-5.
   vtkAvianLidarPropertyMacro(AttenuationCoefficient, double, 3.5e-5);
 
   /// Visibility, m, 0 to 1e9, which sets the attenuation by the law of Kruse and Kim
-  /// (Documentation/method/reflectance.md). 0: AttenuationCoefficient is used. Default: 0 in the
-  /// echo filter, 23000 (clear) in vtkAvianLidarCoverage.
+  /// (Documentation/method/reflectance.md). With 0, AttenuationCoefficient is used. Default: 0 in
+  /// the echo filter, 23000 (clear) in vtkAvianLidarCoverage.
   vtkAvianLidarPropertyMacro(Visibility, double, 0.0);
 
   /// Whether the air of Visibility sends light back to a sensor with an aperture. Default: off.
   vtkAvianLidarSwitchMacro(AirBackscatter, false);
 
-  /// Rain rate, mm/h, 0 to 500. Rain weakens light and sends it back. Default: 0.
+  /// Rain rate, mm/h, 0 to 500. Rain weakens light and sends light back. Default: 0.
   vtkAvianLidarPropertyMacro(RainRate, double, 0.0);
 
   ///@{
   /// Reflectance model (Documentation/method/reflectance.md): the model of the paper (Eq. 5-8), the
-  /// models that Fig. 10 compares with the paper's, or the model of Oren and Nayar for rough
-  /// surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
+  /// models that Fig. 10 of the paper compares with this model, or the model of Oren and Nayar for
+  /// rough surfaces. Default: REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG.
   vtkAvianLidarPropertyMacro(ReflectanceModel, int, REFLECTANCE_MODEL_LAMBERT_BLINN_PHONG);
   void SetReflectanceModelToLambertBlinnPhong()
   {
@@ -161,7 +162,8 @@ public:
   /// Number of reflections, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2.
   vtkAvianLidarPropertyMacro(NumberOfReflections, int, 2);
 
-  /// Whether only the beam's cone is searched for second reflections; same echoes. Default: on.
+  /// Whether second reflections are searched only in the beam's cone, which does not change the
+  /// echoes. Default: on.
   vtkAvianLidarSwitchMacro(BeamConstraint, true);
 
   /// Whether paths below LightEnergyThreshold are dropped (paper, Sec. 3.4). Default: on.
@@ -186,7 +188,7 @@ public:
   ///@}
 
   ///@{
-  /// Rays that descend the tree together; the echoes are the same:
+  /// Rays that descend the tree together, without effect on the echoes:
   ///
   /// - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
   /// - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then packets of rays; the fastest
@@ -210,13 +212,15 @@ public:
   }
   ///@}
 
-  /// Whether parts of the model that `skipped` would name are computed; slower. Default: off.
+  /// Whether the parts of the model that `skipped` would name are computed, which takes longer.
+  /// Default: off.
   vtkAvianLidarSwitchMacro(FullModel, false);
 
   /// Number M of connections of each connecting ray, at least 0. Default: 2, as accurate as 8.
   vtkAvianLidarPropertyMacro(NumberOfConnections, int, 2);
 
-  /// Number of threads (no effect on echoes). 0, the default: this rank's share of the cores.
+  /// Number of threads, at least 0, without effect on the echoes. Default: 0, which means this
+  /// rank's share of the cores.
   vtkAvianLidarPropertyMacro(NumberOfThreads, int, 0);
 
   /// Largest memory for results kept between executions, MiB, at least 0. Default: 1024.
@@ -240,10 +244,12 @@ public:
   /// that fits.
   int GetNumberOfTreeBuilds() const;
 
-  /// Bytes of surfaces that this rank has sent to other ranks so far, for tests and measurements.
+  /// Size of the surfaces that this rank has sent to other ranks so far, bytes, for tests and
+  /// measurements.
   double GetNumberOfBytesSent() const;
 
-  /// Processes that may work together; null: only this one. Default: the global controller.
+  /// Controller of the processes that may work together; null: this process works alone. Default:
+  /// the global controller.
   vtkAvianLidarControllerMacro();
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -258,11 +264,12 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  // Adds the media of the surfaces to the scan, and all air to the field data.
+  // Adds the media of the surfaces to the scan.
   void PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
-  // Passes of an execution, which all ranks make together; a failure on one rank throws on all.
+  // Passes of an execution, which all ranks make together. A failure on one rank throws on all
+  // ranks.
   void PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   void PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);

@@ -4,9 +4,10 @@
  * @brief Reads a sensor from a file (`.lidarsensor.json`): a beam source with the values of the
  * file.
  *
- * Outputs are those of vtkAvianLidarBeamSource. The file is read when FileName is set. Properties
- * that are not in the file get their defaults; only Position, Orientation, NumberOfRevolutions,
- * StepsPerRevolution and MotionSeed stay. Values set later count until the file is read again.
+ * The outputs are the outputs of vtkAvianLidarBeamSource. The file is read when FileName is set.
+ * Properties that are not in the file are set to their defaults. Only Position, Orientation,
+ * NumberOfRevolutions, StepsPerRevolution and MotionSeed are kept. Values set later are used until
+ * the file is read again.
  *
  * Errors name the file, the key and what was expected, and leave empty outputs.
  *
@@ -27,7 +28,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The file to read. Only Reload() notices changes on disk. Default: null.
+  /// Name of the file to read. After a change of the file, call Reload(). Default: null.
   void SetFileName(VTK_FILEPATH const char* fileName);
   vtkGetFilePathMacro(FileName);
   ///@}

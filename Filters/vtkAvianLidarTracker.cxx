@@ -54,13 +54,13 @@ bool IsNear(const double place[3])
   return std::all_of(place, place + 3, [](double x) { return std::fabs(x) <= LargestCoordinate; });
 }
 
-/// What a cloud says as a whole.
+/// Values that hold for a whole cloud.
 struct CloudFacts
 {
   vtkIdType Points = 0;
-  double Time = 0.0;                    // s
-  double Sensor[3] = { 0.0, 0.0, 0.0 }; // m
-  double HalfBeamwidth = 0.0;           // rad
+  double Time = 0.0;                    // time of the cloud, s
+  double Sensor[3] = { 0.0, 0.0, 0.0 }; // position of the sensor, m
+  double HalfBeamwidth = 0.0;           // half of the beam's divergence, rad
 };
 
 void ReadFacts(const vtkAvianLidarScanStream& stream, vtkPolyData* cloud, CloudFacts& facts)
@@ -76,7 +76,8 @@ void ReadFacts(const vtkAvianLidarScanStream& stream, vtkPolyData* cloud, CloudF
     "field data 'half_beamwidth'", facts.HalfBeamwidth, 0.0, 1.0, "0 to 1 rad"));
 }
 
-/// All ranks take what the first one with points says. @return the number of points of those before
+/// Sets `facts` on all ranks to the facts of the first rank with points. @return number of points
+/// of the ranks before this rank
 vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
 {
   vtkMultiProcessStream mine;
@@ -112,12 +113,12 @@ void CheckArrays(vtkPolyData* cloud)
   }
 }
 
-/// The points that are not clutter.
+/// Points that are not clutter.
 struct Targets
 {
   std::vector<avianlidar::CloudPoint> Points;
-  std::vector<vtkIdType> Indices; // in the cloud
-  bool AreTimed = false;          // else all times are 0
+  std::vector<vtkIdType> Indices; // indices of the points in the cloud
+  bool AreTimed = false;          // whether points have times; otherwise all times are 0
 };
 
 Targets ReadTargets(vtkPolyData* cloud, double rangeError)
@@ -152,7 +153,7 @@ Targets ReadTargets(vtkPolyData* cloud, double rangeError)
   return targets;
 }
 
-/// Those of one position first: cells of vertices come before those of lines.
+/// Adds tracks of one position first, because VTK puts vertices before lines.
 void AddCells(const std::vector<avianlidar::Track>& tracks, vtkPolyData* output)
 {
   const auto cells = static_cast<vtkIdType>(tracks.size());
@@ -175,7 +176,7 @@ void AddCells(const std::vector<avianlidar::Track>& tracks, vtkPolyData* output)
   auto confirmed = Arrays::Make<vtkUnsignedCharArray>(Arrays::Confirmed, cells);
   auto ended = Arrays::Make<vtkUnsignedCharArray>(Arrays::Ended, cells);
   auto hits = Arrays::Make<vtkIntArray>(Arrays::Hits, cells);
-  vtkNew<vtkTypeInt64Array> offsets; // of lines
+  vtkNew<vtkTypeInt64Array> offsets; // offsets of the lines
   Arrays::SetTuples(offsets.Get(), cells - vertices + 1);
   vtkNew<vtkTypeInt64Array> pointsOfLines;
   Arrays::SetTuples(pointsOfLines.Get(), points - vertices);
@@ -239,20 +240,20 @@ struct vtkAvianLidarTracker::vtkInternals
   };
   static const std::vector<Setting>& Settings();
 
-  // What is known after a cloud.
+  // State of the memory after a cloud.
   struct State
   {
     avianlidar::Tracker Tracker;
     vtkAvianLidarScanStream Stream;
-    double LastPoint = 0.0; // s, the latest of a point
+    double LastPoint = 0.0; // latest time of a point, s
     bool HasWarned = false;
   };
-  State Before; // the last cloud
-  State After;
-  CloudFacts Facts; // of the cloud at hand
+  State Before;     // state before the last cloud
+  State After;      // state after the last cloud
+  CloudFacts Facts; // facts of the present cloud
 
   static avianlidar::TrackerSettings SettingsOf(const vtkAvianLidarTracker& self);
-  // Track of each point of the cloud, or -1.
+  // Updates the tracks. @return track of each point of the cloud, or -1
   std::vector<int> Track(
     vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns);
 };
@@ -294,7 +295,7 @@ avianlidar::TrackerSettings vtkAvianLidarTracker::vtkInternals::SettingsOf(
   avianlidar::TrackerSettings s;
   s.targetExtent = self.TargetExtent;
   s.gate = avianlidar::normalDistanceSquare(self.GateProbability);
-  // The gate of a new track reaches as far as its largest speed takes it.
+  // The errors are chosen so that the gate of a new track covers the largest speed.
   s.motion.accelerationDensity = self.AccelerationDensity;
   s.motion.speedError = self.MaximumSpeed / std::sqrt(s.gate);
   s.motion.climbError = self.MaximumClimbRate / std::sqrt(s.gate);
@@ -325,7 +326,7 @@ std::vector<int> vtkAvianLidarTracker::vtkInternals::Track(
   const bool isEarlier = !isFirst && time < this->After.Stream.Time();
   State next = isEarlier ? State{} : isLater ? this->After : this->Before;
 
-  // Times of points, if they go on from the last cloud.
+  // The times of points are used if all times are later than the last cloud.
   const auto [least, most] = std::minmax_element(targets.Points.begin(), targets.Points.end(),
     [](const auto& a, const auto& b) { return a.time < b.time; });
   const bool hasTimes = targets.AreTimed && !targets.Points.empty();
@@ -364,13 +365,13 @@ std::vector<int> vtkAvianLidarTracker::vtkInternals::Track(
   if (isEarlier && warns)
   {
     vtkWarningWithObjectMacro(self,
-      << "Tracker: the cloud is of an earlier time than the last one: all tracks are forgotten.");
+      << "Tracker: the cloud has an earlier time than the cloud before: all tracks are removed.");
   }
   if (areOdd && warns)
   {
     vtkWarningWithObjectMacro(self,
-      << "Tracker: the 'timestamp' of points do not lie after those of the cloud before: the time "
-         "of the cloud is used. Whole scans are expected, whose timestamps go on.");
+      << "Tracker: not all values of 'timestamp' are later than the times of the cloud before: the "
+         "time of the cloud is used. Expected are whole scans with rising timestamps.");
   }
   return trackOfPoint;
 }
@@ -461,7 +462,7 @@ int vtkAvianLidarTracker::RequestData(
         settings.Add(setting.Property, setting.ValueOf(*this));
       }
       ranks.AgreeOn(this, settings);
-      const vtkIdType first = Share(ranks, facts); // of this rank's points
+      const vtkIdType first = Share(ranks, facts); // first point of this rank
       const vtkSmartPointer<vtkPolyData> cloud = vtkAvianLidarGather::Points(ranks, this, input);
       std::vector<int> trackOfPoint;
       ranks.Together(this,

@@ -40,7 +40,7 @@ using avianlidar::Flight;
 using avianlidar::Pose;
 using avianlidar::Vec3;
 
-/// Memory of a bird in the outputs, without its poses. Measured.
+/// Memory of a bird in the outputs, without its poses, bytes (measured).
 constexpr double BytesOfBird = 16000.0;
 
 using KnownSpecies = std::vector<avianlidar::BirdSpecies>;
@@ -50,7 +50,7 @@ Vec3 VectorOf(const double values[3])
   return { values[0], values[1], values[2] };
 }
 
-/// An array of one row for each wing.
+/// Array with one row for each wing.
 vtkSmartPointer<vtkDoubleArray> WingRows(
   const Arrays::Name& name, const std::vector<std::vector<double>>& rows)
 {
@@ -63,7 +63,7 @@ vtkSmartPointer<vtkDoubleArray> WingRows(
   return array;
 }
 
-/// The lines of a surface's user as tracks.
+/// Tracks given as lines of the input.
 class LineTracks
 {
 public:
@@ -95,7 +95,7 @@ public:
 
   bool HasSpecies() const { return this->CellSpecies || this->FieldSpecies; }
 
-  /// @param species of all, if lines have none of their own
+  /// @param species index of the species of all lines, if the input does not name species
   std::vector<Flight> Read(std::size_t species, int seed)
   {
     std::vector<Flight> flights;
@@ -132,8 +132,8 @@ private:
     auto* strings = vtkStringArray::SafeDownCast(array);
     if (array && (!strings || strings->GetNumberOfComponents() != 1))
     {
-      throw std::runtime_error(
-        "Input port 0: " + kind + " 'species' is not one text a line, expected names of species");
+      throw std::runtime_error("Input port 0: " + kind +
+        " 'species' does not have one text per line, expected names of species");
     }
     return strings;
   }
@@ -179,7 +179,7 @@ private:
       Fail(line,
         "has at point " + std::to_string(point) + " a 'time' that is " + std::to_string(pose.time) +
           " s, expected more than " + std::to_string(flight.poses.back().time) +
-          ", that of its point before");
+          ", the time of the point before");
     }
     flight.poses.push_back(pose);
   }
@@ -191,7 +191,7 @@ private:
   vtkStringArray* FieldSpecies;
 };
 
-/// Makes blocks; those of one species share what they have in common.
+/// Makes blocks. Blocks of one species share their common data.
 class Movers
 {
 public:
@@ -242,7 +242,7 @@ private:
       Arrays::SetFieldStrings(common->GetFieldData(), Arrays::Species, { species.name });
       if (flight.gliding)
       {
-        common->GetCellData()->RemoveArray(Arrays::Part.name); // nothing flaps
+        common->GetCellData()->RemoveArray(Arrays::Part.name); // gliding wings do not flap
       }
       else
       {
@@ -252,7 +252,7 @@ private:
     return common;
   }
 
-  /// Row 0 is the left wing, whose part is 1, row 1 the right one.
+  /// Adds the arrays of flapping wings. Row 0 is the left wing (part 1). Row 1 is the right wing.
   static void AddFlaps(vtkFieldData* fields, const avianlidar::BirdSpecies& species,
     const avianlidar::BirdShape& shape)
   {
@@ -270,7 +270,7 @@ private:
   std::map<std::pair<std::size_t, bool>, vtkSmartPointer<vtkPolyData>> Common;
 };
 
-/// The trails of all flights.
+/// Trails of all flights.
 class Trails
 {
 public:
@@ -328,7 +328,7 @@ private:
 };
 }
 
-/// The flights that an execution asks for.
+/// Flights of one execution.
 class vtkAvianLidarTracks::vtkFlights
 {
 public:
@@ -359,7 +359,7 @@ public:
   std::vector<Flight> Flights;
 
 private:
-  /// Index of the property's species.
+  /// Index of the species given by the property Species.
   std::size_t Own() const
   {
     const std::string usual = this->Self->Pattern == PATTERN_FLOCK ? "starling" : "herring gull";

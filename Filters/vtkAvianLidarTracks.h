@@ -14,13 +14,13 @@
  * - Output port 1, trails: vtkPolyData, a polyline for each bird, with the point array `time`, the
  *   cell arrays `object_id` and `species_id`, and the field data `species_names`.
  *
- * Outputs hold all poses, whatever time or piece is requested; time 0 is the start of the scan. The
- * same seed gives the same bits. Except in a flock, a bird does not depend on the number of birds.
+ * Outputs hold all poses for any requested time or piece. Time 0 is the start of the scan. The same
+ * seed gives the same bits. Except in a flock, a bird does not depend on the number of birds.
  * Patterns, file format and assumptions: Documentation/guide/birds.md.
  *
  * A bad file, times that do not rise, an unknown species or a number out of its range gives an
- * error and empty outputs. The error names the property, or file and line, or line of the input.
- * Without birds the outputs are empty.
+ * error and empty outputs. The error names the property, the file and its line, or the line of the
+ * input. Without birds the outputs are empty.
  *
  * @code
  * birds->SetPatternToCircles();
@@ -68,7 +68,7 @@ public:
   ///@}
 
   /// File of tracks for PATTERN_FILE (CSV), with the header "id,species,time,x,y,z" (s, m) or
-  /// "id,species,time,longitude,latitude,height" (s, deg, m above WGS84). Default: none.
+  /// "id,species,time,longitude,latitude,height" (s, deg, m above WGS84). Default: empty.
   vtkAvianLidarFilePathMacro(FileName);
 
   /// Origin of the scene for a file with longitude and latitude: latitude in [-90, 90] and
@@ -78,10 +78,10 @@ public:
   /// Name of a species. Default: empty (starling for flocks, herring gull otherwise).
   vtkAvianLidarPropertyMacro(Species, std::string, {});
 
-  /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: none.
+  /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
-  /// Number of birds, 0 to 100,000; not used by files and lines. Default 10.
+  /// Number of birds, 0 to 100,000. Not used with PATTERN_FILE and PATTERN_LINES. Default 10.
   vtkAvianLidarPropertyMacro(NumberOfBirds, int, 10);
 
   /// Seed of all random numbers, any int. Default 0.
@@ -96,10 +96,12 @@ public:
   /// Half of the horizontal width of the region, m, 0 to 1e9. Default 500.
   vtkAvianLidarPropertyMacro(Radius, double, 500.0);
 
-  /// Lowest and highest flight above Center, m, at most 1e9 in magnitude. Default (10, 150).
+  /// Least and greatest height of flights above Center, m, at most 1e9 in magnitude. Default (10,
+  /// 150).
   vtkAvianLidarVectorMacro(Heights, 2, 10.0, 150.0);
 
-  /// Runway's threshold, for PATTERN_APPROACH, m, at most 1e9 in magnitude. Default (0, 0, 0).
+  /// Position of the runway's threshold, for PATTERN_APPROACH, m, at most 1e9 in magnitude. Default
+  /// (0, 0, 0).
   vtkAvianLidarVectorMacro(ThresholdPosition, 3, 0.0, 0.0, 0.0);
 
   /// Direction of landing, deg from north, clockwise, at most 1e9 in magnitude. Default 0.
@@ -108,7 +110,8 @@ public:
   /// Reflectance of the plumage at the lidar's wavelength, 1, 0 to 1. Default 0.3 (assumed).
   vtkAvianLidarPropertyMacro(Reflectance, double, 0.3);
 
-  /// First of the birds' successive `object_id`, at least 0, unique in the scene. Default 10000.
+  /// `object_id` of the first bird, at least 0. The ids of the birds are successive and must be
+  /// unique in the scene. Default 10000.
   vtkAvianLidarPropertyMacro(FirstObjectId, int, 10000);
 
   vtkAvianLidarErrorsAsDataMacro();

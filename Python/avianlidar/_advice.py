@@ -152,7 +152,7 @@ def notes_of(fields: Mapping[str, Any]) -> List[str]:
         (", which sends light back" if fields.get("air_backscatter") else "") + \
         (f", rain of {float(fields['rain_rate']):g} mm/h" if fields.get("rain_rate") else "")
     return [f"modelled  {int(fields['rays_per_beam'])} rays per beam ({samples}); {air}",
-            f"          paths over two reflections: {note('two_reflections')}; {int(fields.get('number_of_connections', 0))} connections",
+            f"          paths with two reflections: {note('two_reflections')}; {int(fields.get('number_of_connections', 0))} connections",
             f"          noise: {note('noise')}",
             f"left out  {note('all_left_out')}; {note('further_reflections').replace('not modelled: ', '')}",
             f"perceived {note('perceivable_range')}",

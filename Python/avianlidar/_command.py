@@ -99,8 +99,9 @@ VERBS = {
   avianlidar reach --sensor OS1_64 --species "herring gull"
   avianlidar reach --sensor Search905 --sensor VLP16 --species crow --weather fog:1000
 """),
-    "sensors": ("sensors that are known by name", "Lists the sensors that are known by name. With a name, shows the sensor. With --fit, "
-                                                  "fits a receiver to the points of a data sheet.", """\
+    "sensors": ("sensors that are known by name",
+                "Lists the sensors that are known by name. With a name, shows the sensor. With --fit, fits a receiver to the points of a "
+                "data sheet.", """\
   avianlidar sensors
   avianlidar sensors VLP-16
   avianlidar sensors --fit my.lidarsensor.json -o fitted.lidarsensor.json
@@ -188,13 +189,13 @@ def parser() -> Parser:
         if name == "scan":
             _out(verb[name], f"file: {WRITTEN}; .png gives a picture of the range image; {MANY}", action="append")
             add("--quiet", action="store_true", help="omits the lines on what was modelled and what was left out")
-            add("--preset", choices=tuple(PRESETS), help="fidelity by name, with the error of energy and the seconds "
-                                                         "of one core for 15,360 beams at the "
-                f"airport without, then with masts and fences: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
-                "Paper also builds the collision tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)")
+            add("--preset", choices=tuple(PRESETS), help=(
+                "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams at the airport without, then "
+                f"with masts and fences: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
+                "Paper also builds the collision tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)"))
         else:
-            add("--energy", type=float, default=0.02, metavar="SHARE", help="largest allowed error of "
-                                                                            "energies, rms, relative; default 0.02")
+            add("--energy", type=float, default=0.02, metavar="SHARE",
+                help="largest allowed error of energies, rms, relative; default 0.02")
             add("--range", type=float, default=0.05, metavar="METRES", help="largest allowed error of ranges, rms, m; default 0.05")
             add("--missed", type=float, default=0.01, metavar="SHARE",
                 help="largest allowed share of echoes that are missed or invented, relative to the true echoes; default 0.01")
@@ -205,8 +206,8 @@ def parser() -> Parser:
         _weather(verb[name], threads=True)
 
     verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
-    verb["info"].add_argument("--quiet", action="store_true", help="omits, for a cloud, the lines on what "
-                                                                   "was modelled and what was left out")
+    verb["info"].add_argument("--quiet", action="store_true",
+                              help="omits, for a cloud, the lines on what was modelled and what was left out")
     verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["compare"].add_argument("b", type=pathlib.Path, help="a second cloud, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
@@ -216,8 +217,8 @@ def parser() -> Parser:
         add = verb[name].add_argument
         add("--sensor-address", metavar="ADDRESS",
             help="address of the sensor in packets (.pcap), as 192.168.1.201 or 192.168.1.201:2368; default: the only sensor")
-        add("--time", type=float, metavar="S", help="time of the revolution in packets, seconds since the full "
-                                                    "hour; default: the first revolution")
+        add("--time", type=float, metavar="S",
+            help="time of the revolution in packets, seconds since the full hour; default: the first revolution")
     verb["sensors"].add_argument("name", nargs="?", help="name of a sensor, or a .lidarsensor.json file")
     verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a data sheet, or a name of a "
                                  "sensor, whose receiver is fitted to all points of the data sheet; needs SciPy")
@@ -225,8 +226,8 @@ def parser() -> Parser:
 
     add = verb["airport"].add_argument
     add("extract", type=pathlib.Path, help="extract of a map: .osm, .osm.pbf, .geojson, .gpkg")
-    add("--heights", type=pathlib.Path, metavar="DEM", help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt "
-                                                            "or GDAL .vrt; default: level ground")
+    add("--heights", type=pathlib.Path, metavar="DEM",
+        help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level ground")
     add("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[],
         help="surveyed obstacles: AIXM 5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
     which = verb["airport"].add_mutually_exclusive_group()
@@ -251,8 +252,8 @@ def parser() -> Parser:
 
     add = verb["track"].add_argument
     add("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files")
-    add("--runways", type=pathlib.Path, help="a GeoJSON file with lines of kind runway, for warning times before "
-                                             "birds enter a strip or a glide path")
+    add("--runways", type=pathlib.Path,
+        help="a GeoJSON file with lines of kind runway, for warning times before birds enter a strip or a glide path")
     add("--sensor", action="append", default=[],
         help=f"sensor that replaces the sensor of scenarios, a name or a .lidarsensor.json file; {MANY}")
     add("--scans", type=int, help="number of scans that replaces the number in scenarios")

@@ -253,8 +253,8 @@ def _fit(options) -> None:
     description = sensor.description
     found = sensor.fit()
     points = description["sheet"]["points"]
-    table([("reflectance", "light (klx)", "probability", "range of the data sheet (m)", "fitted range "
-                                                                                        "(m)", "error", "error if left out", "source"),
+    table([("reflectance", "light (klx)", "probability", "range of the data sheet (m)", "fitted range (m)", "error", "error if left out",
+            "source"),
             *((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', _sheet.HALF):g}"
                + ("" if "probability" in point else ", assumed"), f"{point['range']:g}", f"{predicted:.1f}", f"{100 * off:+.1f} %",
                "-" if left != left else f"{100 * left:+.1f} %", point["source"])

@@ -310,7 +310,7 @@ std::uint64_t secondRays(ScanSetup setup, const ScanBeams& beams, const ScanResu
   return result.raysTraced - runScan(setup, beams, 2).raysTraced;
 }
 
-/// Energy of all echoes, J, and of it what came over two reflections.
+/// Energy of all echoes, J, and of it what came after two reflections.
 std::pair<double, double> energyOf(const ScanResult& result)
 {
   std::pair<double, double> sum{ 0.0, 0.0 };

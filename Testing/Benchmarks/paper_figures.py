@@ -221,7 +221,7 @@ def paper10(folder):
             if values:
                 superior.append([words, peer, f"peer / proposed, both models, with and without build: {span(values)}",
                                  verdict_of([r > NOTHING for r in values], "cases", FOOTPRINT)])
-    # The proposed method has no path over two reflections left; so have rays one by one in the ablation.
+    # The proposed method has no path with two reflections left; so have rays one by one in the ablation.
     ablation = switches(folder)
     if ablation:
         for words, scenes in (("in complex scenes it is faster", others),
@@ -242,7 +242,7 @@ BEAM_COSTS = ("where a cone meets hundreds of triangles the search among them ta
               "beams have second rays")
 NO_SECOND = "where no second ray is traced on there is none to leave out"
 FEW_LEFT = "with the paper's threshold few second rays are left that the beam constraint could spare"
-LIFTED = "paths over two reflections, too faint each, lift range units above the limit whose direct light is just below it"
+LIFTED = "paths with two reflections, too faint each, lift range units above the limit whose direct light is just below it"
 
 
 def switches(folder):
@@ -263,7 +263,7 @@ def paths(folder):
 
 
 def over_two(row):
-    """The share of the energy that came over two reflections."""
+    """The share of the energy that came after two reflections."""
     return row["second_energy_j"] / row["energy_j"]
 
 
@@ -328,8 +328,8 @@ def paper11(folder):
     left = [percent(max(map(over_two, one.values()))) for one in (first, kept)]
     units, energy = losses(folder)
     rows.append(["the three do not compromise the resolution of the cloud", "beam constraint and batch: not a bit of any echo; light-energy "
-                 f"constraint, where anything comes over two reflections: range units lost {span(100 * u for u in units)} %, energy "
-                 f"{span(100 * e for e in energy)} %; over two reflections come up to {left[0]} of the energy without it and {left[1]} with it",
+                 f"constraint, where anything comes after two reflections: range units lost {span(100 * u for u in units)} %, energy "
+                 f"{span(100 * e for e in energy)} %; after two reflections come up to {left[0]} of the energy without it and {left[1]} with it",
                  verdict_of([True, True, max(units, default=0.0) <= 0.0], "accelerations", LIFTED)])
     for name, because in zip(PAIRS, (FEW_LEFT, FOOTPRINT, FOOTPRINT)):
         parts = name.split(" + ")

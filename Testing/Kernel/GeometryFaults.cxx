@@ -196,7 +196,7 @@ std::string faultOfEchoes(const ScanResult& result, const ScanSetup& setup, doub
     {
       return "an echo of no number, or with more energy in a unit than in all";
     }
-    // A path over two reflections is three legs at most of the farthest, and the first and last.
+    // A path with two reflections is three legs at most of the farthest, and the first and last.
     if (echo.range < before || echo.range > 2.0 * farthest * (1.0 + 1e-9))
     {
       std::ostringstream text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grooves, and scans of them over two reflections.
+// Grooves, and scans of them after two reflections.
 #ifndef SecondaryTestScene_h
 #define SecondaryTestScene_h
 
@@ -33,7 +33,7 @@ inline Scene groove(double half, const Material& m, double gap = 0.0, double len
   return scene;
 }
 
-/// J that came over two reflections, of all echoes.
+/// J that came after two reflections, of all echoes.
 inline double secondaryOf(const ScanResult& result)
 {
   double sum = 0.0;

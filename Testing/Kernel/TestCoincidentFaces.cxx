@@ -80,7 +80,7 @@ TEST(CoincidentFaces, CornersInSinglePrecisionCoincide)
 
 TEST(CoincidentFaces, LightOfSecondReflectionsIsNotStoppedByTheHiddenFace)
 {
-  // A wall and the floor before it; what the floor adds over two reflections.
+  // A wall and the floor before it; what the floor adds after two reflections.
   Sensor sensor = openSensor();
   for (const double aperture : { 0.0, 0.00785 })
   {

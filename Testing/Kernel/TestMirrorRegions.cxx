@@ -14,7 +14,7 @@ using statistics::sumOf;
 
 namespace
 {
-/// J that came over two reflections, by beam.
+/// J that came after two reflections, by beam.
 std::vector<double> secondaryOfBeams(
   const Scene& scene, const ScanBeams& beams, const EchoSettings& settings, double width)
 {

@@ -139,7 +139,7 @@ TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
 #else
   constexpr int seeds = 1000;
 #endif
-  statistics::Moments energies[3][2]; // of all, and of what came over two reflections
+  statistics::Moments energies[3][2]; // of all, and of what came after two reflections
   for (int way = 0; way < 3; ++way)
   {
     SCOPED_TRACE(way);
@@ -260,7 +260,7 @@ TEST(PolygonPaths, NoUnitLosesMoreByPathsThanTheReportSays)
   int lit = 0;
   int left = 0;
   int withoutPaths = 0; // without some of them
-  int byPathsAlone = 0; // beams perceived by paths over two reflections alone
+  int byPathsAlone = 0; // beams perceived by paths with two reflections alone
   for (int k = 0; k < 60; ++k)
   {
     SCOPED_TRACE(k);

@@ -179,7 +179,7 @@ TEST(SecondaryConstraints, InThickAirWhatIsJustAboveTheLimitIsSeen)
 
 TEST(SecondaryConstraints, TheLimitItselfComparesEachConnection)
 {
-  // Without a lobe only connections carry anything over two reflections. As the limit rises past
+  // Without a lobe only connections carry anything after two reflections. As the limit rises past
   // one of them, what is received falls by that one.
   const Scene scene = groove(45.0 * Degree, { 0.4, 0.0, 1.0 });
   Sensor sensor = openSensor();

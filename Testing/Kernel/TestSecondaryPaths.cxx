@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Single paths over two reflections, for hits that are given and not drawn: lengths, energies, and
+// Single paths with two reflections, for hits that are given and not drawn: lengths, energies, and
 // each of the rules by which a path does not count.
 #include "GivenHits.h"
 

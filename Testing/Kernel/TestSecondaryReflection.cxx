@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paths over two reflections: the known ones, and the bound on what a ray returns.
+// Paths with two reflections: the known ones, and the bound on what a ray returns.
 #include "GivenHits.h"
 #include "SecondaryTestScene.h"
 
@@ -176,7 +176,7 @@ Sensor gatheringSensor()
 
 TEST(SecondaryReflection, ThroughAnApertureLightComesBackBothWays)
 {
-  // Energies over two reflections, J, by a ray tracer in NumPy that shares nothing with this one:
+  // Energies after two reflections, J, by a ray tracer in NumPy that shares nothing with this one:
   // 1.6 million rays in strata of the cone. Each is followed once into a direction drawn from the
   // whole lobe cos^kp, and once into one drawn from cos theta. What the lidar sees where that ends
   // returns the matt part and the lobe of f through the aperture. What goes wall, mirror, lidar is
@@ -250,7 +250,7 @@ TEST(SecondaryReflection, CornersOfMattWallsAreNotCut)
 
 TEST(SecondaryReflection, LightOfTheWayBackIsLabelledByTheMirror)
 {
-  // The mirror returns nothing by itself; half of the light over two reflections leaves it last.
+  // The mirror returns nothing by itself; half of the light after two reflections leaves it last.
   const Scene scene = corner({ 0.0, 0.85, 1e6 }, { 0.5, 0.0, 1.0 });
   EchoSettings settings = secondarySettings(100, 2);
   settings.beamSamples = BeamSampleSource::Cells;

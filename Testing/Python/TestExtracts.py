@@ -169,6 +169,26 @@ class Formats(unittest.TestCase):
         self.assertEqual(left(file), {("building", "no nodes"): 1, ("wood", "no nodes"): 1})
         ta.run("airport", file, "-o", ta.fresh("back"))
 
+    def test_rings_of_too_few_corners(self):
+        """Alone, as a hole, and beside a good part, in GeoJSON, where nothing closes or checks a ring."""
+        whole = ta.FOLDER / "rings.geojson"
+        gdal.VectorTranslate(str(whole), str(runway(ta.Map()).write("rings.osm")), layers=["lines"])
+        text = json.loads(whole.read_text(encoding="utf-8"))
+        expected = things(whole)
+        corner, other, good = [13.301, 53.603], [13.302, 53.603], [[13.301, 53.603], [13.302, 53.603], [13.302, 53.604], [13.301, 53.603]]
+        short = ([], [corner], [corner, corner], [corner, other], [corner, other, corner])
+        for properties in ({"building": "yes"}, {"natural": "wood"}, {"aeroway": "aerodrome"}, {"building": "yes", "start_date": "2999"}):
+            for ring in short:
+                shapes = [{"type": "Polygon", "coordinates": [ring]}]
+                if "building" in properties and ring:
+                    shapes += [{"type": "Polygon", "coordinates": [good, ring]}, {"type": "MultiPolygon", "coordinates": [[ring], [good]]}]
+                for number, shape in enumerate(shapes):
+                    file = ta.FOLDER / "short.geojson"
+                    features = [*text["features"], {"type": "Feature", "properties": properties, "geometry": shape}]
+                    file.write_text(json.dumps({**text, "features": features}), encoding="utf-8")
+                    got = things(file)
+                    self.assertEqual(len(got), len(expected) + (number > 0 and "start_date" not in properties), (properties, shape))
+
     def test_what_is_not_a_whole_extract(self):
         whole = fenced().write("whole.osm")
         for name, content, words in (

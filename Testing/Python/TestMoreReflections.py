@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the echo filter leaves out over three reflections and more: the tracer that measures it has the orders one and two of
+"""What the echo filter leaves out after three reflections and more: the tracer that measures it has the orders one and two of
 the filter. And what the paper's second reflection brings, read to the letter."""
 import math
 import unittest

@@ -60,7 +60,7 @@ def surfaces(case):
 
 
 def scan(case, sensor, rays=RAYS, integrate=False, **properties):
-    """Echoes of the beam as {name: array}. Integrated, only paths over two reflections may trace any ray."""
+    """Echoes of the beam as {name: array}. Integrated, only paths with two reflections may trace any ray."""
     lidar = given(vtkAvianLidarEchoFilter(), RaysPerBeam=rays, AttenuationCoefficient=case["attenuation_per_m"],
                   NumberOfReflections=case["reflections"], LightEnergyConstraint=False, BeamSamples=CELLS if integrate else RAYS_ALONE,
                   SurfacesData=surfaces(case), **properties)
@@ -108,7 +108,7 @@ def of_waveform(case, how="sampled", **more):
 
 
 def of_connections(case, how="sampled", seeds=20, rays=1000, **more):
-    """The mean over seeds of what came over two reflections. These paths are sampled in integrated beams, too: they start
+    """The mean over seeds of what came after two reflections. These paths are sampled in integrated beams, too: they start
     from rays that are located on the visible polygons."""
     found = []
     for seed in range(seeds):
@@ -150,7 +150,7 @@ GEOMETRY = {"sphere, underfills the beam": 5e-5, "ground, axis on the horizon": 
 
 
 def is_of_paths(row):
-    """Paths over two reflections are sampled, in integrated beams, too."""
+    """Paths with two reflections are sampled, in integrated beams, too."""
     return row["quantity"].startswith("secondary")
 
 

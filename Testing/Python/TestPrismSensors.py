@@ -104,7 +104,7 @@ class Use(unittest.TestCase):
         held = np.sum((squares <= 1) & (ahead > 0), axis=1)
         cover = al.Coverage(al.Scene(WALL), sensor, places=5.0 * lines)
         cover.set(clutter=False)
-        with self.assertWarnsRegex(RuntimeWarning, "track_probability takes all NumberOfScans for the one that is here"):
+        with self.assertWarnsRegex(RuntimeWarning, "track_probability assumes that all NumberOfScans have the beams of this scan"):
             cover["track_probability"]
         cover.set(number_of_scans=1, required_detections=1)
         np.testing.assert_array_equal(cover["track_probability"], cover["detection_probability"])

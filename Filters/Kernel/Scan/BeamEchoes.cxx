@@ -184,7 +184,7 @@ bool BeamEchoes::receiveAgain(
 
 /// Make echoes of the returns. @param echoOf gives the part of an echo that follows from light
 /// @param outsideGate see BeamLighting::isOutsideGate(). The value follows from direct echoes
-/// alone, as the cache may change which paths over two reflections are traced. @param meets true if
+/// alone, as the cache may change which paths with two reflections are traced. @param meets true if
 /// the beam meets a surface
 template <class F>
 void BeamEchoes::finish(

@@ -143,7 +143,7 @@ void BeamLighting::fillUnits()
   this->Units.accumulate();
 }
 
-/// Add paths over two reflections, unless no such path in the scan can matter. @param most bound of
+/// Add paths with two reflections, unless no such path in the scan can matter. @param most bound of
 /// their energy, J @return false if nothing of the beam can be perceived
 bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
@@ -173,7 +173,7 @@ void BeamLighting::startFrom(const BeamSamples& rays)
   }
 }
 
-/// Find the paths over two reflections. @return false if nothing of the beam can be perceived
+/// Find the paths with two reflections. @return false if nothing of the beam can be perceived
 bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 {
   const bool byRegions = this->Surfaces && MirrorRegions::takes(*this->Surfaces);
@@ -222,7 +222,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
 }
 
 /// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J
-/// @param ofPaths bound of the energy of all paths over two reflections, J @return false if bounds
+/// @param ofPaths bound of the energy of all paths with two reflections, J @return false if bounds
 /// show that nothing of the beam can be perceived. In that case energies may not be set.
 bool BeamLighting::mayBePerceived(double most, double ofPaths)
 {

@@ -103,7 +103,7 @@ double EnergyErrors::ofMirrors(const RangeShares& shares) const
   return std::sqrt(2.0 * std::max(0.0, variance));
 }
 
-/// Standard error of the energy that rays put into a unit, J: on paths over two reflections and, if
+/// Standard error of the energy that rays put into a unit, J: on paths with two reflections and, if
 /// the rays are the samples, as direct echoes. @param filled true if every ray put energy into the
 /// unit and one plane fills the beam, so that no ray puts less
 double EnergyErrors::ofRays(const RangeShares& shares, bool filled) const

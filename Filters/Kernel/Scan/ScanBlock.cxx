@@ -56,7 +56,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
   return this->Traced.size();
 }
 
-/// True if paths over two reflections may start from the untraced rays of a beam in cells.
+/// True if paths with two reflections may start from the untraced rays of a beam in cells.
 bool ScanBlock::needsPathStarts(const BeamTrace& trace) const
 {
   return trace.cells() && !trace.hits && this->Setup.settings.numberOfReflections > 1;

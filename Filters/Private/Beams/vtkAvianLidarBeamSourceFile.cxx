@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkAvianLidarBeamSource takes from sensor files and tables of beams, and what it says is
-// assumed.
+// Sets properties of vtkAvianLidarBeamSource from sensor files and tables of beams, and lists the
+// properties whose values are assumed.
 #include "vtkAvianLidarBeamSourceInternals.h"
 
 #include "AvailableMemory.h"
@@ -190,7 +190,7 @@ void vtkAvianLidarBeamSource::vtkInternals::ApplyPreset(const std::string& name,
   if (std::any_of(known.begin(), known.end(),
         [&](const vtkAvianLidarSensorFile& one) { return one.name == file.name; }))
   {
-    self.Assumed.clear(); // known by their values
+    self.Assumed.clear(); // AssumedOf() finds these values without a list
   }
 }
 
@@ -242,7 +242,7 @@ std::vector<std::string> vtkAvianLidarBeamSource::vtkInternals::AssumedOf(const 
   AssumedValues assumed = self.Assumed;
   if (assumed.empty())
   {
-    // Not of a file: of the built-in sensor that is most alike.
+    // Without a file, take the assumed values of the most similar built-in sensor.
     std::size_t most = 0;
     for (const vtkAvianLidarSensorFile& sensor : PhotonSensors())
     {

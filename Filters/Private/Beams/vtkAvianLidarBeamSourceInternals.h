@@ -28,7 +28,7 @@ struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
 {
 };
 
-// Properties of the source, for the kernel and the field data.
+// Access to the properties of the source, for the kernel and the field data.
 struct vtkAvianLidarBeamSource::vtkInternals
 {
   using Source = vtkAvianLidarBeamSource;
@@ -43,7 +43,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
     double Source::*onlyWith = nullptr;
   };
   static const std::vector<Scalar>& Scalars();
-  // True for properties without meaning for a table of beams or for prisms.
+  // True if a property has no meaning for the table of beams or for the prisms in use.
   static bool IsUnused(const Source& self, const vtkAvianLidarArrays::Name& name)
   {
     const std::string word = name.name;
@@ -56,7 +56,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
     return self.Table ? ofPattern : ofColumns && self.GetNumberOfPrisms() > 0;
   }
 
-  // Properties that are whole numbers, in sensor files.
+  // Properties that are whole numbers in sensor files.
   static const std::vector<std::pair<vtkAvianLidarArrays::Name, int Source::*>>& Integers()
   {
     static const std::vector<std::pair<vtkAvianLidarArrays::Name, int Source::*>> all = {
@@ -101,7 +101,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
   // Read the user's beams. Throws std::runtime_error.
   static void ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
 
-  // The sensor with the limits in use. Throws std::runtime_error if a value is bad.
+  // The sensor with the energy limits in use. Throws std::runtime_error if a value is bad.
   static avianlidar::Sensor SensorOf(const Source& self);
   static avianlidar::ScanPattern PatternOf(const Source& self);
   // Wavelength, nm, rounded to 1e-9 nm, so that it equals the value that the user gave.

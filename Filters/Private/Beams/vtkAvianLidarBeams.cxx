@@ -31,7 +31,7 @@ constexpr char BeamsPort[] = "Input port 0 (beams), ";
   throw std::runtime_error("beam " + std::to_string(beam) + ": " + what);
 }
 
-/// What is up for the sensor, if its beams are not round and say its orientation.
+/// Read the sensor's up direction from field data `orientation`, if the beams are not round.
 void ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
 {
   const char* const name = Arrays::Orientation.name;
@@ -52,7 +52,7 @@ void ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
   sensor.up = avianlidar::upOf(a.x, a.y, a.z);
 }
 
-/// One of two choices, which stays without the array. @param words meaning of 0 and of 1
+/// Read one of two choices. Without the array, `choice` is kept. @param words meaning of 0 and of 1
 template <class Choice>
 void ReadChoice(
   vtkFieldData* fields, const Arrays::Name& name, const std::string& words, Choice& choice)
@@ -108,7 +108,7 @@ avianlidar::Sensor ReadSensor(vtkFieldData* fields)
   return sensor;
 }
 
-/// The number of the revolution, 0 if the beams do not say it.
+/// Number of the revolution; 0 without field data `revolution`.
 std::int32_t ReadRevolution(vtkFieldData* fields)
 {
   double value = 0.0;
@@ -133,7 +133,8 @@ vtkDataArray* FindScalar(vtkPolyData* input, const Arrays::Name& name)
   return array;
 }
 
-/// The same; its values are finite or, with `whole`, whole numbers that fit an int.
+/// An optional point array of one component. Throws unless all values are finite or, if `whole`,
+/// whole numbers that an int holds.
 vtkDataArray* FindNumbers(vtkPolyData* input, const Arrays::Name& name, bool whole)
 {
   vtkDataArray* array = FindScalar(input, name);
@@ -150,7 +151,7 @@ vtkDataArray* FindNumbers(vtkPolyData* input, const Arrays::Name& name, bool who
   return array;
 }
 
-/// Unit vectors of an array of directions; none if the array is missing and not `needed`.
+/// Unit vectors of an array of directions; empty if the array is missing and not `needed`.
 std::vector<Vec3> ReadDirections(vtkPolyData* input, const Arrays::Name& name, bool needed)
 {
   const std::string array = std::string("point array '") + name.name + "'";
@@ -194,15 +195,15 @@ void ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
   }
 }
 
-/// Consecutive ids, `count` of them, from `first` on. The beams of a sensor are one run, and the
-/// columns of one rank are a few runs.
+/// A run of `count` consecutive ids, from `first` on. The ids of a sensor's beams are one run. The
+/// ids of the columns of one rank are a few runs.
 struct IdRun
 {
   std::uint64_t first;
   std::uint64_t count;
 };
 
-/// Ascending runs of ids that come in any order. An id that occurs twice begins a new run.
+/// Ascending runs of ids. The ids may have any order. An id that occurs twice begins a new run.
 std::vector<IdRun> RunsOf(std::vector<std::uint64_t> ids)
 {
   std::sort(ids.begin(), ids.end());
@@ -259,7 +260,7 @@ std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
   return avianlidar::hashOf(values.data(), values.size() * sizeof(double), 0);
 }
 
-/// Hash of all that is read for each beam.
+/// Hash of everything that is read for each beam.
 std::uint64_t HashOf(vtkPolyData* input)
 {
   vtkPoints* points = input->GetPoints();
@@ -268,7 +269,7 @@ std::uint64_t HashOf(vtkPolyData* input)
          Arrays::LaserId, Arrays::Azimuth, Arrays::VerticalAngle, Arrays::Timestamp })
   {
     vtkAbstractArray* any = input->GetPointData()->GetAbstractArray(array.name);
-    const std::int64_t type = any ? any->GetDataType() : -1; // text is another state than none
+    const std::int64_t type = any ? any->GetDataType() : -1; // an array of text changes the hash
     hash = vtkAvianLidarContent::HashOf(
       vtkDataArray::SafeDownCast(any), avianlidar::hashOf(&type, sizeof(type), hash));
   }
@@ -281,7 +282,7 @@ double vtkAvianLidarBeams::AzimuthOf(const Vec3& d)
 {
   const double degrees = std::atan2(d.x, d.y) * 180.0 / avianlidar::Pi;
   const double azimuth = 100.0 * (degrees < 0.0 ? degrees + 360.0 : degrees);
-  return azimuth < 36000.0 ? azimuth : 0.0; // a tiny negative angle rounds to a full circle
+  return azimuth < 36000.0 ? azimuth : 0.0; // a tiny negative angle is rounded to a full circle
 }
 
 //------------------------------------------------------------------------------
@@ -304,7 +305,7 @@ void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
   const bool untouched = !state.empty() && state == this->ReadFrom;
   const std::uint64_t content = untouched ? this->Content : HashOf(input);
   const bool known = !this->ReadFrom.empty() && content == this->Content;
-  this->ReadFrom.clear(); // where an error follows
+  this->ReadFrom.clear(); // empty after an error
   if (!known || isEmpty)
   {
     *this = vtkAvianLidarBeams{};
@@ -322,7 +323,7 @@ void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
     {
       throw;
     }
-    this->sensor = {}; // no beams on this piece: nothing to check, nothing to say
+    this->sensor = {}; // a piece without beams needs no sensor
   }
   if (!isEmpty)
   {

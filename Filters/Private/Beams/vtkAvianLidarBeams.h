@@ -38,8 +38,8 @@ struct vtkAvianLidarBeams
   /// Elevation of a direction, deg.
   static double ElevationOf(const avianlidar::Vec3& d);
 
-  /// Read `input`; earlier results are kept if points and arrays have the same values. Throws
-  /// std::runtime_error that names the input and the array.
+  /// Read `input`. Earlier results are kept if points and arrays have the same values. Throws
+  /// std::runtime_error, which names the input and the array.
   void Read(vtkPolyData* input);
 
   /// Check that the beams of all ranks belong to one sensor, and that no id occurs twice. All ranks
@@ -60,7 +60,7 @@ struct vtkAvianLidarBeams
                                             : this->reportedDirections[beam];
   }
 
-  std::uint64_t total = 0; ///< beams of all ranks, after CheckRanks()
+  std::uint64_t total = 0; ///< number of beams of all ranks, after CheckRanks()
 
 private:
   void ReadAll(vtkPolyData* input);

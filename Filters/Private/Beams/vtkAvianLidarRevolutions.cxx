@@ -15,8 +15,9 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// Rotation rate (Hz), steps of a revolution, and, to tell whether the times are still those it
-/// came with, the number of steps (0 for one alone) and the last one (s).
+/// Indices of the numbers under the key: rotation rate, Hz; steps of a revolution; number of
+/// published steps (0 for a single step); time of the last step, s. The number of steps and the
+/// last time show whether a filter has changed the steps.
 enum
 {
   Rate,
@@ -33,7 +34,7 @@ vtkAvianLidarPassedKey* Revolutions()
   return key;
 }
 
-/// When the revolution begins that a time falls into, s; the time itself if that is not known.
+/// Start of the revolution that contains `time`, s; `time` itself if the start is unknown.
 double StartOf(vtkInformation* beams, double time)
 {
   if (!Revolutions()->Has(beams) || !beams->Has(Pipeline::TIME_RANGE()))
@@ -63,8 +64,8 @@ void vtkAvianLidarRevolutions::Publish(const avianlidar::ScanClock& clock, vtkIn
 {
   const std::vector<double> times = avianlidar::timesOf(clock);
   const double range[2] = { times.front(), times.back() };
-  // A step alone is nothing to play: listed, it would join the steps of everything else in
-  // ParaView. The range is enough for VTK to execute anew for another time.
+  // A single step is not listed, because ParaView would add it to the steps of all other sources.
+  // With the range, VTK executes again for another time.
   const int count = times.size() > 1 ? static_cast<int>(times.size()) : 0;
   output->Remove(Pipeline::TIME_STEPS());
   if (count > 0)
@@ -91,7 +92,7 @@ void vtkAvianLidarRevolutions::ChooseSteps(
   if (beams->Has(Pipeline::TIME_STEPS()) ||
     (beams->Has(Pipeline::TIME_RANGE()) && !scene->Has(Pipeline::TIME_RANGE())))
   {
-    return; // what the pipeline has copied
+    return; // the pipeline has copied the steps of the beams
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {

@@ -21,12 +21,12 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 
-// Both outputs.
+// Memory of a beam in both outputs, bytes.
 constexpr double BytesPerBeam = 200.0;
-constexpr double BytesPerReport = 24.0; // of a direction that is reported
+constexpr double BytesPerReport = 24.0; // memory of a reported direction, bytes
 
-// The nominal directions become those that are reported, and `directions` those in which the beams
-// leave.
+// Returns the nominal directions, which the sensor reports. Changes `directions` to the actual
+// directions of the beams.
 vtkSmartPointer<vtkDoubleArray> Misdirect(const avianlidar::PointingErrors& errors,
   const avianlidar::ScanGenerator& generator, const std::vector<std::int64_t>& beams,
   int revolution, double start, vtkDoubleArray* directions)
@@ -65,12 +65,12 @@ void vtkAvianLidarScanArrays::FillBeams(const avianlidar::ScanPattern& pattern,
   auto azimuths = Arrays::Make<vtkDoubleArray>(Arrays::Azimuth, size);
   auto elevations = Arrays::Make<vtkDoubleArray>(Arrays::VerticalAngle, size);
   auto timestamps = Arrays::Make<vtkDoubleArray>(Arrays::Timestamp, size);
-  const double start = revolution / pattern.rotationRate; // s
+  const double start = revolution / pattern.rotationRate; // start of the revolution, s
   const avianlidar::ScanGenerator generator(pattern, revolution);
   for (vtkIdType i = 0; i < size; ++i)
   {
     const avianlidar::ScanBeam beam = generator.beam(beams[i]);
-    // 359.99999999999997 deg may round up to a full circle in hundredths.
+    // In hundredths of a degree, 359.99999999999997 deg may be rounded up to a full circle.
     const double azimuth = 100.0 * beam.azimuth;
     points->SetPoint(
       i, position[0] + beam.origin[0], position[1] + beam.origin[1], position[2] + beam.origin[2]);

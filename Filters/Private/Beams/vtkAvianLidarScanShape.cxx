@@ -10,7 +10,8 @@
 
 namespace
 {
-/// Angles in degrees; the elevations of all channels follow, then their azimuth offsets.
+/// Indices of the numbers under the key: six angles, deg, and the first elevation. The azimuth
+/// offsets of all channels follow the elevations of all channels.
 enum
 {
   Yaw,
@@ -22,7 +23,7 @@ enum
   Channels
 };
 
-/// Angles, channel and cell of a beam, and the copies of angles that are sorted.
+/// Memory of a beam's angles, channel and cell, and of sorted copies of the angles, bytes.
 constexpr double BytesPerPlacedBeam = 64.0;
 
 vtkAvianLidarPassedKey* Shape()

@@ -4,8 +4,8 @@
  * @brief Passes columns and channels of a whole scan through the pipeline, before any execution.
  * Not installed.
  *
- * The beam source publishes its pattern under a key, and filters in between pass the pattern on. So
- * a range image has its size before it has beams, and keeps this size during the steps of a
+ * The beam source publishes its pattern under a key. Filters downstream pass the pattern on. So the
+ * size of a range image is known before any execution, and is the same for all steps of a
  * revolution.
  */
 #ifndef vtkAvianLidarScanShape_h
@@ -27,7 +27,7 @@ void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 /// Remove the pattern from an output, in RequestInformation, if the input has no pattern.
 void Follow(vtkInformation* input, vtkInformation* output);
 
-/// All beams of the sensor, by beam_id; angles in degrees.
+/// Angles of all beams of the sensor, by beam_id, deg.
 struct WholeScan
 {
   avianlidar::ScanGrid Grid; ///< empty if the pipeline has no pattern

@@ -61,12 +61,12 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
   {
     for (const auto& [name, node] : root.Get("data_sheet").Members())
     {
-      EntryOf(name, node); // none of the beam source's
+      EntryOf(name, node); // not a property of the beam source
     }
   }
   if (root.Has("sheet"))
   {
-    root.Get("sheet").Members(); // read by who fits the receiver to it
+    root.Get("sheet").Members(); // used only by programs that fit the receiver
   }
   for (const auto& [name, node] : root.Get("values").Members())
   {

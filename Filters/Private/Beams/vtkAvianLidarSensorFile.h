@@ -5,9 +5,9 @@
  * Not installed.
  *
  * The keys of `values` are the beam source's properties in snake case, as in its field data.
- * `source` says where a number comes from; it begins with "assumed" if nobody has measured the
- * number. Filters/Sensors/lidarsensor.schema.json is the schema. The presets are built-in files of
- * this kind.
+ * `source` says where a number comes from. The source begins with "assumed" if nobody has measured
+ * the number. Filters/Sensors/lidarsensor.schema.json is the schema. The presets are built-in files
+ * of this kind.
  */
 #ifndef vtkAvianLidarSensorFile_h
 #define vtkAvianLidarSensorFile_h

@@ -10,7 +10,7 @@
 
 namespace avianlidar
 {
-/// Error whose message names the file, and the key or the input.
+/// Error whose message names the file, and the key or the value that is wrong.
 class FileError : public std::runtime_error
 {
 public:

@@ -5,8 +5,8 @@
  *
  * Headers of VTK 9.3 include VTK's own copy of the library, which has the include guards of
  * Debian's copy and renames the namespace by a macro. VTK's copy is used where it exists, so that
- * no source includes both copies. VTK 9.1 of Debian 12 has no copy, and neither has a program
- * without VTK.
+ * no source includes both copies. Otherwise (VTK 9.1 of Debian 12, programs without VTK) the
+ * library's own header is used.
  */
 #ifndef AvianLidarJson_h
 #define AvianLidarJson_h

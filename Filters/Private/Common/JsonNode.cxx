@@ -19,11 +19,12 @@ std::string Format(double value)
   return text.str();
 }
 
-// Far more than any key takes. Values are copied and destroyed level by level: the stack is finite.
+// Largest depth of nested values, far more than any key needs. The limit protects the stack,
+// because values are copied and destroyed recursively.
 constexpr int DeepestNesting = 100;
 
-// What the parser takes: values in values without end, and of two equal keys the last, without a
-// word.
+// Rejects input that the parser accepts: values nested without limit, and a key that stands twice
+// in an object.
 class Strictness
 {
 public:

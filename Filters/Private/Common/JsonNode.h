@@ -30,7 +30,7 @@ Json ParseJson(const std::string& text, const std::string& file);
 
 /**
  * A view of one value with its path, such as "objects[3].scale". All getters throw FileError if the
- * value has another type than the getter returns; numbers are finite.
+ * value has another type than the getter returns. All numbers are finite.
  */
 class JsonNode
 {
@@ -52,15 +52,15 @@ public:
   bool Has(const char* key) const;
   /// The value of a key, which must exist.
   JsonNode Get(const std::string& key) const;
-  /// What `get`, such as &JsonNode::Number, returns for the value of a key; nothing without the
-  /// key.
+  /// The result of `get`, such as &JsonNode::Number, for the value of a key. Empty if the key is
+  /// missing.
   template <class Getter>
   auto Find(const char* key, Getter get) const
   {
     using Result = std::decay_t<std::invoke_result_t<Getter, JsonNode>>;
     return this->Has(key) ? std::optional<Result>(std::invoke(get, this->Get(key))) : std::nullopt;
   }
-  /// The value must be an object whose keys are all among those given.
+  /// Throws unless the value is an object whose keys are all in `known`.
   void RequireKeys(const std::vector<std::string>& known) const;
   /// Keys and values of an object, as written.
   std::vector<std::pair<std::string, JsonNode>> Members() const;

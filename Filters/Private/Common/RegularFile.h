@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RegularFile.h
- * @brief Checks that a file is regular, or a link to a regular file: reading a pipe may wait for
- * ever, and reading a device may never end.
+ * @brief Checks that a file is regular, or a link to a regular file. Reading a pipe or a device may
+ * never end.
  */
 #ifndef AvianLidarRegularFile_h
 #define AvianLidarRegularFile_h

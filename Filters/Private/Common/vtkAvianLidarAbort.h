@@ -18,7 +18,7 @@ namespace vtkAvianLidarAbort
 inline bool Wanted(vtkAlgorithm* algorithm)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
-  // True for an abort anywhere upstream, too.
+  // CheckAbort() is also true after an abort upstream.
   return algorithm->CheckAbort();
 #else
   return algorithm->GetAbortExecute() != 0;
@@ -45,9 +45,9 @@ inline void Require(bool done)
   }
 }
 
-/// Throws if an observer of the progress 0, which the executive reports before RequestData, wants
-/// to stop. Call the function in the body of RequestData; ranks that work together call it in a
-/// step.
+/// Throws if an observer has stopped the algorithm at progress 0, which the executive reports
+/// before RequestData. Call the function in the body of RequestData. Ranks that work together call
+/// the function in a step.
 inline void StopIfWanted(vtkAlgorithm* algorithm)
 {
   Require(!Wanted(algorithm));

@@ -26,9 +26,9 @@ namespace vtkAvianLidarArrays
 /// Attach the unit to an array (vtkDataArray::UNITS_LABEL).
 void SetUnit(vtkAbstractArray* array, const char* unit);
 
-/// Set the number of tuples of a new array, whose components are set; values are not initialised.
-/// Without memory the function throws std::bad_alloc; VTK's own function, as Debian builds VTK,
-/// ends the process.
+/// Set the number of tuples of a new array, whose components are set. The values are not
+/// initialised. Without memory the function throws std::bad_alloc. VTK's own function, as Debian
+/// builds VTK, ends the process.
 template <class ValueT>
 void SetTuples(vtkAOSDataArrayTemplate<ValueT>* array, vtkIdType tuples)
 {
@@ -44,7 +44,7 @@ void SetTuples(vtkAOSDataArrayTemplate<ValueT>* array, vtkIdType tuples)
 
 void SetTuples(vtkStringArray* array, vtkIdType tuples);
 
-/// A new array of the given type with name, unit, components and tuples set; values are not
+/// A new array of the given type with name, unit, components and tuples set. The values are not
 /// initialised.
 template <class ArrayT>
 vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int components = 1)
@@ -57,7 +57,7 @@ vtkSmartPointer<ArrayT> Make(const Name& name, vtkIdType tuples = 0, int compone
   return array;
 }
 
-/// A new array of one component with these values, and with name and unit.
+/// A new array of one component with the given values, name and unit.
 template <class ArrayT, class Values>
 vtkSmartPointer<ArrayT> MakeOf(const Name& name, const Values& values)
 {
@@ -89,23 +89,23 @@ void SetFieldStrings(
 // The following functions throw std::runtime_error. @param kind "point array", "cell array" or
 // "field data"
 
-/// The array must have these numbers of components and tuples, or be null.
+/// Throws unless the array is null or has the given numbers of components and tuples.
 void RequireShape(vtkDataArray* array, const char* kind, int components, vtkIdType tuples);
 
-/// An array of the name must hold numbers, or be missing.
+/// Throws unless the array is missing or holds numbers.
 void RequireNumeric(vtkFieldData* arrays, const Name& name, const char* kind);
 
-/// Field data of the name must hold text, or be missing.
+/// Throws unless the field data are missing or hold text.
 void RequireText(vtkFieldData* fields, const Name& name);
 
 /// True for the whole numbers that an int holds.
 bool IsInt(double value);
 
-/// Read one finite number of any numeric type from field data; false if the array is missing, has
-/// not exactly one value, or the value is not finite.
+/// Read one finite number of any numeric type from field data. Returns false if the array is
+/// missing or does not hold exactly one finite value.
 bool GetFieldValue(vtkFieldData* fields, const Name& name, double& value);
 
-/// Read one finite number like GetFieldValue(). `value` stays if the array is missing; throws
+/// Read one finite number like GetFieldValue(). If the array is missing, `value` is kept. Throws
 /// std::runtime_error if the array holds something else.
 void ReadFieldValue(vtkFieldData* fields, const Name& name, double& value);
 }

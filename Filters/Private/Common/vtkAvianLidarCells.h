@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarCells.h
- * @brief Makes cells, and checks cells of inputs: filters rely on valid point ids, but files and
- * scripts may have any ids. Not installed.
+ * @brief Makes cells, and checks cells of inputs: filters rely on valid point ids, but cells of
+ * files and scripts may have any ids. Not installed.
  */
 #ifndef vtkAvianLidarCells_h
 #define vtkAvianLidarCells_h
@@ -18,7 +18,7 @@
 #include <numeric>
 #include <string>
 
-/// Cells of `corners` points each; the points are 0, 1, 2 and so on.
+/// Cells of `corners` points each. The points are 0, 1, 2 and so on.
 template <class Ids = vtkTypeInt64Array>
 vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType corners)
 {
@@ -37,7 +37,7 @@ vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeCells(vtkIdType cells, vtkIdType 
 }
 
 /// Call f(ids, count) with the point ids of all cells, one cell after the other, in 32 or 64 bits.
-/// An iterator would take more time than the cells of a small block.
+/// An iterator would take more time than the work on the cells of a small block.
 template <class F>
 auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
 {
@@ -46,8 +46,9 @@ auto vtkAvianLidarPointIds(vtkCellArray* cells, F&& f)
                                  : f(cells->GetConnectivityArray32()->GetPointer(0), count);
 }
 
-/// Cells of triangles with three point ids each. Ids that fit into 32 bits are stored so, in half
-/// the memory. @param cellOf function from the number of a triangle to the number of its cell
+/// Cells of triangles with three point ids each. Ids that fit into 32 bits are stored in 32 bits,
+/// which takes half the memory. @param cellOf function from the number of a triangle to the number
+/// of its cell
 template <class Triangles, class F>
 vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triangles, F cellOf)
 {
@@ -72,7 +73,7 @@ vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triang
   return cells;
 }
 
-/// An error text if the offsets of cells are bad, else an empty string. O(cells).
+/// An error text if the offsets of cells are bad, else an empty string. Takes O(cells) time.
 inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
 {
   return !cells || cells->GetNumberOfCells() == 0 || cells->IsValid()
@@ -80,7 +81,8 @@ inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
     : "the offsets of its cells do not fit their points";
 }
 
-/// An error text if cells are bad for `points` points, else an empty string. O(points of cells).
+/// An error text if cells are bad for `points` points, else an empty string. Takes O(points of
+/// cells) time.
 inline std::string vtkAvianLidarCellsError(vtkCellArray* cells, vtkIdType points)
 {
   if (!cells || cells->GetNumberOfCells() == 0)

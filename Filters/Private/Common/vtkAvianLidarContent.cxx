@@ -26,7 +26,7 @@ namespace vtkAvianLidarContent
 //------------------------------------------------------------------------------
 vtkMTimeType TimeOf(vtkPolyData* poly)
 {
-  vtkMTimeType time = poly->GetMTime(); // of its arrays, too, but for those of cells
+  vtkMTimeType time = poly->GetMTime(); // includes all arrays except arrays of point ids
   const auto look = [&time](vtkObject* object)
   { time = object ? std::max(time, object->GetMTime()) : time; };
   look(poly->GetPoints() ? poly->GetPoints()->GetData() : nullptr);
@@ -68,7 +68,7 @@ try
       iterator->HasCurrentMetaData() ? iterator->GetCurrentMetaData() : nullptr;
     if (about && about->Has(vtkCompositeDataSet::NAME()))
     {
-      // A block that is renamed leaves no trace in its data.
+      // A new name of a block does not change the data of the block.
       state.emplace_back(about, std::hash<std::string>()(about->Get(vtkCompositeDataSet::NAME())));
     }
   }
@@ -91,7 +91,7 @@ std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed)
     const auto values = static_cast<std::size_t>(shape[1] * shape[2]);
     return values > 0 ? avianlidar::hashOf(array->GetVoidPointer(0), values * size, seed) : seed;
   }
-  // Such an array may work out a tuple in a place of its own: one thread at a time.
+  // Some other arrays compute a tuple in a shared buffer, so only one thread may read.
   static std::mutex one;
   const std::lock_guard<std::mutex> alone(one);
   std::vector<double> tuple(static_cast<std::size_t>(shape[1]));
@@ -112,7 +112,7 @@ std::uint64_t HashOfGeometry(vtkPolyData* poly, std::uint64_t seed)
     { poly->GetVerts(), poly->GetLines(), poly->GetPolys(), poly->GetStrips() })
   {
     ++kind;
-    if (cells->GetNumberOfCells() != 0) // -1 where its offsets are missing
+    if (cells->GetNumberOfCells() != 0) // the number is -1 if offsets are missing
     {
       seed = HashOf(cells->GetOffsetsArray(), avianlidar::hashOf(&kind, sizeof(kind), seed));
       seed = HashOf(cells->GetConnectivityArray(), seed);

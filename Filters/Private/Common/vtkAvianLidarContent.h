@@ -4,9 +4,9 @@
  * @brief Finds whether data objects have changed, by modification times and hashes. Not installed.
  *
  * A program that edits values in place may call Modified() on the array, on its container, or on
- * the data object, and none of these notifies the others. So caches first compare the times of all
- * objects at all levels: if all times are unchanged, the data are, too. If one time is later,
- * caches compare the content, and keep the parts that are equal.
+ * the data object. None of these objects notifies the other two. So caches first compare the times
+ * of all objects at all levels: if all times are unchanged, the data are, too. If one time is
+ * later, caches compare the content, and keep the parts that are equal.
  */
 #ifndef vtkAvianLidarContent_h
 #define vtkAvianLidarContent_h
@@ -31,11 +31,11 @@ using State = std::vector<std::pair<const void*, vtkMTimeType>>;
 vtkMTimeType TimeOf(vtkPolyData* poly);
 
 /// State of a vtkPolyData, or of a composite with all nodes, leaves and their names. If memory does
-/// not suffice, the state is empty instead of an exception, because ranks call the function outside
-/// a step.
+/// not suffice, the state is empty. The function does not throw, because ranks call the function
+/// outside the steps of vtkAvianLidarRanks, which hand errors to all ranks.
 State StateOf(vtkDataObject* data);
 
-/// Hash of an array, may be null: its type, size and values. @param seed hash to continue
+/// Hash of an array, which may be null: its type, size and values. @param seed hash to continue
 std::uint64_t HashOf(vtkDataArray* array, std::uint64_t seed);
 
 /// Hash of points and cells.

@@ -17,8 +17,8 @@ class vtkPolyData;
 namespace vtkAvianLidarGather
 {
 /// The points of all ranks, rank by rank, with the point arrays that all ranks have; `mine` itself
-/// for one process. All ranks must call this function. It throws on all ranks if the points
-/// together take 2 GiB or more.
+/// for one process. All ranks must call this function. Throws on all ranks if the points together
+/// take 2 GiB or more.
 vtkSmartPointer<vtkPolyData> Points(
   const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPolyData* mine);
 

@@ -33,10 +33,11 @@ std::string ErrorIn(vtkFieldData* fields)
   return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
 }
 
-/// The error that data, or one of their blocks, hold.
+/// The error text in the field data of `data` or of a block of `data`; empty without an error.
 std::string ErrorOf(vtkDataObject* data)
 {
-  // Outputs of what failed are empty, but for images; a field of that name of others is theirs.
+  // Outputs of a failed filter are empty, except images. A field `error` of other data is the
+  // user's.
   const bool may = data && (IsEmpty(data) || data->IsA("vtkImageData"));
   std::string error = may ? ErrorIn(data->GetFieldData()) : std::string();
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
@@ -51,7 +52,7 @@ std::string ErrorOf(vtkDataObject* data)
   return error;
 }
 
-/// The error of an input: its data's own, or the code that a reader of VTK left with no data.
+/// The error text of an input, or the error code of a VTK reader whose output is empty.
 std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
 {
   vtkDataObject* data = self->GetInputDataObject(port, connection);
@@ -74,7 +75,7 @@ void vtkAvianLidarGuard::RequireInputs(vtkAlgorithm* self)
       std::string error = ErrorOfInput(self, port, i);
       if (!error.empty())
       {
-        // The first error alone, not those of all filters between.
+        // Keep only the text of the first error, without the texts of the filters downstream.
         const auto first = error.rfind(ProducerFailed);
         error.erase(0, first == std::string::npos ? 0 : first + sizeof(ProducerFailed) - 1);
         vtkAvianLidarRequire("Input port " + std::to_string(port) + ProducerFailed + error);
@@ -128,7 +129,7 @@ int vtkAvianLidarGuard::GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs
   }
   catch (const std::bad_alloc&)
   {
-    // The return value says it.
+    // The return value 0 reports the failure.
   }
   return 0;
 }

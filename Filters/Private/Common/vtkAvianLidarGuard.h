@@ -33,7 +33,7 @@ void RequireInputs(vtkAlgorithm* self);
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
 
-/// Empty all outputs. @param error error text for the field data; empty: none
+/// Empty all outputs. @param error error text for the field data; empty: no error text
 void Empty(vtkInformationVector* outputs, const std::string& error = {});
 
 /// End an execution. If `problem` is not empty, outputs are emptied and hold this text.
@@ -68,7 +68,7 @@ std::string ProblemOf(const Step& step)
 }
 }
 
-/// Run the body of a RequestData, which throws an error, or avianlidar::WorkStopped to stop with
+/// Run the body of a RequestData. The body throws an error, or avianlidar::WorkStopped to stop with
 /// empty outputs.
 template <class Filter, class Body>
 int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, const Body& body)

@@ -224,7 +224,8 @@ constexpr Name SecondaryShare{ "secondary_share", "1", "energy of 2 bounces" };
 /// status of the beam: 0 echo, 1 no-surface, 2 below-Qlow, 3 saturated, 4 outside-gate; in a
 /// coverage, index of `status_names`
 constexpr Name Status{ "status", "" };
-/// view of the beam: 1 nothing, 2 polygons, 3 cells, 4 rays, 5 cells through the tree (int)
+/// view of the beam: 1 nothing, 2 polygons, 3 cells, 4 rays, 5 cells with more than 2,000
+/// triangles, whose rays are traced through the tree (int)
 constexpr Name View{ "view", "" };
 /// tested triangles, each counted once per packet of up to 64 rays
 constexpr Name Candidates{ "candidates", "1" };

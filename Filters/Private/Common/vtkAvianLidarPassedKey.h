@@ -16,8 +16,8 @@ class vtkAvianLidarPassedKey : public vtkInformationDoubleVectorKey
 public:
   vtkTypeMacro(vtkAvianLidarPassedKey, vtkInformationDoubleVectorKey);
 
-  /// A key lives to the end of the process: VTK's manager of keys deletes the key. @param length
-  /// number of values; -1: any number
+  /// A key exists until the end of the process, when VTK's manager of keys deletes the key. @param
+  /// length number of values; -1: any number
   vtkAvianLidarPassedKey(const char* name, const char* location, int length = -1)
     : vtkInformationDoubleVectorKey(name, location, length)
   {

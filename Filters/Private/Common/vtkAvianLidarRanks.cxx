@@ -31,10 +31,10 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// What a rank says when all meet: the least counts.
+/// Answers of a rank in Meet(), which returns the least answer of all ranks.
 enum Answer
 {
-  Absent, ///< it threw
+  Absent, ///< the rank threw
   No,
   Yes
 };
@@ -42,7 +42,7 @@ enum Answer
 constexpr char Stop = 's';
 constexpr char Failure = 'f';
 
-/// What a rank tells the others of its step: nothing if all is well.
+/// Result of this rank's step, for the other ranks; empty after success.
 std::string ResultOf(const std::function<void()>& step)
 {
   bool stopped = true;
@@ -63,14 +63,14 @@ std::uint64_t HashOfHostName()
   return avianlidar::hashOf(name.data(), name.size(), 0);
 }
 
-/// Thrown on all ranks.
+/// Thrown on all ranks if VTK could not send data.
 class SendError : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown on all ranks but that one: a rank threw between exchanges.
+/// Thrown if another rank threw between exchanges.
 class RankThrew
 {
 };
@@ -83,8 +83,8 @@ void ThrowUnlessSent(int sent)
   }
 }
 
-/// Newer executives empty the outputs of a filter that was aborted, and skip filters downstream:
-/// what one rank is asked for, all do.
+/// Mark a filter as aborted or not, in the same way on all ranks. Newer executives empty the
+/// outputs of an aborted filter, and skip filters downstream.
 void SetAborted(vtkAlgorithm* algorithm, bool aborted)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
@@ -103,9 +103,9 @@ bool WasAborted(vtkAlgorithm* algorithm)
 #endif
 }
 
-/// Report the problem, then end the process, and by it the job: VTK offers no call of MPI_Abort(),
-/// and if this rank returned the others would wait in the exchange for ever. There may be no memory
-/// left: nothing here may throw.
+/// Report the problem, then end the process and thereby the job, because VTK offers no call of
+/// MPI_Abort(). If this rank returned, the other ranks would wait in the exchange for ever. There
+/// may be no memory left, so the function must not throw.
 [[noreturn]] void EndJob(vtkAlgorithm* self, const char* problem) noexcept
 {
   constexpr char ending[] = ". The other ranks wait for it, so this rank ends the job.";
@@ -166,7 +166,7 @@ vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::RunTogether(
   try
   {
     body(*this);
-    this->Meet(Yes); // others may have thrown
+    this->Meet(Yes); // throws if another rank threw
     return Outcome::Done;
   }
   catch (const Ended&)
@@ -213,7 +213,7 @@ vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Fail(
     }
     catch (...)
     {
-      // No memory even for this.
+      // There is not enough memory to share the problem.
     }
   }
   EndJob(self, mine ? mine : vtkAvianLidarGuard::NoMemory);
@@ -408,7 +408,7 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
   {
     return true;
   }
-  // Not unsigned long, which VTK takes for long here.
+  // The type is not unsigned long, because VTK would treat unsigned long as long.
   const unsigned long long low = mine.value_or(std::numeric_limits<std::uint64_t>::max());
   const unsigned long long high = mine.value_or(0);
   unsigned long long least = 0;
@@ -419,7 +419,7 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
       this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
       this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
     });
-  return least >= largest; // greater where no rank has a value
+  return least >= largest; // `least` is greater if no rank has a value
 }
 
 //------------------------------------------------------------------------------
@@ -464,7 +464,7 @@ std::vector<vtkSmartPointer<vtkDataObject>> vtkAvianLidarRanks::Gather(vtkDataOb
       ThrowUnlessSent(this->Controller->AllGather(mine, all));
       if (std::count(all.begin(), all.end(), nullptr) > 0)
       {
-        throw std::bad_alloc(); // VTK had no memory to serialise it
+        throw std::bad_alloc(); // VTK had no memory to serialise the data
       }
     });
   return all;
@@ -491,7 +491,7 @@ void vtkAvianLidarRanks::Broadcast(vtkDataObject* data, int from, double& sent) 
     {
       if (!this->Controller->Broadcast(data, from))
       {
-        throw std::bad_alloc(); // VTK had no memory to serialise it
+        throw std::bad_alloc(); // VTK had no memory to serialise the data
       }
     });
   sent += from == this->Mine ? BytesOf(data) : 0.0;
@@ -520,7 +520,8 @@ int vtkAvianLidarRanks::Threads(int wanted) const
   {
     return avianlidar::loopThreads(0);
   }
-  // Of the node's cores, as a launcher that binds ranks to cores has shared them out already.
+  // The cores of the node are divided among its ranks. The upper limit is OpenMP's choice, because
+  // a launcher that binds ranks to cores has already divided the cores.
   const long cores = std::thread::hardware_concurrency();
   const long neighbours = std::count(hosts.begin(), hosts.end(), host);
   return static_cast<int>(
@@ -562,7 +563,7 @@ int vtkAvianLidarRanks::UpdateInputs(
   const Outcome outcome = ranks.Alone() ? Outcome::Done : ranks.Run(self, std::cref(work));
   if (outcome == Outcome::Stopped)
   {
-    SetAborted(self, false); // it does not execute
+    SetAborted(self, false); // the filter does not execute
     vtkAvianLidarGuard::Empty(outputs);
   }
   return outcome == Outcome::Done;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarRanks.h
- * @brief Lets MPI ranks that execute a request together agree on outcomes and exchange data. Not
- * installed.
+ * @brief Lets MPI ranks agree on outcomes and exchange data while they execute a request together.
+ * Not installed.
  *
- * Ranks execute together when the controller of a filter has several processes, and each process
- * requests its own one of as many pieces, as in pvserver and pvbatch. A rank executes any other
- * request (one piece, or pieces of the user's choice) by itself: the rank sends nothing and does
- * not wait.
+ * Ranks execute together when the controller of a filter has several processes, there are as many
+ * pieces as processes, and each process requests its own piece, as in pvserver and pvbatch. A rank
+ * executes any other request (one piece, or pieces of the user's choice) by itself: the rank sends
+ * nothing and does not wait.
  *
  * All ranks must make the same calls in the same order. So work that may fail on one rank is a
  * step: if a step fails or stops on one rank, the execution ends on all ranks, by an exception that
  * Execute() catches. Before each exchange every rank reports whether it is ready. If a rank throws
  * between exchanges, it reports that it is not ready, and its error becomes the error of all ranks.
- * If a rank throws within an exchange, for example without memory, the other ranks would wait for
- * ever, so the rank ends the job.
+ * If a rank throws within an exchange, for example without memory, the rank ends the job, because
+ * the other ranks would wait for ever.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -62,33 +62,34 @@ public:
   };
 
   /// Run the body of a RequestData on the ranks that execute the request, unless the producer of an
-  /// input of one of these ranks failed. Returns 0 or 1; no exception leaves the function. Failures
-  /// are handled as in vtkAvianLidarGuarded(); if the work was stopped, outputs are empty.
+  /// input of one of these ranks failed. Returns 0 or 1. No exception leaves the function. Failures
+  /// are handled as in vtkAvianLidarGuarded(). If the work was stopped, outputs are empty.
   template <class Filter, class Work>
   static int Execute(
     Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Work& body)
   {
-    // By reference: a copy takes memory, and the other ranks would wait for a rank without memory.
+    // The body is passed by reference, because a copy takes memory. The other ranks would wait for
+    // a rank without memory.
     return Execute(
       self, self->GetController(), request, outputs, self->GetErrorsAsData(), std::cref(body));
   }
 
   /// The ranks that execute a request. @param controller processes that may work together; null:
-  /// only this one
-  /// @param outputs informations of the output ports
+  /// only this process
+  /// @param outputs information objects of the output ports
   vtkAvianLidarRanks(
     vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs);
 
   bool Alone() const { return this->Controller == nullptr; }
-  int Piece() const { return this->Asked; } ///< requested piece; of several ranks, this rank
+  int Piece() const { return this->Asked; } ///< requested piece; for several ranks, this rank
   const void* Group() const { return this->Controller; } ///< ranks' controller; null: one process
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
   /// Run this rank's part of a step. If the step fails or stops on one rank, the function throws on
   /// all ranks, and Execute() ends.
-  /// @param step throws an error, or avianlidar::WorkStopped to stop. `self` reports an error on
-  /// the rank itself, and on rank 0 with the number of the rank.
+  /// @param step function that throws an error, or avianlidar::WorkStopped to stop. `self` reports
+  /// an error on the rank itself, and on rank 0 with the number of the rank.
   template <class Step>
   void Together(vtkAlgorithm* self, const Step& step) const
   {
@@ -114,25 +115,26 @@ public:
   bool Same(std::optional<std::uint64_t> mine) const;
 
   /// A few numbers and texts of every rank, by rank. All functions Gather() throw on all ranks if
-  /// the values of all ranks together are 2^31 or more, which VTK cannot send.
+  /// all ranks together have 2^31 or more values, which VTK cannot send.
   std::vector<vtkMultiProcessStream> Gather(const vtkMultiProcessStream& mine) const;
 
-  /// The values of all ranks, rank by rank. Not for one process.
+  /// The values of all ranks, rank by rank. Requires several processes.
   void Gather(vtkDataArray* mine, vtkDataArray* all) const;
 
-  /// The data objects of all ranks, by rank. Not for one process.
+  /// The data objects of all ranks, by rank. Requires several processes.
   std::vector<vtkSmartPointer<vtkDataObject>> Gather(vtkDataObject* mine) const;
 
   /// Approximate length of VTK's message with a data object, bytes.
   static double BytesOf(vtkDataObject* data);
 
-  /// Length of the longest message that VTK sends, less room for names and headers, bytes.
+  /// Length of the longest message that VTK sends, minus room for names and headers, bytes.
   static constexpr double MostBytes = 2147483648.0 - 1048576.0;
 
   /// An error text for a data object of 2 GiB or more, which VTK cannot send; else an empty string.
   static std::string CheckSize(vtkDataObject* data);
 
-  /// Send rank `from`'s data object, accepted by CheckSize(), to all ranks. Not for one process.
+  /// Send rank `from`'s data object, accepted by CheckSize(), to all ranks. Requires several
+  /// processes.
   /// @param data data object, overwritten on other ranks @param sent sum of bytes sent, to which
   /// this rank adds its bytes
   void Broadcast(vtkDataObject* data, int from, double& sent) const;
@@ -141,7 +143,7 @@ public:
   /// (OMP_NUM_THREADS, if set, is already the share of a rank). All ranks must call this function.
   int Threads(int wanted) const;
 
-  /// Request this rank's piece of an input. For vtkAlgorithm::RequestUpdateExtent().
+  /// Request this rank's piece of an input. To be called in vtkAlgorithm::RequestUpdateExtent().
   void RequestPiece(vtkInformationVector* input) const;
 
   /// Request the whole of an input, which may be absent.
@@ -150,7 +152,7 @@ public:
   /// Update the inputs of an algorithm before its executive does, so that an error upstream of one
   /// rank ends the execution of all ranks. Otherwise VTK would not call RequestData on a rank whose
   /// producer returned 0, such as a reader without its file, and the other ranks would wait for
-  /// ever. For vtkAlgorithm::ModifyRequest(). @return 0 after such an error
+  /// ever. To be called in vtkAlgorithm::ModifyRequest(). @return 0 after such an error
   template <class Filter>
   static int UpdateInputs(Filter* self, vtkInformation* request, int when)
   {
@@ -161,7 +163,7 @@ private:
   enum class Outcome
   {
     Done,
-    Stopped, ///< a user or an observer stopped the work: empty outputs, no error
+    Stopped, ///< the work was stopped by a user or an observer: empty outputs, no error
     Failed   ///< the error was reported
   };
   struct Ended; ///< thrown on all ranks at once to end an execution
@@ -176,17 +178,17 @@ private:
   /// Make the error of an exception the error of all ranks. @param mine null if another rank threw
   /// @return Outcome::Failed
   Outcome Fail(vtkAlgorithm* self, const char* mine) const noexcept;
-  /// Wait for all ranks. Throws on all of them if one rank threw. @return the least `mine` of all
+  /// Wait for all ranks. Throws on all ranks if one rank threw. @return the least `mine` of all
   /// ranks
   int Meet(int mine) const;
-  /// Meet, then let all ranks send and receive.
+  /// Call Meet(), then `work`, in which all ranks send and receive.
   template <class Work>
   void Exchange(Work work) const;
   /// Share the result of a step with all ranks, and report the first problem.
   Outcome Share(vtkAlgorithm* self, const std::string& mine, bool meet) const;
   std::vector<vtkMultiProcessStream> GatherStreams(const vtkMultiProcessStream& mine) const;
 
-  vtkMultiProcessController* Controller = nullptr; ///< null: alone
+  vtkMultiProcessController* Controller = nullptr; ///< controller of the ranks; null: one process
   int Asked = 0;
   int Mine = 0;
   int Count = 1;

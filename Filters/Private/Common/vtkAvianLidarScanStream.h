@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScanStream.h
- * @brief Finds when and where the clouds of a stream were scanned, for filters with a memory. Not
- * installed.
+ * @brief Finds when and where the clouds of a stream were scanned, for filters that keep results of
+ * earlier clouds. Not installed.
  *
  * The time of a cloud, s: `DATA_TIME_STEP` of its information, else field data `TimeValue`, else
- * the start of its `revolution`, else the time of the last cloud + 1 if the cloud is another object
- * or was made anew. The steps of a revolution (`steps_per_revolution` above 1) are one scan, whose
- * time is the start of the revolution.
+ * the start of its `revolution`, else the time of the last cloud, plus 1 s if the cloud is another
+ * object or was made anew. The first cloud then has the time 0. The steps of a revolution
+ * (`steps_per_revolution` above 1) are one scan, whose time is the start of the revolution.
  */
 #ifndef vtkAvianLidarScanStream_h
 #define vtkAvianLidarScanStream_h
@@ -28,8 +28,8 @@ public:
   bool Begun() const { return this->Has; }
   double Time() const { return this->Last; } ///< time of the last cloud
 
-  /// Read the position of the sensor from field data `position`; without this array, `position`
-  /// stays. Throws std::runtime_error.
+  /// Read the position of the sensor from field data `position`. Without this array, `position` is
+  /// kept. Throws std::runtime_error.
   static void ReadPosition(vtkDataObject* cloud, double position[3]);
 
 private:
@@ -37,7 +37,7 @@ private:
 
   bool Has = false;
   double Last = 0.0;
-  const void* Cloud = nullptr; ///< last cloud, only compared
+  const void* Cloud = nullptr; ///< address of the last cloud, only for comparison
   vtkMTimeType MadeAt = 0;
 };
 

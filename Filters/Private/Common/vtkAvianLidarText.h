@@ -13,8 +13,8 @@
 #include <cstdio>
 #include <string>
 
-/// The text as UTF-8: each invalid byte, and NUL, is written like \xE4. VTK's Python modules decode
-/// messages, and lose a message that is not valid UTF-8.
+/// The text as UTF-8: each invalid byte, and NUL, is written as an escape such as \xE4. VTK's
+/// Python modules decode messages, and lose a message that is not valid UTF-8.
 inline std::string vtkAvianLidarText(const std::string& text)
 {
   std::string valid;

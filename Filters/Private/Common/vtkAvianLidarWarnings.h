@@ -16,7 +16,7 @@
 class vtkAvianLidarWarnings
 {
 public:
-  /// True if `warning` about `surfaces` is to be given; the warning then counts as given. @param
+  /// True if `warning` about `surfaces` is to be given. The warning then counts as given. @param
   /// checksum checksum of the scene
   bool IsNew(vtkDataObject* surfaces, std::uint64_t checksum, const std::string& warning)
   {

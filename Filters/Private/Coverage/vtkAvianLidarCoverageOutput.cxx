@@ -23,7 +23,7 @@ using avianlidar::CoverageShares;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
-/// Columns that grow by rows.
+/// Columns of a table, to which rows are added.
 class Columns
 {
 public:
@@ -43,7 +43,7 @@ public:
     }
   }
 
-  /// A row, unless there is no place.
+  /// Add a row, unless the sum contains no places.
   void Add(const std::string& region, const std::string& species, double from, double to,
     const CoverageShares& sum)
   {

@@ -95,13 +95,13 @@ struct vtkAvianLidarCoverageTable
 {
   std::vector<std::string> species;
   std::vector<std::string> regions;
-  std::vector<double> heightLimits; ///< m, rising
+  std::vector<double> heightLimits; ///< heights between the bands, m, rising
 
-  /// Sums by species, region, height band; the first band lies below all limits.
+  /// Sums by species, region and height band. The first band lies below all limits.
   std::vector<avianlidar::CoverageShares> sums;
 
   std::size_t Bands() const { return this->heightLimits.size() + 1; }
-  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< sums of a species
+  std::size_t Cells() const { return this->regions.size() * this->Bands(); } ///< sums per species
 
   /// Replace the sums by the sums over all ranks, on every rank.
   void SumOverRanks(const vtkAvianLidarRanks& ranks);

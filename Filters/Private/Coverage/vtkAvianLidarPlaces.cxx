@@ -28,14 +28,14 @@ namespace
 namespace Arrays = vtkAvianLidarArrays;
 using avianlidar::Vec3;
 
-/// How many points lie between two bounds.
+/// Number of points between two bounds, m. The first point lies on the lower bound.
 double CountAlong(const double bounds[2], double spacing)
 {
   return std::floor((bounds[1] - bounds[0]) / spacing * (1.0 + 1e-12)) + 1.0;
 }
 
-/// Throws if the extent of structured points is bad: VTK takes any, and counts the points of some
-/// as fewer than none.
+/// Throws if the extent of structured points is bad. VTK accepts any extent, and some extents have
+/// a negative number of points.
 void CheckExtent(vtkDataSet* points)
 {
   vtkInformation* info = points->GetInformation();
@@ -313,7 +313,7 @@ void vtkAvianLidarPlaces::ShareRegions(const vtkAvianLidarRanks& ranks)
       }
     }
   }
-  std::vector<std::size_t> shared; // by own number
+  std::vector<std::size_t> shared; // shared number of a region, by this rank's number
   for (const std::string& name : this->Names)
   {
     shared.push_back(

@@ -25,9 +25,9 @@ class vtkUnsignedCharArray;
 class vtkAvianLidarPlaces
 {
 public:
-  vtkAvianLidarPlaces() = default; ///< set without places
+  vtkAvianLidarPlaces() = default; ///< empty set of places
 
-  /// Number of points of a data set. VTK's own number of structured points overflows.
+  /// Number of points of a data set. VTK's own number overflows for large structured data sets.
   static double CountOf(vtkDataSet* points);
 
   /// Take the points of a data set. Throws std::runtime_error if the data set is bad.
@@ -35,7 +35,7 @@ public:
 
   /// An error text if a region or the spacing of its points is bad, else an empty string. The
   /// points fill the region from its lower corner. @param bounds bounds of the region, m @param
-  /// spacing distances of the points, m
+  /// spacing distances between neighbouring points along the axes, m
   static std::string CheckRegion(const double bounds[6], const double spacing[3]);
 
   /// Extent of the image whose points fill a region, as for CheckRegion().
@@ -44,14 +44,15 @@ public:
   /// Take the points of an image.
   vtkAvianLidarPlaces(const int extent[6], const double origin[3], const double spacing[3]);
 
-  /// Set the part of structured points that belongs to the requested piece, without ghosts; with
-  /// one piece, the whole request. @param info information of the output
+  /// Set the part of structured points that belongs to the requested piece, without ghosts. A
+  /// single piece has the whole extent. @param info information of the output
   void SetMine(vtkInformation* info);
 
   std::size_t Size() const;
   avianlidar::Vec3 At(std::size_t k) const;
 
-  /// False for ghosts; points where two structured pieces meet belong to the second piece.
+  /// False for ghosts and for points of other pieces. Points where two structured pieces meet
+  /// belong to the second piece.
   bool IsMine(std::size_t k) const;
 
   /// Hash of all coordinates.
@@ -60,10 +61,10 @@ public:
   const std::vector<std::string>& RegionNames() const { return this->Names; }
   std::size_t RegionOf(std::size_t k) const { return this->Regions.empty() ? 0 : this->Regions[k]; }
 
-  /// Give the regions of all ranks the same numbers.
+  /// Number the regions in the same way on all ranks.
   void ShareRegions(const vtkAvianLidarRanks& ranks);
 
-  vtkDataSet* GetPoints() const { return this->Points; } ///< null for an image
+  vtkDataSet* GetPoints() const { return this->Points; } ///< points; null for an image
   const int* GetExtent() const { return this->Extent; }
   const double* GetOrigin() const { return this->Origin; }
   const double* GetSpacing() const { return this->Spacing; }

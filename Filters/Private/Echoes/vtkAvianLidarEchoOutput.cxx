@@ -30,7 +30,7 @@ using avianlidar::Echo;
 using avianlidar::ScanSetup;
 using avianlidar::Vec3;
 
-/// Point i at position(i), and a vertex on it.
+/// Set point i to position(i), with one vertex per point.
 template <class F>
 void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
 {
@@ -47,7 +47,7 @@ void SetVertices(vtkPolyData* poly, vtkIdType count, F position)
   poly->SetVerts(vtkAvianLidarMakeCells(count, 1));
 }
 
-/// Adds a point array whose value i is function(i).
+/// Add a point array whose value i is function(i).
 template <class ArrayT, class F>
 void Add(vtkPolyData* poly, const names::Name& name, F function)
 {
@@ -61,7 +61,7 @@ void Add(vtkPolyData* poly, const names::Name& name, F function)
   poly->GetPointData()->AddArray(array);
 }
 
-/// Adds two point arrays: times and positions of poses.
+/// Add two point arrays: times and positions of poses.
 template <class F>
 void AddPoses(vtkPolyData* poly, const names::Name& time, const names::Name& position, F poseOf)
 {
@@ -75,7 +75,7 @@ void AddPoses(vtkPolyData* poly, const names::Name& time, const names::Name& pos
   poly->GetPointData()->AddArray(positions);
 }
 
-/// Where the sensor puts what it receives from a range.
+/// Position that the sensor reports for an echo at `range`, m.
 Vec3 PointOnBeam(const vtkAvianLidarBeams& beams, std::size_t beam, double range)
 {
   return beams.beams.origins[beam] + range * beams.ReportedDirection(beam);
@@ -89,7 +89,8 @@ double IntensityOf(double energy, const avianlidar::Sensor& sensor)
     : 255.0;
 }
 
-/// What the beam of point i says, for beams and their echoes alike.
+/// Add the point arrays of ids and angles of beams, for beams or echoes. beamOf(i) is the index of
+/// the beam of point i.
 template <class F>
 void AddBeamArrays(const vtkAvianLidarBeams& beams, vtkPolyData* poly, F beamOf)
 {
@@ -102,10 +103,10 @@ void AddBeamArrays(const vtkAvianLidarBeams& beams, vtkPolyData* poly, F beamOf)
     poly, names::VerticalAngle, [&](std::size_t i) { return beams.verticalAngles[beamOf(i)]; });
 }
 
-// Notes on what a scan left out and why, in sentences. They follow only from the setup: the beam
-// report says what was left out in each beam, which depends on results of earlier scans, too.
+// Notes say what a scan left out and why. Notes follow only from the setup. The beam report says
+// what was left out in each beam, which also depends on results of earlier scans.
 
-/// Three digits, whatever the locale of the process.
+/// The value with three digits, in the same way in all locales.
 std::string Number(double value)
 {
   std::ostringstream text;
@@ -169,7 +170,8 @@ std::string FurtherReflections(const ScanSetup& setup)
   const std::string paths = "not modelled: paths over " +
     std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") + " and more reflections";
   // The bound holds all light that surfaces send back. An aperture gathers a small, unknown share
-  // of it. A bound above the limit says nothing, either.
+  // of the light, so the bound is useless with an aperture. A bound above the limit is useless,
+  // too.
   return setup.sensor.receiverAperture > 0.0 ||
       setup.needs.furtherBound > setup.sensor.lowerEnergyLimit
     ? paths
@@ -206,7 +208,8 @@ std::string SmallObjects(const ScanSetup& setup)
 std::string Detail(const ScanSetup& setup)
 {
   const double most = setup.needs.missedDetailEnergy;
-  // Here, too, an aperture gathers a small part of what comes back.
+  // An aperture gathers a small, unknown share of the light, so the note gives a share of the
+  // pulse.
   return "missed with more than 5 % probability if " +
     (setup.sensor.receiverAperture > 0.0 ? "less than " +
           Number(100.0 * most / setup.sensor.pulseEnergy) + " % of the pulse meets it"
@@ -242,12 +245,13 @@ std::string All(const ScanSetup& setup)
   }
   if (setup.needs.skippedEnergyBound > setup.sensor.lowerEnergyLimit)
   {
-    return "paths over two reflections below the lower energy limit"; // the bound says nothing
+    // A bound above the limit is useless.
+    return "paths with two reflections below the lower energy limit";
   }
   return "at most " + OfLimit(setup, setup.needs.skippedEnergyBound) +
     " in a range unit of a beam with an echo";
 }
-/// What was modelled, and what is left out at most.
+/// Write what was modelled, and bounds of what was left out.
 void SetNeeds(const avianlidar::ScanSetup& setup, vtkFieldData* fields)
 {
   const avianlidar::ModelNeeds& needs = setup.needs;
@@ -344,7 +348,7 @@ void vtkAvianLidarEchoOutput::FillReport(const avianlidar::ScanResult& result,
   SetVertices(report, static_cast<vtkIdType>(all.size()), positionOf);
   AddBeamArrays(beams, report, [](std::size_t i) { return i; });
   Add<vtkIntArray>(report, names::Status, [&](std::size_t i) { return all[i].status; });
-  constexpr int crowded = 5; // the others are numbers of DirectEcho
+  constexpr int crowded = 5; // view of a crowded beam; other views are numbers of DirectEcho
   Add<vtkIntArray>(report, names::View,
     [&](std::size_t i) { return all[i].isCrowded ? crowded : static_cast<int>(all[i].direct); });
   Add<vtkIdTypeArray>(
@@ -370,7 +374,7 @@ void vtkAvianLidarEchoOutput::FillMovers(const avianlidar::ScanSetup& setup,
   {
     ++echoes[echo.objectId];
   }
-  std::vector<std::pair<int, const avianlidar::MoverReport*>> all; // object, report
+  std::vector<std::pair<int, const avianlidar::MoverReport*>> all; // object id and report
   for (std::size_t m = 0; m < reports.size(); ++m)
   {
     if (reports[m].present)
@@ -429,7 +433,7 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   fields->PassData(beamFields);
   names::SetFieldInteger(fields, { "preset", "1" }, preset);
   avianlidar::EchoSettings settings = setup.settings;
-  settings.attenuationCoefficient = setup.attenuation(); // of all that fills the scene
+  settings.attenuationCoefficient = setup.attenuation(); // of all media that fill the scene
   SetSettings(settings, fields);
   names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { AVIANLIDAR_VERSION });
   auto checksum = names::Make<vtkTypeUInt64Array>({ "scene_checksum", "" }, 1);
@@ -438,7 +442,8 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
     0, movers.movers ? avianlidar::hashOf(parts, sizeof(parts), 0) : sceneChecksum);
   fields->AddArray(checksum);
   SetNeeds(setup, fields);
-  // An array for each note: ParaView's Information panel shows the strings of an array in one line.
+  // Each note has its own array, because ParaView's Information panel shows the strings of an array
+  // in one line.
   const std::pair<const char*, std::string> notes[] = { { "note_all_left_out", All(setup) },
     { "note_noise", Noise(setup) }, { "note_two_reflections", TwoReflections(setup) },
     { "note_further_reflections", FurtherReflections(setup) },

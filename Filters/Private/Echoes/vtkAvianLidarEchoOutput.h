@@ -23,10 +23,10 @@ void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
 
 /**
  * Fill in a vertex for each beam, in the order of beams: at the strongest return, or else at the
- * display length, m. Point arrays: `beam_id`, `laser_id`, `azimuth`, 0.01 deg, and
- * `vertical_angle`, deg, as the echoes have them; `status` (BeamStatus; the active scalars), `view`
- * (how the direct echo was found), the counts `candidates`, `nodes_visited` and `rays_traced`, and
- * `skipped` (SkippedPart) with `skipped_bound`, J.
+ * display length, m. Point arrays: `beam_id`, `laser_id`, `azimuth` (0.01 deg) and `vertical_angle`
+ * (deg), as for echoes; `status` (BeamStatus; the active scalars); `view` (how the direct echo was
+ * found); the counts `candidates`, `nodes_visited` and `rays_traced`; `skipped` (SkippedPart) and
+ * `skipped_bound` (J).
  *
  * @param result result of a scan, with one report for each beam @param beams beams that were read
  * without an error
@@ -37,18 +37,18 @@ void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
   const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
 /**
- * Fill in a vertex for each mover that is present, at its position when the beam that receives most
- * energy from the mover is fired. Arrays: see vtkAvianLidarEchoFilter.
+ * Fill in a vertex for each mover that is present. The vertex is the position of the mover when the
+ * beam is fired that receives most energy from the mover. Arrays: see vtkAvianLidarEchoFilter.
  *
- * @param reports reports of the setup's movers from these beams @param result result of the scan
+ * @param reports reports of the movers of `setup` from `beams` @param result result of the scan
  * @param report empty output
  */
 void FillMovers(const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams& beams,
   const std::vector<avianlidar::MoverReport>& reports, const avianlidar::ScanResult& result,
   vtkPolyData* report);
 
-/// Fill in everything that is needed to repeat the scan (`sceneChecksum`: SceneSummary::checksum of
-/// the surfaces), and the bounds of everything that was not modelled.
+/// Fill in everything that is needed to repeat the scan, and the bounds of everything that was not
+/// modelled. @param sceneChecksum SceneSummary::checksum of the surfaces
 void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
   const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
   vtkFieldData* fields);

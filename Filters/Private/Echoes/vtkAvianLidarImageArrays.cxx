@@ -27,7 +27,7 @@ namespace Arrays = vtkAvianLidarArrays;
 const char* const EchoPort = "input port 0 (echoes)";
 const char* const BeamPort = "input port 1 (beams)";
 
-// A point array of the image: of each cell the value of its item, the given one where that is -1.
+// Adds a point array to the image. A cell has the value of its item, or `empty` if the item is -1.
 template <class ArrayT, class T>
 void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* values,
   const std::vector<vtkIdType>& items, T empty, const char* port)
@@ -45,7 +45,7 @@ void AddCells(vtkImageData* image, const Arrays::Name& name, vtkDataArray* value
   image->GetPointData()->AddArray(array);
 }
 
-// Of each cell what its beam says, if the beams have that array.
+// Adds the values of each cell's beam as a point array, if the beams have the array.
 template <class ArrayT, class T>
 void AddBeams(vtkImageData* image, const Arrays::Name& name, vtkPolyData* beams,
   const std::vector<vtkIdType>& beamOfCell, T empty)
@@ -143,7 +143,7 @@ bool vtkAvianLidarImageArrays::FillIfFailed(vtkAlgorithm* self, vtkInformationVe
     {
       int extent[6];
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
-      // Not by AllocateScalars(), which ends the process where there is no memory.
+      // AllocateScalars() is not used, because without memory it ends the process.
       vtkNew<vtkDoubleArray> nothing;
       nothing->SetName("ImageScalars");
       Arrays::SetTuples(nothing.Get(), vtkStructuredData::GetNumberOfPoints(extent));

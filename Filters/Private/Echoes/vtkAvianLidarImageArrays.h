@@ -25,16 +25,17 @@ class vtkPolyData;
 
 namespace vtkAvianLidarImageArrays
 {
-// All but FillIfFailed() throw std::runtime_error. @param port words for the input in errors
+// All functions except FillIfFailed() throw std::runtime_error. @param port name of the input in
+// error messages
 
 /// A point array with the given number of components.
 vtkDataArray* Find(
   vtkPolyData* input, const vtkAvianLidarArrays::Name& name, const char* port, int components = 1);
 
-/// Each point array must have one value per point.
+/// Throws unless each point array has one tuple per point.
 void RequireLengths(vtkPolyData* input, const char* port);
 
-/// The value must be a whole number that an integer type holds. @return the number
+/// Throws unless the value is a whole number that `T` holds. @return the number
 template <class T>
 T RequireInteger(
   double value, const vtkAvianLidarArrays::Name& name, const char* port, vtkIdType point)
@@ -57,8 +58,8 @@ void AddEchoes(vtkPolyData* echoes, const std::vector<vtkIdType>& beamOfCell,
 void AddReport(vtkPolyData* beams, const std::vector<vtkIdType>& beamOfCell, vtkImageData* image);
 
 /// If output port 0 is an image whose field data hold an error, fill the requested extent with NaN.
-/// VTK's imaging filters read the announced extent, and crash without it. @return false, after an
-/// error of `self`, if memory does not suffice
+/// VTK's imaging filters read the whole requested extent, and crash if the image is smaller.
+/// @return false if memory does not suffice; `self` then reports an error
 bool FillIfFailed(vtkAlgorithm* self, vtkInformationVector* outputs);
 }
 

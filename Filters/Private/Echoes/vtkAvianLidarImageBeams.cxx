@@ -22,8 +22,8 @@ namespace ImageArrays = vtkAvianLidarImageArrays;
 
 const char* const Port = "input port 1 (beams)";
 
-// Azimuth and elevation of each beam in degrees, from their arrays or from the direction that is
-// reported.
+// Azimuth and elevation of each beam, deg, from the arrays of angles, or else from the reported
+// direction.
 void ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<double>& elevations)
 {
   vtkPointData* data = input->GetPointData();
@@ -62,8 +62,8 @@ void ReadAngles(vtkPolyData* input, std::vector<double>& azimuths, std::vector<d
   }
 }
 
-// The integers of an optional array; the index of each beam if there is no such array and
-// `numbered`.
+// The integers of an optional array. Without the array, the index of each beam if `numbered`, else
+// an empty vector.
 template <class T>
 std::vector<T> ReadIntegers(vtkPolyData* input, const Arrays::Name& name, bool numbered)
 {
@@ -78,8 +78,8 @@ std::vector<T> ReadIntegers(vtkPolyData* input, const Arrays::Name& name, bool n
   return values;
 }
 
-// True if every beam points where the sensor's beam of its id does. A filter between may have
-// turned beams, or replaced them by others.
+// True if every beam has the direction of the sensor's beam with the same id. A filter downstream
+// of the sensor may have turned or replaced beams.
 bool IsPartOf(const vtkAvianLidarScanShape::WholeScan& whole, const std::vector<vtkIdType>& ids,
   const std::vector<double>& azimuths, const std::vector<double>& elevations)
 {
@@ -91,7 +91,8 @@ bool IsPartOf(const vtkAvianLidarScanShape::WholeScan& whole, const std::vector<
       return false;
     }
     const auto id = static_cast<std::size_t>(ids[i]);
-    // Straight up any azimuth is as good as another.
+    // The azimuth of a vertical beam is arbitrary, so differences of azimuths are scaled by the
+    // cosine of the elevation.
     const double aside = std::remainder(azimuths[i] - whole.Azimuths[id], 360.0) *
       std::cos(elevations[i] / avianlidar::DegreesPerRadian);
     if (!(std::abs(aside) <= avianlidar::GridTolerance &&

@@ -45,8 +45,8 @@ struct vtkAvianLidarScanFilter::vtkInternals
   std::uint64_t Scene = 0;           ///< checksum of mesh and materials
   vtkAvianLidarWarnings Warnings;
   std::uint64_t StaleFor = 0;
-  double TracedRays = 0.0;  ///< rays traced by all ranks
-  double TracedBeams = 0.0; ///< beams of all ranks whose surfaces were searched
+  double TracedRays = 0.0;  ///< number of rays traced by all ranks
+  double TracedBeams = 0.0; ///< number of beams, of all ranks, that were traced
   int TreeBuilds = 0;
   int Threads = 0;
 
@@ -57,7 +57,7 @@ struct vtkAvianLidarScanFilter::vtkInternals
     std::variant<int vtkAvianLidarScanFilter::*, double vtkAvianLidarScanFilter::*,
       bool vtkAvianLidarScanFilter::*>
       member;
-    const char* unit = ""; ///< unit, after a blank
+    const char* unit = ""; ///< unit with a blank before it, such as " m"
     double ValueOf(const vtkAvianLidarScanFilter& self) const
     {
       return std::visit([&](auto of) { return static_cast<double>(self.*of); }, this->member);

@@ -11,7 +11,8 @@
 
 namespace
 {
-/// Sizes of one bird that are kept: sites are compared for birds that are larger or smaller.
+/// Number of sizes that are kept for one bird, because sites are compared for larger and smaller
+/// birds.
 constexpr std::size_t MostSizes = 8;
 }
 
@@ -67,7 +68,7 @@ std::vector<vtkAvianLidarBirdTargets::Target> vtkAvianLidarBirdTargets::Choose(
   }
   for (const avianlidar::BirdSpecies& bird : known)
   {
-    // A table of the user's may name a species anew.
+    // The user's table may contain a species with the name of a built-in species.
     const bool isThere = std::any_of(targets.begin(), targets.end(),
       [&](const Target& target) { return target.Name == bird.name; });
     if (all && !isThere)

@@ -28,14 +28,14 @@ using Leaf = vtkAvianLidarSurfaceLeaf;
 using avianlidar::Mover;
 using avianlidar::Vec3;
 
-/// Name of the block that a leaf was, for the way between ranks: Named() alone writes it, and what
-/// it leaves has no other array of this name.
+/// Field data with the name of a block, for the exchange between ranks. Only Named() writes this
+/// array, and Named() removes any other array of the same name.
 constexpr names::Name BlockName{ "block_name", "" };
 
 /// Prefix of all errors.
 constexpr char MoversPort[] = "Input port 2 (movers), ";
 
-/// Hash of all that is read of a block.
+/// Hash of everything that is read of a block.
 std::uint64_t HashOfMover(vtkPolyData* block)
 {
   std::uint64_t hash = Leaf::HashOf(block);
@@ -61,14 +61,14 @@ std::uint64_t HashOfMovers(vtkMultiBlockDataSet* blocks)
   return hash;
 }
 
-/// True if it is no mover: ranks without any may have a vtkPolyData all the same.
+/// True if a block is not a mover. A rank without movers may still have a vtkPolyData.
 bool IsNothing(vtkPolyData* block)
 {
   return block->GetNumberOfPoints() == 0 && block->GetNumberOfCells() == 0 &&
     !block->GetFieldData()->HasArray(names::PosePosition.name);
 }
 
-/// The leaves that are movers, before anything else that was found.
+/// The leaves that are movers. Throws if data of other types were found.
 std::vector<Leaf> Collect(vtkDataObject* input)
 {
   std::string problem;
@@ -80,7 +80,7 @@ std::vector<Leaf> Collect(vtkDataObject* input)
   return leaves;
 }
 
-/// The leaves as blocks that know the names given to them.
+/// One block for each leaf, with the given name of the leaf in the block's field data.
 vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input)
 {
   auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
@@ -91,9 +91,9 @@ vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input)
     copy->ShallowCopy(leaf.data);
     vtkNew<vtkFieldData> fields;
     fields->PassData(leaf.data->GetFieldData());
-    fields->RemoveArray(BlockName.name); // a user's, of which nothing is read
+    fields->RemoveArray(BlockName.name); // the user's array is not read
     copy->SetFieldData(fields);
-    if (leaf.named) // a number is another one on each rank
+    if (leaf.named) // numbers of blocks differ between ranks
     {
       names::SetFieldStrings(fields, BlockName, { leaf.name });
     }
@@ -102,7 +102,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input)
   return blocks;
 }
 
-/// The blocks of all ranks, without those that a rank before has.
+/// The blocks of all ranks, without blocks that a lower rank has, too.
 vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
 {
   auto all = vtkSmartPointer<vtkMultiBlockDataSet>::New();
@@ -126,7 +126,7 @@ vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataO
   return all;
 }
 
-/// Field data of numbers. @return how many rows there are, 0 without the array
+/// Read numbers from field data. @return number of rows; 0 without the array
 std::size_t ReadNumbers(
   vtkFieldData* fields, const names::Name& name, int components, std::vector<double>& values)
 {
@@ -211,13 +211,13 @@ void ReadFlaps(vtkFieldData* fields, Mover& mover)
   }
 }
 
-/// The parts of the triangles. @param count of the triangles
+/// The part of each triangle. @param count number of triangles @param flaps number of flaps
 std::vector<std::uint32_t> ReadParts(vtkPolyData* poly, std::size_t count, std::size_t flaps)
 {
   std::vector<std::uint32_t> parts(count, 0);
   if (flaps == 0)
   {
-    return parts; // all is rigid
+    return parts; // a mover without flaps is rigid
   }
   names::RequireNumeric(poly->GetCellData(), names::Part, "cell array");
   vtkDataArray* const array = poly->GetCellData()->GetArray(names::Part.name);
@@ -239,7 +239,8 @@ std::vector<std::uint32_t> ReadParts(vtkPolyData* poly, std::size_t count, std::
   return parts;
 }
 
-/// The triangles [begin, end) of a mesh, whose points each belong to one part.
+/// Copy the triangles [begin, end) of a mesh to a mover. A point of several parts is copied for
+/// each part.
 void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::size_t end,
   const std::vector<std::uint32_t>& parts, Mover& mover)
 {
@@ -264,7 +265,7 @@ void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::
   }
 }
 
-/// The movers, triangulated. @param triangulated what the leaves point to
+/// The triangulated movers. @param triangulated data to which the leaves point
 std::vector<Leaf> TakeLeaves(
   vtkDataObject* input, bool named, std::vector<vtkSmartPointer<vtkPolyData>>& triangulated)
 {
@@ -285,7 +286,8 @@ std::vector<Leaf> TakeLeaves(
   return leaves;
 }
 
-/// The mover of leaf `k` of the merged ones.
+/// The mover of leaf `k`. @param merged all leaves, merged @param shift number to add to object ids
+/// @param materialOf material id by the id in `merged`
 Mover ReadMover(vtkPolyData* poly, const vtkAvianLidarSurfaces& merged, std::size_t k, int shift,
   const std::vector<int>& materialOf)
 {
@@ -319,7 +321,7 @@ void vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* se
       surfaceNames = surfaces.objectNames;
       for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
       {
-        surfaceNames.push_back(std::to_string(surfaceNames.size())); // where one list ends
+        surfaceNames.push_back(std::to_string(surfaceNames.size())); // separator of lists
         surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
       }
       if (input)

@@ -6,10 +6,10 @@
  *
  * Each vtkPolyData is an object in a frame of its own. Its field data give the poses of this frame:
  * `pose_time` (n, s; may be missing if there is one pose, which is then constant), `pose_position`
- * (n x 3, m), `pose_orientation` (n x 4, unit quaternion w, x, y, z; may be missing: not turned).
- * Parts that flap: cell array `part`, and field data `flap_hinge` (k x 3, m), `flap_axis` (k x 3),
- * `flap_amplitude` (k, rad), `flap_frequency` (k, Hz), `flap_phase` (k). Materials and ids are
- * given as for surfaces.
+ * (n x 3, m), `pose_orientation` (n x 4, unit quaternion w, x, y, z; may be missing for a mover
+ * that is not turned). Parts that flap are given by the cell array `part` and by the field data
+ * `flap_hinge` (k x 3, m), `flap_axis` (k x 3), `flap_amplitude` (k, rad), `flap_frequency` (k,
+ * Hz), `flap_phase` (k). Materials and ids are given as for surfaces.
  */
 #ifndef vtkAvianLidarMovers_h
 #define vtkAvianLidarMovers_h
@@ -36,9 +36,9 @@ struct vtkAvianLidarMovers
   std::vector<std::string> objectClasses; ///< classes by object id; empty: no input has classes
   std::vector<std::string> materialNames;
 
-  /// Read the movers of all ranks, unless nothing has changed. All ranks must call this function.
-  /// Ids of movers are kept if all are beyond the ids of the surfaces; otherwise new ids follow the
-  /// ids of the surfaces.
+  /// Read the movers of all ranks, unless input, surfaces and ranks are unchanged. All ranks must
+  /// call this function. Ids of movers are kept if all ids are beyond the ids of the surfaces.
+  /// Otherwise new ids follow the ids of the surfaces.
   /// @param input movers, may be null @param surfaces surfaces, whose ids and names come first
   void Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
     const vtkAvianLidarSurfaces& surfaces);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarMaterials.h
- * @brief The named materials, and materials as cell arrays. Not installed.
+ * @brief Includes the named materials, and writes materials as cell arrays. Not installed.
  */
 #ifndef vtkAvianLidarMaterials_h
 #define vtkAvianLidarMaterials_h
@@ -18,7 +18,7 @@ namespace vtkAvianLidarMaterials
 class Coefficients
 {
 public:
-  /// Add the arrays, whose values are not set yet.
+  /// Add the arrays without setting their values.
   Coefficients(vtkCellData* cells, vtkIdType count)
   {
     for (std::size_t k = 0; k < std::size(avianlidar::MaterialCoefficients); ++k)
@@ -42,7 +42,8 @@ private:
   double* Values[std::size(avianlidar::MaterialCoefficients)];
 };
 
-/// Add the cell arrays of all coefficients. @param materialOf the material of a cell, by its index
+/// Add the cell arrays of all coefficients. @param materialOf function from the index of a cell to
+/// the cell's material
 template <class F>
 void AddCoefficients(vtkCellData* cells, vtkIdType count, const F& materialOf)
 {

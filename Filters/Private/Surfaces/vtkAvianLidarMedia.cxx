@@ -54,7 +54,7 @@ Medium FoliageOf(const std::string& kind, double density)
 {
   Medium leaves;
   leaves.extinction = density * NumberOf(kind, "projection");
-  // Lambertian leaves that face all ways: the mean of cos^2 is 1/3, that of |cos| is 1/2.
+  // Lambertian leaves face all directions: the mean of cos^2 is 1/3, and the mean of |cos| is 1/2.
   leaves.backscatterRatio = 1.5 * avianlidar::Pi / NumberOf(kind, "leaf_reflectance");
   leaves.drops = density / NumberOf(kind, "leaf_area");
   leaves.squareOfDrops = avianlidar::SquareOfLeaves;
@@ -66,7 +66,8 @@ Medium FoliageOf(const std::string& kind, double density)
 
 Medium SnowOf(const std::string& kind, double visibility)
 {
-  const double extinction = avianlidar::attenuationOfVisibility(visibility, 550e-9); // of no colour
+  // The extinction of snow is the same at all wavelengths.
+  const double extinction = avianlidar::attenuationOfVisibility(visibility, 550e-9);
   return { extinction, NumberOf(kind, "backscatter_ratio"),
     extinction / (2.0 * NumberOf(kind, "flake_area")) };
 }
@@ -97,7 +98,7 @@ const Word& ShapeOf(const JsonNode& node)
   return WordOf(node.Get("shape"), vtkAvianLidarMedia::Shapes());
 }
 
-/// Throws where a key says nothing of this kind and shape.
+/// Throws if a key has no meaning for the kind and the shape.
 void CheckKeys(const Json& json, const std::string& file)
 {
   const JsonNode node(json, "", file);
@@ -160,7 +161,7 @@ double NumberOr(const JsonNode& node, const char* key, double otherwise)
   return node.Has(key) ? node.Get(key).Number() : otherwise;
 }
 
-/// The closed surface of the text, and the box about it.
+/// Read the closed surface of a text, with the box about the surface.
 void ReadSurface(const JsonNode& node, MediumVolume& volume)
 {
   auto mesh = std::make_shared<avianlidar::TriangleMesh>();
@@ -323,7 +324,7 @@ std::vector<avianlidar::PlacedMedium> vtkAvianLidarMedia::Read(
 
 namespace
 {
-/// A closed surface as triangles that face outward. Throws if it is open.
+/// A closed surface as triangles that face outward. Throws if the surface is open.
 vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& name)
 {
   vtkNew<vtkTriangleFilter> triangles;
@@ -370,7 +371,7 @@ vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& nam
   return closed;
 }
 
-/// A sphere or a cube, of which the corners go to the half axes.
+/// A sphere or a cube, scaled by the half axes of the volume.
 vtkSmartPointer<vtkPolyData> Drawn(const MediumVolume& volume)
 {
   auto drawn = vtkSmartPointer<vtkPolyData>::New();

@@ -21,30 +21,31 @@ class vtkPolyData;
 
 namespace vtkAvianLidarMedia
 {
-/// A kind or a shape, with the keys that say more of it.
+/// A kind or a shape, with the keys that describe the kind or the shape.
 struct Word
 {
   std::string name;
   std::vector<std::string> keys;
 };
 
-/// The kinds of media.json, in the order of vtkAvianLidarMedium::Kinds; the first key is the
+/// The kinds of media.json, in the order of vtkAvianLidarMedium::Kinds. The first key is the
 /// quantity that gives the density.
 const std::vector<Word>& Kinds();
 
-/// In the order of avianlidar::MediumShape and vtkAvianLidarMedium::Shapes.
+/// The shapes, in the order of avianlidar::MediumShape and vtkAvianLidarMedium::Shapes.
 const std::vector<Word>& Shapes();
 
-/// Haze, or fog if the visibility is in the range of fog. @param visibility m, above 0 @param
-/// extinction at the lidar's wavelength, 1/m
+/// Haze, or fog if the visibility is in the range of fog. @param visibility visibility, m, above 0
+/// @param extinction extinction at the lidar's wavelength, 1/m
 avianlidar::Medium HazeOf(double visibility, double extinction);
 
-/// Rain. @param rate mm/h, above 0 @param view of the lidar @param kind given by a rain rate
+/// Rain. @param rate rain rate, mm/h, above 0 @param view view of the lidar @param kind name of a
+/// kind that is given by a rain rate
 avianlidar::Medium RainOf(
   double rate, const avianlidar::LidarView& view, const std::string& kind = "rain");
 
-/// The medium of a text: one, or one for each ellipsoid. Throws std::runtime_error, which names the
-/// medium and the key. @param view of the lidar
+/// The medium of a text, or one medium for each ellipsoid of the text. Throws std::runtime_error,
+/// which names the medium and the key. @param view view of the lidar
 std::vector<avianlidar::PlacedMedium> Read(
   const std::string& text, const avianlidar::LidarView& view);
 
@@ -52,22 +53,22 @@ std::vector<avianlidar::PlacedMedium> Read(
 /// surface of a medium bounded by a surface, may be null @param size side of an unbounded medium, m
 vtkSmartPointer<vtkPolyData> Surface(const std::string& text, vtkPolyData* closed, double size);
 
-/// Whether a leaf is a medium and not a surface.
+/// True if a leaf is a medium and not a surface.
 bool IsMedium(vtkPolyData* leaf);
 
-/// The text of a leaf that is a medium, with the closed surface if the medium is bounded by one;
-/// empty if the leaf is not a medium. Throws as Read().
+/// The text of a leaf that is a medium, with the closed surface if the medium is bounded by a
+/// surface. Empty if the leaf is not a medium. Throws as Read().
 std::string TextOf(vtkPolyData* leaf, const std::string& name);
 
-/// Whether echoes of a medium belong to an object of their own, as in foliage. @param id of the
-/// object, or -1 @param name of the object
+/// True if echoes of a medium belong to an object of their own, as in foliage. @param id id of the
+/// object, or -1 @param name name of the object
 bool IsObject(const std::string& text, int& id, std::string& name);
 
-/// The text with a name and an object.
+/// The text with the name and the id of an object.
 std::string WithObject(const std::string& text, const std::string& name, int id);
 
-/// The text with ellipsoids about `middles` as its shape; unchanged without points.
-/// @param sizes width and height of each, m
+/// The text with ellipsoids about `middles` as its shape. Without points, the text is unchanged.
+/// @param sizes width and height of each ellipsoid, m
 std::string WithCrowns(
   const std::string& text, vtkPolyData* middles, const std::vector<std::array<double, 2>>& sizes);
 

@@ -39,7 +39,7 @@ inline constexpr NamedMaterial NamedMaterials[] = {
     "USGS Spectral Library 7, 905 nm: Asphalt GDS376 black road, old; roughness assumed" },
   { "Grass", { 0.2204, 0.0, 1.0, 0.7 }, { 0.36, 0.55, 0.25 },
     "USGS Spectral Library 7, 905 nm: Cheatgrass ANPC1 field; roughness assumed" },
-  // No number of plumage at 905 nm was found.
+  // No reflectance of plumage at 905 nm was found.
   { "Plumage", { 0.3, 0.0, 1.0 }, { 0.45, 0.38, 0.33 }, "assumed" },
 };
 }

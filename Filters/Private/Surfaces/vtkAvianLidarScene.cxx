@@ -16,7 +16,7 @@ vtkStandardNewMacro(vtkAvianLidarScene);
 
 namespace
 {
-/// A 64-bit value does not survive a trip through double.
+/// Read a checksum of 64 bits. A conversion to double would lose digits.
 bool GetChecksum(vtkFieldData* fields, std::uint64_t& value)
 {
   auto* array = fields->GetArray(vtkAvianLidarArrays::TreeChecksum.name);

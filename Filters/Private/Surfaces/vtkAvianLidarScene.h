@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarScene.h
- * @brief Carries the merged surfaces of a scene and their collision tree with a vtkPolyData, within
+ * @brief Attaches the merged surfaces of a scene and their collision tree to a vtkPolyData, within
  * one process. Not installed.
  *
  * The field array `tree_checksum` of the vtkPolyData holds the scene in its information and, as its
- * value, the checksum of the mesh. So filters that pass field data pass the scene, and a changed
+ * value, the checksum of the mesh. So filters that pass field data pass the scene. A changed
  * geometry is found by its checksum.
  */
 #ifndef vtkAvianLidarScene_h
@@ -37,14 +37,13 @@ public:
   /// Remove the scene, which would be stale with another geometry.
   static void Detach(vtkDataObject* data);
 
-  /// The surfaces of the scene that is attached, if `data` is the object to which the scene was
-  /// attached and was not modified since; else null, because then only the contents can be
-  /// compared.
+  /// The surfaces of the attached scene. Null if the scene was attached to another object, or if
+  /// `data` was modified afterwards. The contents must then be compared.
   static std::shared_ptr<const vtkAvianLidarSurfaces> FindSurfaces(vtkDataObject* data);
 
   struct FoundTree
   {
-    std::shared_ptr<const avianlidar::CollisionTree> tree; ///< null: no tree fits
+    std::shared_ptr<const avianlidar::CollisionTree> tree; ///< fitting tree; null: no tree fits
     bool stale = false; ///< true if the attached tree is of another geometry
   };
 

@@ -30,18 +30,18 @@ using Leaf = vtkAvianLidarSurfaceLeaf;
 using SurfaceArrays = vtkAvianLidarSurfaceArrays;
 namespace names = vtkAvianLidarArrays;
 
-/// A block as one rank has it.
+/// The part of a block that one rank has.
 struct Part
 {
   Leaf leaf;
   std::uint64_t hash = 0;
-  double bytes = 0.0;    ///< of what is sent; 0: without triangles
-  int owner = 0;         ///< the lowest rank that has it
-  std::size_t place = 0; ///< among the leaves of that rank
+  double bytes = 0.0;    ///< size of the data to send, bytes; 0: no triangles
+  int owner = 0;         ///< lowest rank that has the part
+  std::size_t place = 0; ///< index among the leaves of the owner
   vtkSmartPointer<vtkPolyData> data;
 };
 
-/// The parts of each block, by its index.
+/// The parts of each block, by the index of the block.
 using Blocks = std::map<unsigned int, std::vector<Part>>;
 
 std::uint64_t HashOf(const std::vector<vtkMultiProcessStream>& lists)
@@ -56,7 +56,7 @@ std::uint64_t HashOf(const std::vector<vtkMultiProcessStream>& lists)
   return hash;
 }
 
-/// Hash of field data; 0 if there are none.
+/// Hash of field data; 0 without arrays.
 std::uint64_t HashOfFields(vtkTable* carrier)
 {
   if (carrier->GetFieldData()->GetNumberOfArrays() == 0)
@@ -66,13 +66,13 @@ std::uint64_t HashOfFields(vtkTable* carrier)
   vtkNew<vtkCharArray> bytes;
   if (!vtkCommunicator::MarshalDataObject(carrier, bytes))
   {
-    throw std::bad_alloc(); // VTK had no memory to serialise it
+    throw std::bad_alloc(); // VTK had no memory to serialise the data
   }
   return avianlidar::hashOf(
     bytes->GetPointer(0), static_cast<std::size_t>(bytes->GetNumberOfValues()), 0);
 }
 
-/// The same surface with the arrays that a scan needs.
+/// A surface with only the arrays that a scan needs.
 vtkSmartPointer<vtkPolyData> Lean(vtkPolyData* surface)
 {
   auto lean = vtkSmartPointer<vtkPolyData>::New();
@@ -97,7 +97,7 @@ vtkSmartPointer<vtkPolyData> Lean(vtkPolyData* surface)
   return lean;
 }
 
-/// What a rank says of its leaves.
+/// Names, hashes and sizes of a rank's leaves, and the hash of the field data, for the other ranks.
 vtkMultiProcessStream ListOf(const std::vector<Leaf>& leaves, vtkTable* fields)
 {
   vtkMultiProcessStream list;
@@ -123,8 +123,8 @@ Part ReadPart(vtkMultiProcessStream& list)
   return part;
 }
 
-/// What differs of the lists of all ranks, but for parts that say nothing.
-/// @param fieldOwner the lowest rank that has field data, or the last
+/// The different parts of all blocks of all ranks, without parts that are not needed.
+/// @param fieldOwner lowest rank that has field data; without field data, the last rank
 Blocks BlocksOf(std::vector<vtkMultiProcessStream>& lists, int& fieldOwner)
 {
   Blocks blocks;
@@ -151,8 +151,8 @@ Blocks BlocksOf(std::vector<vtkMultiProcessStream>& lists, int& fieldOwner)
   }
   for (auto& [index, block] : blocks)
   {
-    // A block that is empty everywhere is an object all the same; elsewhere empty parts say
-    // nothing.
+    // A block that is empty on all ranks is still an object, so one part is kept. Other empty parts
+    // are not needed.
     const auto full = std::stable_partition(
       block.begin(), block.end(), [](const Part& part) { return part.bytes > 0.0; });
     block.erase(std::max(full, block.begin() + 1), block.end());
@@ -160,8 +160,8 @@ Blocks BlocksOf(std::vector<vtkMultiProcessStream>& lists, int& fieldOwner)
   return blocks;
 }
 
-/// Give parts to all ranks, as many of one rank as go into one message: many blocks of one rank are
-/// what readers make. @return the first part that is left
+/// Send the next parts of one rank to all ranks, as many parts as fit into one message, because
+/// readers often make many blocks on one rank. @return first part that was not sent
 std::vector<Part*>::iterator Broadcast(const vtkAvianLidarRanks& ranks,
   std::vector<Part*>::iterator begin, std::vector<Part*>::iterator end, double& sent)
 {
@@ -184,13 +184,13 @@ std::vector<Part*>::iterator Broadcast(const vtkAvianLidarRanks& ranks,
     (*part)->data = vtkPolyData::SafeDownCast(message->GetPartition(count++));
     if (!(*part)->data)
     {
-      throw std::bad_alloc(); // VTK leaves out what it has no memory to write
+      throw std::bad_alloc(); // VTK leaves out parts that it has no memory to write
     }
   }
   return last;
 }
 
-/// True if both have the same arrays and names, so that they can be one block.
+/// True if two surfaces have the same arrays and names, so that the surfaces can be one block.
 bool AreAlike(vtkPolyData* one, vtkPolyData* other)
 {
   const std::vector<vtkDataArray*> a = SurfaceArrays(one).Numbers();
@@ -201,7 +201,7 @@ bool AreAlike(vtkPolyData* one, vtkPolyData* other)
     Leaf::HashOfNames(one->GetFieldData(), 0) == Leaf::HashOfNames(other->GetFieldData(), 0);
 }
 
-/// Parts that are alike as one, in their order.
+/// One surface of parts that are alike, in the order of the parts.
 vtkSmartPointer<vtkPolyData> Join(
   std::vector<Part>::const_iterator begin, std::vector<Part>::const_iterator end)
 {
@@ -209,7 +209,7 @@ vtkSmartPointer<vtkPolyData> Join(
   {
     return begin->data;
   }
-  vtkNew<vtkAppendPolyData> append; // keeps the arrays that all have
+  vtkNew<vtkAppendPolyData> append; // keeps the arrays that all parts have
   for (auto part = begin; part != end; ++part)
   {
     if (!SurfaceArrays(part->data).ghosts)
@@ -227,13 +227,13 @@ vtkSmartPointer<vtkPolyData> Join(
 }
 }
 
-/// What is merged on this rank.
+/// The surfaces that are merged on this rank.
 struct vtkAvianLidarSurfaceExchange::Scene
 {
   std::vector<Leaf> leaves;
-  std::vector<vtkSmartPointer<vtkPolyData>> kept; ///< what leaves point to
-  vtkNew<vtkTable> fields; ///< VTK sends those of a vtkPolyData without points as ASCII
-  bool changed = true;     ///< it is not the scene of the last exchange
+  std::vector<vtkSmartPointer<vtkPolyData>> kept; ///< data to which leaves point
+  vtkNew<vtkTable> fields; ///< field data; VTK sends field data of an empty vtkPolyData as ASCII
+  bool changed = true;     ///< false for the scene of the last exchange
 };
 
 //------------------------------------------------------------------------------
@@ -269,7 +269,7 @@ try
 }
 catch (...)
 {
-  this->Forget(); // what was sent may not have arrived
+  this->Forget(); // other ranks may not have received the surfaces
   throw;
 }
 
@@ -290,7 +290,7 @@ void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkA
         problem = wrong.empty() ? problem : leaf.Message(wrong);
       }
       scene.fields->GetFieldData()->PassData(input->GetFieldData());
-      vtkAvianLidarScene::Detach(scene.fields); // it cannot be sent
+      vtkAvianLidarScene::Detach(scene.fields); // a scene cannot be sent
       vtkAvianLidarRequire(problem, what);
       lists.push_back(ListOf(scene.leaves, scene.fields));
       hash = HashOf(lists);
@@ -318,7 +318,7 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
   const std::string& what, std::vector<vtkMultiProcessStream>& lists, Scene& scene)
 {
   Blocks blocks;
-  std::vector<Part*> parts; // of all blocks
+  std::vector<Part*> parts; // parts of all blocks
   int fieldOwner = 0;
   ranks.Together(self,
     [&]()
@@ -354,7 +354,7 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
     {
       if (!received)
       {
-        throw std::bad_alloc(); // VTK leaves out what it has no memory to read
+        throw std::bad_alloc(); // VTK leaves out arrays that it has no memory to read
       }
       scene.leaves.clear();
       for (const auto& [index, block] : blocks)

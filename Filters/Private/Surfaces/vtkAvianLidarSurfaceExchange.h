@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarSurfaceExchange.h
- * @brief Gives every rank the surfaces that one rank, all ranks, or each rank in part has read. Not
- * installed.
+ * @brief Gives every rank the surfaces of all ranks. Surfaces may be read by one rank, by all
+ * ranks, or in part by each rank. Not installed.
  *
  * 1. Each rank hashes its surfaces, block by block, and all ranks compare one hash. Nothing is sent
  *    if all ranks have the same surfaces, or the same surfaces as at the last exchange.
  * 2. Otherwise the ranks list their blocks, with the hashes. Blocks with the same place in the
- *    composite (flat index) are one block: equal data count once, different data are parts of the
- *    block. The lowest rank that has a part sends it to all, as a vtkPolyData with the arrays that
- *    a scan needs.
+ *    composite (flat index) are one block. Equal data count once. Different data are parts of the
+ *    block. The lowest rank that has a part sends the part to all ranks, as a vtkPolyData with the
+ *    arrays that a scan needs.
  * 3. Every rank puts the parts together: blocks in leaf order, parts of a block in the order of
  *    ranks. So the scene, its ids and its names are the same on all ranks.
  */
@@ -34,15 +34,15 @@ class vtkAvianLidarSurfaceExchange
 {
 public:
   /// Merge the scene of this process or of all ranks, which must all call this function.
-  /// @param input surfaces of this rank @param what beginning of an error: "Input port 1, " @param
-  /// threads as for vtkAvianLidarRanks::Threads() @param known result of the last call, null at
-  /// first. If no surface changed, `known` is returned; else the new result shares the unchanged
-  /// parts of `known`
+  /// @param input surfaces of this rank @param what beginning of error messages, such as "Input
+  /// port 1, " @param threads as for vtkAvianLidarRanks::Threads() @param known result of the last
+  /// call, null at first. If no surface changed, `known` is returned. Otherwise the new result
+  /// shares the unchanged parts of `known`.
   std::shared_ptr<const vtkAvianLidarSurfaces> Merge(const vtkAvianLidarRanks& ranks,
     vtkAlgorithm* self, vtkDataObject* input, const std::string& what, int threads,
     const std::shared_ptr<const vtkAvianLidarSurfaces>& known);
 
-  /// Treat the next scene as a new one, because the result of the last call was not used.
+  /// Treat the next scene as new, because the result of the last call was not used.
   void Forget() { this->Known.reset(); }
 
   vtkSmartPointer<vtkFieldData> Fields; ///< field data of the scene merged last

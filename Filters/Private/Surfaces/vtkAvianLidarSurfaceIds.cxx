@@ -27,8 +27,9 @@ std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType ind
                                                                    : std::string();
 }
 
-/// The text of an object of a leaf: its only one, or by the id there.
-/// @param rank of the object among those of the leaf
+/// Text of an object of a leaf. A single text belongs to the first object. Several texts are
+/// indexed by the id in the leaf.
+/// @param rank index of the object among the objects of the leaf
 std::string TextOfObject(vtkFieldData* fields, const char* array, int local, std::size_t rank)
 {
   auto* own = vtkStringArray::SafeDownCast(fields->GetAbstractArray(array));
@@ -140,7 +141,7 @@ void vtkAvianLidarSurfaceIds::AddUnusedNames(const std::vector<Leaf>& leaves)
     auto* names =
       vtkStringArray::SafeDownCast(fields->GetAbstractArray(vtkAvianLidarArrays::ObjectNames.name));
     const vtkIdType count = names && this->KeepObjectIds ? names->GetNumberOfValues() : 0;
-    // A single name belongs to the object of the leaf, whatever its id is.
+    // A single name belongs to the object of the leaf, whatever id the object has.
     for (vtkIdType id = 0; count > 1 && id < count; ++id)
     {
       this->ObjectNames.resize(

@@ -4,8 +4,8 @@
  * @brief Makes the ids, names and classes of the objects and materials of a scene from the ids,
  * names and classes that its leaves have. Not installed.
  *
- * Object ids are kept if every leaf has ids, no two leaves share an id, and all ids are small and
- * not negative; otherwise ids are assigned in leaf order. Materials are distinguished by name:
+ * Object ids are kept if every leaf has ids, no two leaves share an id, and all ids are from 0 to
+ * 1,000,000. Otherwise ids are assigned in leaf order. Materials are distinguished by name:
  * different leaves may give a material different ids. The classes in the scene's own field data
  * count only if no leaf has classes: a composite may have copied these classes from the first of
  * its producers.
@@ -28,14 +28,14 @@ public:
   std::vector<std::string> ObjectClasses; ///< classes by object id; empty: no leaf has classes
   std::vector<std::string> MaterialNames; ///< names by material id
 
-  /// Start with the leaves of a scene. @param sceneFields field data of the whole input, may be
-  /// null; must outlive this object
+  /// Start with the leaves of a scene. @param sceneFields field data of the whole input, which may
+  /// be null and must outlive this object
   void Begin(vtkFieldData* sceneFields, const std::vector<vtkAvianLidarSurfaceLeaf>& leaves);
 
   /// Add the object of a leaf without triangles, if the leaf is an object.
   void AddEmptyLeaf(const vtkAvianLidarSurfaceLeaf& leaf);
 
-  /// Id in the scene of an object of a leaf; to be called once per object. @param poly the leaf,
+  /// Id in the scene of an object of a leaf. To be called once per object. @param poly the leaf,
   /// triangulated
   /// @param local id in the leaf @param rank number of earlier calls for the leaf
   int AddObject(

@@ -30,8 +30,8 @@
 
 namespace
 {
-/// Coefficients of polygons and strips must be those of a material, but for ghosts and cells
-/// without triangles.
+/// Throws unless the coefficients of polygons and strips are valid. Ghosts and cells without
+/// triangles are not checked.
 void RequireMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)
 {
   if (!arrays.HasMaterials())
@@ -39,7 +39,7 @@ void RequireMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& array
     return;
   }
   const vtkAvianLidarMaterialColumns materials(arrays);
-  avianlidar::Material good; // most cells have what the one before had
+  avianlidar::Material good; // last good material, as neighbouring cells often have the same
   vtkIdType cell = poly->GetNumberOfVerts() + poly->GetNumberOfLines();
   for (vtkCellArray* cells : { poly->GetPolys(), poly->GetStrips() })
   {
@@ -64,7 +64,7 @@ void RequireMaterials(vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& array
   }
 }
 
-/// No surface, and what the beam source gives its beams.
+/// True for data without polygons and strips, but with the point arrays of a beam source.
 bool AreBeams(vtkPolyData* poly)
 {
   vtkPointData* arrays = poly->GetPointData();
@@ -73,7 +73,7 @@ bool AreBeams(vtkPolyData* poly)
     arrays->HasArray(vtkAvianLidarArrays::BeamId.name);
 }
 
-/// Ids must be whole numbers that fit an int.
+/// Throws unless all ids are whole numbers that an int holds.
 void RequireIds(vtkDataArray* ids)
 {
   if (!ids || vtkIntArray::SafeDownCast(ids))
@@ -141,7 +141,7 @@ std::string vtkAvianLidarSurfaceLeaf::Message(const std::string& what) const
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarSurfaceLeaf::WarningOnPoints() const
 {
-  constexpr double farForSinglePrecision = 32768.0; // m
+  constexpr double farForSinglePrecision = 32768.0; // largest coordinate without a warning, m
   vtkPoints* points = this->data->GetPoints();
   if (!points || points->GetDataType() != VTK_FLOAT || points->GetNumberOfPoints() == 0)
   {
@@ -177,7 +177,7 @@ try
       : "");
   for (vtkCellArray* cells : { this->data->GetVerts(), this->data->GetLines() })
   {
-    // They are dropped, but the arrays of cells begin with theirs.
+    // Vertices and lines are dropped, but cell arrays begin with the values of vertices and lines.
     vtkAvianLidarRequire(vtkAvianLidarOffsetsError(cells));
   }
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
@@ -235,7 +235,7 @@ std::size_t vtkAvianLidarSurfaceLeaf::NumberOfTriangles() const
   vtkIdType triangles = 0;
   for (vtkCellArray* cells : { this->data->GetPolys(), this->data->GetStrips() })
   {
-    // Two points more than triangles, in each.
+    // A polygon or a strip of n points has n - 2 triangles.
     triangles +=
       std::max<vtkIdType>(0, cells->GetNumberOfConnectivityIds() - 2 * cells->GetNumberOfCells());
   }
@@ -257,7 +257,7 @@ std::uint64_t vtkAvianLidarSurfaceLeaf::HashOfNames(vtkFieldData* fields, std::u
     vtkAbstractArray* array = fields ? fields->GetAbstractArray(name.name) : nullptr;
     auto* names = vtkStringArray::SafeDownCast(array);
     constexpr vtkIdType none = -1;
-    constexpr vtkIdType noText = -2; // an error: another state than none
+    constexpr vtkIdType noText = -2; // an error, which changes the hash
     const vtkIdType count = names ? names->GetNumberOfValues() : array ? noText : none;
     seed = avianlidar::hashOf(&count, sizeof(count), seed);
     for (vtkIdType i = 0; i < count; ++i)
@@ -276,7 +276,7 @@ std::uint64_t vtkAvianLidarSurfaceLeaf::HashOf(vtkPolyData* poly)
   const vtkAvianLidarSurfaceArrays arrays(poly);
   std::uint64_t hash = HashOfNames(poly->GetFieldData(), 0);
   hash = Content::HashOf(arrays.ghosts, Content::HashOfGeometry(poly, hash));
-  // An array without numbers is an error: another state than no array.
+  // An array without numbers is an error, which changes the hash.
   const std::string_view odd = arrays.notNumeric ? arrays.notNumeric : "";
   hash = avianlidar::hashOf(odd.data(), odd.size(), hash);
   for (vtkDataArray* array : arrays.Numbers())

@@ -54,8 +54,8 @@ struct vtkAvianLidarSurfaceLeaf
   /// The name of a block that has no name in the composite. @param number number of the leaf
   static std::string NameOfBlock(std::size_t number) { return "block " + std::to_string(number); }
 
-  /// The vtkPolyData of a scene in leaf order; `problem` becomes an error text if data of other
-  /// types were found.
+  /// The vtkPolyData of a scene in leaf order. If data of other types were found, `problem` becomes
+  /// an error text.
   static std::vector<vtkAvianLidarSurfaceLeaf> Collect(vtkDataObject* input, std::string& problem);
 
   /// Hash of the names of objects and materials, and of the classes of objects. @param seed hash to
@@ -65,7 +65,7 @@ struct vtkAvianLidarSurfaceLeaf
   /// Hash of everything that vtkAvianLidarSurfaces::Merge() reads of a vtkPolyData.
   static std::uint64_t HashOf(vtkPolyData* poly);
 
-  /// "surfaces, block 'name': what"
+  /// The error text "surfaces, block 'name': what".
   std::string Message(const std::string& what) const;
 
   /// An error text if the cells or their arrays are bad, else an empty string.
@@ -81,7 +81,7 @@ struct vtkAvianLidarSurfaceLeaf
   /// Approximate number of triangles in the polygons and strips.
   std::size_t NumberOfTriangles() const;
 
-  /// The polygons and strips as triangles; vertices, lines, and polygons and strips of fewer than
+  /// The polygons and strips as triangles. Vertices, lines, and polygons and strips of fewer than
   /// three points are dropped. Returns `data` itself if all cells are triangles.
   vtkSmartPointer<vtkPolyData> Triangulated() const;
 };
@@ -110,8 +110,8 @@ class vtkAvianLidarMaterialColumns
 {
 public:
   explicit vtkAvianLidarMaterialColumns(const vtkAvianLidarSurfaceArrays& arrays);
-  /// Write the material of a cell into `material`; returning it by value would double the time of
-  /// loops over cells. A coefficient without an array does not change.
+  /// Write the material of a cell into `material`. A return by value would double the time of loops
+  /// over cells. A coefficient without an array does not change.
   void Read(vtkIdType cell, avianlidar::Material& material) const
   {
     for (std::size_t k = 0; k < std::size(this->Columns); ++k)

@@ -38,7 +38,7 @@ struct vtkAvianLidarSurfaces
   avianlidar::SharedVector<int> objectIds;                  ///< object id of each triangle
   avianlidar::SharedVector<int> materialIds;                ///< material id of each triangle
   std::vector<std::string> objectNames;                     ///< names by object id
-  std::vector<std::string> objectClasses;                   ///< classes by object id; or empty
+  std::vector<std::string> objectClasses;                   ///< classes by object id, if any
   std::vector<std::string> materialNames;                   ///< names by material id
   std::vector<std::string> media; ///< texts of media (vtkAvianLidarMedia.h), which are not surfaces
   struct Range
@@ -51,10 +51,10 @@ struct vtkAvianLidarSurfaces
 
   /// Merge every vtkPolyData of `input` (`input` itself or the leaves of a composite). Triangles
   /// are sorted (TriangleOrder.h), so that surfaces give the same echoes however they are divided.
-  /// Ghost cells, vertices and lines are skipped; polygons and strips are triangulated.
-  /// Merging the result of ToPolyData() gives the same scene.
+  /// Ghost cells, vertices and lines are skipped. Polygons and strips are triangulated. Merging the
+  /// result of ToPolyData() gives the same scene.
   /// @param known earlier result, may be null, whose mesh, materials and ids are shared if the
-  /// values are equal @param threads number of threads that check the leaves, > 0, or 0 for all
+  /// values are equal @param threads number of threads that check the leaves; 0: all threads
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
 
@@ -63,12 +63,12 @@ struct vtkAvianLidarSurfaces
   static vtkAvianLidarSurfaces Merge(const std::vector<vtkAvianLidarSurfaceLeaf>& leaves,
     vtkFieldData* fields, const vtkAvianLidarSurfaces* known, int threads, bool keepsOrder);
 
-  /// The merged scene as one vtkPolyData: double points, triangles, ids and coefficients, names,
-  /// and `fields` if not null.
+  /// The merged scene as one vtkPolyData: points in double precision, triangles, ids and
+  /// coefficients, names, and `fields` if not null.
   vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields) const;
 
   /// A warning that names objects whose faces coincide; empty if no faces coincide. @param pairs
-  /// pairs of triangles, of which the first is visible
+  /// pairs of coincident triangles, the visible triangle first
   std::string WarningOnCoincidence(
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) const;
 };

@@ -35,7 +35,7 @@ using Column = vtkAvianLidarColumn;
 
 using vtkAvianLidarMaterials::NamedMaterials;
 
-/// f(i) for each leaf, by several threads: their data lie all over memory.
+/// Call f(i) for each leaf, by several threads, because the data of leaves are scattered in memory.
 template <class F>
 void ForAll(const std::vector<Leaf>& leaves, int threads, F&& f)
 {
@@ -49,7 +49,7 @@ void ForAll(const std::vector<Leaf>& leaves, int threads, F&& f)
     });
 }
 
-/// Merges the leaves one after the other; its members are the state of that walk.
+/// Merges the leaves one after the other. The members hold what was merged so far.
 class Merger
 {
 public:
@@ -102,9 +102,9 @@ private:
   std::vector<int> MaterialIds;
   bool MeshIsKnown = false;
   std::shared_ptr<TriangleMesh> Mesh;
-  std::uint32_t FirstPoint = 0; ///< of the leaf
+  std::uint32_t FirstPoint = 0; ///< index of the leaf's first point
   vtkAvianLidarSurfaceIds Ids;
-  std::vector<vtkAvianLidarSurfaceArrays> Arrays; ///< of the leaves
+  std::vector<vtkAvianLidarSurfaceArrays> Arrays; ///< cell arrays of the leaves
   vtkIdType WithoutMaterial = 0;
 
   /// Hash of everything that the mesh and the order of its triangles depend on.
@@ -119,7 +119,7 @@ private:
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].ghosts, hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].object, hash);
       const bool hasMaterials =
-        this->Arrays[i].HasMaterials(); // else ids of materials do not count
+        this->Arrays[i].HasMaterials(); // without materials, material ids are not used
       hash = avianlidar::hashOf(&hasMaterials, sizeof(hasMaterials), hash);
       hash = vtkAvianLidarContent::HashOf(this->Arrays[i].material, hash);
     }
@@ -137,7 +137,8 @@ private:
     return first == wrong.end() || this->Fail(leaves[first - wrong.begin()], *first);
   }
 
-  /// Media are no surfaces. They come by themselves, or with surfaces that were merged before.
+  /// Media are not surfaces. A medium is a leaf of its own, or a text in the field data of surfaces
+  /// that were merged before.
   void AddMedia(const std::vector<Leaf>& leaves)
   {
     for (const Leaf& leaf : leaves)
@@ -178,7 +179,8 @@ private:
       isObject ? vtkAvianLidarMedia::WithObject(text, name, this->Ids.AddMedium(name, id)) : text);
   }
 
-  /// Room for all leaves at once: growing to the size of each in turn would copy all before it.
+  /// Reserve memory for all leaves at once. Memory that grows leaf by leaf would be copied each
+  /// time.
   void Reserve(const std::vector<Leaf>& leaves)
   {
     std::size_t points = 0;
@@ -198,7 +200,7 @@ private:
     this->MaterialIds.reserve(triangles);
   }
 
-  /// The result from what was gathered of all leaves.
+  /// Make the result from the values of all leaves.
   void Finish(const vtkAvianLidarSurfaces* known)
   {
     if (this->MeshIsKnown)
@@ -221,7 +223,7 @@ private:
     this->Result.materialIds = std::move(this->MaterialIds);
     if (known)
     {
-      // Equal values share one copy, which is summarised once.
+      // Equal values share one copy, and a shared copy is summarised once.
       this->Result.materials.shareWith(known->materials);
       this->Result.objectIds.shareWith(known->objectIds);
       this->Result.materialIds.shareWith(known->materialIds);
@@ -231,7 +233,7 @@ private:
     this->Result.materialNames = std::move(this->Ids.MaterialNames);
   }
 
-  /// Input that can be used but may be a mistake.
+  /// Set the warning about input that can be used but may be a mistake.
   void FindWarnings(const std::vector<Leaf>& leaves)
   {
     std::string& warning = this->Result.warning;
@@ -261,22 +263,23 @@ private:
       if (!coarse.empty())
       {
         warning += (warning.empty() ? "" : " Also, ") + coarse;
-        return; // of the first such leaf
+        return; // only the first such leaf is named
       }
     }
   }
 
-  /// Boxes in single precision are widened by a share of the scene (WideTree.h).
+  /// Warn of a large scene: boxes in single precision are widened by a share of the scene
+  /// (WideTree.h).
   void WarnOfSize()
   {
-    avianlidar::AABB bounds; // of VTK they would take more threads than are asked for
+    avianlidar::AABB bounds; // VTK's own bounds would use too many threads
     for (const Vec3& point : this->Result.mesh->points)
     {
       bounds.extend(point);
     }
     const Vec3 size = bounds.empty() ? Vec3(0.0) : bounds.upper - bounds.lower;
     const double largest = std::max({ size.x, size.y, size.z });
-    constexpr double LargestUsual = 1e8; // m, by which boxes are 40 m wider
+    constexpr double LargestUsual = 1e8; // m; boxes of such a scene are 40 m wider
     if (largest > LargestUsual)
     {
       std::string& warning = this->Result.warning;
@@ -299,7 +302,8 @@ private:
     {
       return true;
     }
-    // Without a holder where the leaf is taken as it is: VTK collects garbage whenever one goes.
+    // A leaf that is used as it is has no smart pointer, because VTK collects garbage whenever a
+    // smart pointer is destroyed.
     vtkSmartPointer<vtkPolyData> made;
     const bool asItIs = leaf.IsTriangulated();
     if (!asItIs)
@@ -346,12 +350,13 @@ private:
     return true;
   }
 
-  /// From the ids of a leaf's cells to those of the scene, given in ascending order of the former:
-  /// the order of cells does not count.
+  /// Maps the ids of a leaf's cells to ids of the scene. Ids of the scene are assigned in ascending
+  /// order of the leaf's ids, so that the order of cells does not matter.
   class Renumbering
   {
   public:
-    /// @param ids may be null: all have the id `none` @param idOf id in the scene of an id
+    /// @param ids ids of the cells; null: all cells have the id `none` @param idOf function from an
+    /// id of the leaf to the id in the scene
     template <class F>
     Renumbering(const vtkAvianLidarSurfaceArrays& arrays, vtkDataArray* ids, int none,
       vtkIdType cells, F idOf)
@@ -388,7 +393,7 @@ private:
     const int None;
     std::map<int, int> Scene;
     std::map<int, int>::iterator
-      Last; ///< entry of the last cell, as most cells have the id of the one before
+      Last; ///< entry of the last cell, as most cells have the id of the cell before
   };
 
   void AddCells(const Leaf& leaf, vtkPolyData* poly, const vtkAvianLidarSurfaceArrays& arrays)

@@ -30,7 +30,7 @@ vtkSmartPointer<vtkPoints> MakePoints(const avianlidar::TriangleMesh& mesh)
 vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fields) const
 {
   namespace Arrays = vtkAvianLidarArrays;
-  // Cells come in the order of the input.
+  // Cells are in the order of the input.
   const auto cellOf = [this](std::size_t i)
   { return static_cast<vtkIdType>(this->order.empty() ? i : this->order[i]); };
   auto poly = vtkSmartPointer<vtkPolyData>::New();

@@ -27,9 +27,9 @@ bool HasShort(vtkCellArray* cells)
   return cell < cells->GetNumberOfCells();
 }
 
-/// Polygons of at least three points, and strips as triangles, without verts and lines:
-/// vtkTriangleFilter reads points that shorter ones do not have, and that of VTK 9.3 mixes up the
-/// arrays of cells where triangles come with cells of another kind.
+/// Polygons of at least three points, and strips as triangles, without vertices and lines.
+/// vtkTriangleFilter reads points that shorter polygons do not have. The filter of VTK 9.3 also
+/// mixes up cell arrays if the input has triangles and other cells.
 vtkSmartPointer<vtkPolyData> PolygonsOf(vtkPolyData* data)
 {
   auto rest = vtkSmartPointer<vtkPolyData>::New();

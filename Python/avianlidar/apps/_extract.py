@@ -12,7 +12,7 @@ import numpy as np
 from osgeo import ogr
 
 from ._features import HEIGHTS, Feature, Table, fits, height_name, length_of, levels_of, properties_of
-from ._gdal import as_area, corners_of, form_of, geometry, is_closed, parts_of, solid, union, valid
+from ._gdal import corners_of, form_of, geometry, is_closed, parts_of, solid, union, valid
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
@@ -95,7 +95,7 @@ class Extract:
         """A feature. @param shape ogr, degrees; may be None"""
         tags, form = _as_osm(tags, self.known), form_of(shape)
         if fits(tags, {"type": "building", "building": "*"}) and not form and shape is not None:  # a relation of outlines and parts
-            shape, form = union([as_area(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]), "area"
+            shape, form = union([solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]), "area"
         one, corners = Feature("", tags, shape), corners_of(shape) if form else np.empty((0, 2))
         if not len(corners):
             if shape is None or shape.IsEmpty():
@@ -112,8 +112,10 @@ class Extract:
             use = "threshold"
             self.thresholds.append(one)
         elif tags.get("aeroway") == "aerodrome" and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome")):
-            use = "aerodrome"
-            self.aerodromes.append(Feature("", tags, as_area(shape) if form == "line" and closed else shape))
+            outline = solid(shape) if closed else shape
+            if not outline.IsEmpty():
+                use = "aerodrome"
+                self.aerodromes.append(Feature("", tags, outline))
         if tags.get("natural") == COAST and form != "point":
             self._keep(Feature(COAST, tags, shape), form, corners)
             return
@@ -122,7 +124,11 @@ class Extract:
             self._leave_unknown(one, form, use)
         reason = self._reason(tags) if kinds else None
         for kind, taken in kinds:
-            one = Feature(kind, tags, solid(shape) if taken == "area" else shape if taken == form else ogr.ForceToMultiLineString(shape))
+            one = Feature(kind, tags, shape)
+            if not reason and taken == "area":
+                one.shape = solid(shape)
+            elif taken != form:
+                one.shape = ogr.ForceToMultiLineString(shape)
             if reason or not _has_extent(one.shape, corners, taken):
                 self.leave(one, reason or (CUT if tags.get("osm_way_id") in self.cut else "no nodes"))
                 continue

@@ -18,8 +18,8 @@ for module in (gdal, ogr, osr):
 
 @contextlib.contextmanager
 def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
-    """Without GDAL's warnings, as of rings that cross, which the scene reader repairs and counts. @param hear is called with them,
-    and with what the OSM driver says of ways and relations"""
+    """Suppresses GDAL's warnings, for example of rings that cross. @param hear is called with the warnings, and with the messages of the
+    OSM driver on ways and relations"""
     before = gdal.GetConfigOption("CPL_DEBUG")
     gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
     gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")
@@ -115,9 +115,13 @@ def as_area(shape):
 
 
 def solid(shape):
-    """The polygon in a closed line or an area, without rings that enclose nothing."""
+    """The polygons in a closed line or an area, without rings that enclose nothing. May be empty."""
     area = as_area(shape)
-    return area if area.IsValid() else union([area])
+    rings = [[part.GetGeometryRef(i).GetPoints() or () for i in range(part.GetGeometryCount())] for part in parts_of(area)]
+    if all(len(ring) > 3 for one in rings for ring in one) and area.IsValid():
+        return area
+    # GEOS refuses rings of fewer than three corners.
+    return union([geometry("MultiPolygon", [[ring for ring in one if len(ring) > 3] for one in rings if one and len(one[0]) > 3])])
 
 
 def union(areas: List[Any]):

@@ -154,8 +154,8 @@ class Hours:
             said += f"; left out: {count:,}, the first in line {number}, '{line[:60]}' ({why})"
         others = collections.Counter(name for one in self.reports for name in set(one.others))
         if others:
-            said += "; not modelled, except for the visibility: " + ", ".join(f"{name} ({count} "
-                                                                              "reports)" for name, count in others.most_common())
+            counts = ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
+            said += f"; not modelled, except for the visibility: {counts}"
         return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and DZ {DRIZZLE:g} mm/h; 10 km or more is "
                 f"{CLEAR / 1000:g} km")
 

@@ -26,7 +26,7 @@ SCENES = (("footprints alone (Hongqiao)", None), ("towers (Shanghai)", "shanghai
 ASKED = {"energy": 0.02, "range": 0.05, "missed": 0.01}, {"energy": 0.05, "range": 0.2, "missed": 0.03}
 SEEDS = 501, 502  # of scans that are judged
 REFERENCE = 6400  # rays by cells, with eight connections
-GHOST = 0.5  # share of the energy over two reflections, from which on an echo's energy is not judged
+GHOST = 0.5  # share of the energy after two reflections, from which on an echo's energy is not judged
 NAMES = {"beam_samples": "BeamSamples", "rays_per_beam": "RaysPerBeam", "sampling": "Sampling",
          "number_of_reflections": "NumberOfReflections", "number_of_connections": "NumberOfConnections"}
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Do the numbers of Documentation/evidence/accuracy.md hold where nobody chose the place? Stands the lidar of each scene at
 places that are drawn at random, 3 m above open ground, and prints a table: errors of presets and settings, and what paths
-over two reflections and connections cost there.
+after two reflections and connections cost there.
 
     Testing/Studies/run.py places airport my.lidarscene.json --places 3"""
 import sys

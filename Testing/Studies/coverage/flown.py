@@ -2,7 +2,7 @@
 """Coverage against birds that are flown: at each place a bird of random heading and wing phase, scan after scan through the
 echo filter, detected if it has an echo. flown_sensors.py runs it.
 
-Echoes over two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams that few triangles enter are integrated; others have
+Echoes after two reflections are left out. Ranges vary by one range unit, as coverage is the mean over them. Beams that few triangles enter are integrated; others have
 cells with some 32 rays for each of --rays: with fewer, birds before structures are missed.
 """
 import math

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How much light comes back over three reflections and more, which the echo filter leaves out? A ray tracer of its own
+"""How much light comes back after three reflections and more, which the echo filter leaves out? A ray tracer of its own
 (NumPy, and VTK's cell locator in place of the collision tree) follows paths over up to eight reflections, in scenes made of
 mirrors, in the corridor and at the airport. Its first two orders are compared with the echo filter. Leaves tables.
 

@@ -25,7 +25,7 @@ READINGS = ("here", "mean", "one", "all")
 
 
 class Beam(mr.Beam):
-    """Adds `second`: what comes back over two reflections in each reading, as a share of the pulse, and `beyond`: how many rays
+    """Adds `second`: what comes back after two reflections in each reading, as a share of the pulse, and `beyond`: how many rays
     return more than they reflect in each."""
 
     def __init__(self, *arguments):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What paths over two reflections cost at eight places: processor time of a scan with two reflections over that with one.
+"""What paths with two reflections cost at eight places: processor time of a scan with two reflections over that with one.
 
     Testing/Studies/run.py second_light
 

@@ -237,7 +237,7 @@ double PolygonQuadrature::boundOf(
     const std::size_t node = shares.contribution[s];
     if (node >= energies.size())
     {
-      break; // the other shares belong to paths over two reflections
+      break; // the other shares belong to paths with two reflections
     }
     energy += shares.energies[s];
     // The neighbouring nodes belong to the parts beyond the borders.
