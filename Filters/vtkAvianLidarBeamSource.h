@@ -9,7 +9,8 @@
  * - Output port 0, vtkPolyData: one vertex per beam at Position, column by column and channel by
  *   channel within a column, with the point arrays `beam_id`, `direction`, `laser_id`, `azimuth`,
  *   `vertical_angle` and `timestamp`. With sway or jitter, `direction` is the true direction of a
- *   beam. The sensor reports `reported_direction`, `azimuth` and `vertical_angle`.
+ *   beam. The arrays `reported_direction`, `azimuth` and `vertical_angle` are the values that the
+ *   sensor reports.
  * - Output port 1, vtkPolyData: the same beams as lines of the length DisplayLength, for display.
  * - Field data of both outputs: every property in snake case in its own unit, and `wavelength`.
  *   Settings that the sensor does not use are left out. With a photon receiver, the energy limits
@@ -88,7 +89,7 @@ public:
   };
 
   ///@{
-  /// Set all properties but ErrorsAsData to the values of a built-in sensor's file in
+  /// Set all properties except ErrorsAsData to the values of a built-in sensor's file in
   /// Filters/Sensors. A property that is not in the file is set to its default
   /// (Documentation/reference/sensor-files.md).
   vtkAvianLidarPresetMacro(Airport16);
@@ -120,7 +121,8 @@ public:
   /// Set all properties from a file (`.lidarsensor.json`), and the values that only files set:
   /// azimuth offsets and firing times of channels, blanked sectors, prisms
   /// (Documentation/reference/sensor-files.md, Files).
-  /// @return false for a bad file. A bad file changes nothing. Its error names file and key.
+  /// @return false for a bad file. A bad file changes nothing and gives an error that names file
+  /// and key.
   bool LoadSensor(VTK_FILEPATH const char* fileName);
 
   /// Number of rotating prisms that steer the beams, 0 to 3. Only a file sets prisms. Default 0.
@@ -139,10 +141,10 @@ public:
 
   /// Use `beams` instead of columns and channels. The source copies the points (m), the point array
   /// `direction` (any length above 0) and the optional array `timestamp` (us, 0 to 1 /
-  /// RotationRate; default 0). Points and directions are in the frame of the sensor: Orientation
-  /// turns points and directions, and Position is added to the points. Each beam has the number of
-  /// its point as `beam_id` and 0 as `laser_id`. Null, a preset or a file restores columns and
-  /// channels. @return false for bad beams. Bad beams change nothing. Their error names the array.
+  /// RotationRate; default 0). Points and directions are in the frame of the sensor, which
+  /// Orientation turns and Position moves. Each beam has the number of its point as `beam_id` and 0
+  /// as `laser_id`. Null, a preset or a file restores columns and channels. @return false for bad
+  /// beams. Bad beams change nothing and give an error that names the array.
   bool SetBeams(vtkPolyData* beams);
 
   /// Position of the sensor in scene coordinates, m, at most 1e30. Default (0, 0, 0).
@@ -172,15 +174,15 @@ public:
   double GetChannelElevation(int index);
   ///@}
 
-  /// Azimuths at which the columns begin (-360 to 360) and end (at most 360 more), deg from north,
-  /// clockwise. Default (0, 360).
+  /// First azimuth of the columns (-360 to 360) and excluded end of the columns (at most 360
+  /// larger), deg from north, clockwise. Default (0, 360).
   vtkAvianLidarVectorMacro(AzimuthRange, 2, 0.0, 360.0);
 
   /// Difference of azimuth between columns, deg, above 0. Default 0.375.
   vtkAvianLidarPropertyMacro(AzimuthStep, double, 0.375);
 
-  /// Half of the opening angle, rad, 1e-9 to pi/3, or to 0.1 for beams that are not round. Default
-  /// 5.6e-3.
+  /// Half of the beam's opening angle, rad, 1e-9 to pi/3 (to 0.1 for beams that are not round).
+  /// Default 5.6e-3.
   vtkAvianLidarPropertyMacro(HalfBeamwidth, double, 5.6e-3);
 
   /// Opening angle, mrad, which must be 2000 times HalfBeamwidth. Default 0: not checked.
@@ -268,9 +270,9 @@ public:
   /// Greatest range recorded, m, above 0, at most 1e30 and 2^52 range units. Default 4000.
   vtkAvianLidarPropertyMacro(RangeGate, double, 4000.0);
 
-  /// Range, m, beyond which echoes arrive after the next pulse has left; infinite for SetBeams(). A
-  /// larger RangeGate gives one warning. The ranges of echoes are true even beyond this range
-  /// (Documentation/reference/sensor-files.md).
+  /// Range, m, beyond which echoes arrive after the next pulse has left; infinite for the beams of
+  /// SetBeams(). A larger RangeGate gives one warning. The ranges of echoes are true even beyond
+  /// this range (Documentation/reference/sensor-files.md).
   double GetUnambiguousRange();
 
   /// Mean rate of noise photons at the receiver, Hz, 0 to 1e50 (paper, Eq. 11). Default 20e3.
@@ -340,14 +342,15 @@ public:
   /// (Documentation/reference/sensor-files.md). Used only with a photon receiver. Default 0: exact.
   vtkAvianLidarPropertyMacro(RangeNoise, double, 0.0);
 
-  /// Exponent p of S in RangeNoise, 1, 0 to 10. Used only with a photon receiver. Default 2.
+  /// Exponent p of S in the formula of RangeNoise, 1, 0 to 10. Used only with a photon receiver.
+  /// Default 2.
   vtkAvianLidarPropertyMacro(RangeNoiseExponent, double, 2.0);
 
   /// Standard deviation a of the ranges of the strongest echoes, m, 0 to 1e9. Default 0.
   vtkAvianLidarPropertyMacro(RangeNoiseFloor, double, 0.0);
 
-  /// Range error of an echo at the lower limit (walk), m, 0 to 1e9. Stronger echoes have a smaller
-  /// error. Default 0.
+  /// Range error (walk) of an echo whose energy is the lower energy limit, m, 0 to 1e9. Stronger
+  /// echoes have a smaller error. Default 0.
   vtkAvianLidarPropertyMacro(RangeWalk, double, 0.0);
 
   /// Step to which ranges are rounded, m, 0 (exact) or 1e-9 to 1e9. Default 0.
@@ -357,8 +360,8 @@ public:
   /// 1e8. Default 1.
   vtkAvianLidarPropertyMacro(FalseAlarmsPerScan, double, 1.0);
 
-  /// Ratio of the upper to the lower limit, dB of electrons (10 log10), 0 to 1000. Default 40
-  /// (assumed).
+  /// Ratio of the upper to the lower energy limit, dB of electrons (10 log10), 0 to 1000. Default
+  /// 40 (assumed).
   vtkAvianLidarPropertyMacro(DynamicRange, double, 40.0);
 
   ///@{
@@ -375,8 +378,8 @@ public:
   /// Attenuation of clear air (23 km visibility) at Wavelength, 1/m.
   double GetClearAirAttenuation();
 
-  /// Length of the lines of port 1 and range of beam report points without an echo, m, above 0 to
-  /// 1e30. Default 1000.
+  /// Length of the lines of port 1, and range at which a beam report shows beams without an echo,
+  /// m, above 0 to 1e30. Default 1000.
   vtkAvianLidarPropertyMacro(DisplayLength, double, 1000.0);
 
   vtkAvianLidarErrorsAsDataMacro();
@@ -389,7 +392,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   /// Read a sensor file. With `keepPlace`, position, orientation, revolutions, steps and seed are
-  /// kept. @return an error text if nothing was changed, else an empty string
+  /// kept. @return an error text for a bad file, which changes nothing; else an empty string
   std::string ReadSensor(const char* fileName, bool keepPlace);
 
   std::vector<double> ChannelElevations;

@@ -39,8 +39,8 @@ public:
   /// Name of a species, built in or in SpeciesFileName. Default "herring gull".
   vtkAvianLidarPropertyMacro(Species, std::string, "herring gull");
 
-  /// Table of the user's species (CSV, with the columns of Filters/Birds/species.csv). These
-  /// species precede the built-in species. Default: empty.
+  /// Table of the user's species (CSV, with the columns of Filters/Birds/species.csv). If a name is
+  /// also the name of a built-in species, the species of the table is used. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
   /// Phase of the wings, wingbeats, any finite number: 0 level and rising, 0.25 up, 0.75 down. Not

@@ -2,7 +2,7 @@
 /**
  * @class vtkAvianLidarCloudComparison
  * @brief Compares two point clouds by Hausdorff distance, root mean square error and density-aware
- * Chamfer distance, in both directions.
+ * Chamfer distance, from each cloud to the other cloud.
  *
  * - Input port 0, the simulated cloud: any vtkPointSet.
  * - Input port 1, the reference: any vtkPointSet, in the coordinates of the simulated cloud.
@@ -19,8 +19,8 @@
  *
  * A bad ChamferAlpha gives an error. A cloud without points, or with coordinates that are not
  * finite or beyond 1e30 m, gives an error that names port and point. After an error or an abort,
- * outputs are empty and getters return NaN. MPI ranks with a piece of each cloud compare their own
- * points with the whole other cloud.
+ * outputs are empty and getters return NaN. If MPI ranks have pieces of the clouds, each rank
+ * compares the points of its pieces with all points of the other cloud.
  *
  * @code
  * comparison->SetInputConnection(0, echoes->GetOutputPort());

@@ -11,24 +11,25 @@
  * The sensor must stand still.
  *
  * - Input port 0, a scan: any vtkPointSet in metres, such as echoes or the cloud of a reader.
- * - Input port 1, a table (optional): vtkPolyData, output port 1 of an earlier run, also from a
- *   file.
+ * - Input port 1, a table (optional): vtkPolyData, the output port 1 of an earlier run, directly or
+ *   from a file.
  * - Output port 0: a shallow copy of the scan with the point arrays `clutter_probability` and
  *   `is_clutter`.
- * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell that is kept, in the
- *   order of cells, with `clutter_probability` and `clutter_cell`. Rank 0 has the table of all
- *   ranks.
+ * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell with a persistence,
+ *   in the order of `clutter_cell`, with `clutter_probability` and `clutter_cell`. Rank 0 has the
+ *   table of all ranks.
  * - Field data of both output ports: `learned_scans`, `position` and the settings in snake case
  *   with the prefix `clutter_`, such as `clutter_window`.
  *
  * The time of a scan is DATA_TIME_STEP of the input, else the field data `TimeValue`, else the
- * start of its `revolution`, else 1 s after the scan before. A scan of the same time replaces the
- * last scan. An earlier time empties the memory, with a warning. Another position, step, Window,
- * table or Learning empties the memory without a warning.
+ * start of its `revolution`, else 1 s after the scan before. A scan with the time of the last scan
+ * replaces the last scan. An earlier time empties the memory, with a warning. A change of position,
+ * cell size, Window, table or Learning empties the memory without a warning.
  *
- * Bad settings, coordinates beyond 1e30 m, bad field data or a table of other steps give an error
- * and empty outputs. After an error, the memory is unchanged. A scan without points counts as a
- * scan. The result has the same bits for any order of the points and any number of ranks.
+ * Bad settings, coordinates beyond 1e30 m, bad field data or a table with cells of another size
+ * give an error and empty outputs. After an error, the memory is unchanged. A scan without points
+ * counts as a scan. The result has the same bits for any order of the points and any number of
+ * ranks.
  *
  * @code
  * clutter->SetInputConnection(echoes->GetOutputPort(0));
@@ -84,8 +85,8 @@ public:
   /// 10. Default 1.
   vtkAvianLidarPropertyMacro(AngularTolerance, int, 1);
 
-  /// Number of first scans in which all points are clutter, 0 to 100,000. The scans of a table are
-  /// included. Default 5.
+  /// Number of scans at the beginning in which all points are clutter, 0 to 100,000. Scans from
+  /// which a table was made count, too. Default 5.
   vtkAvianLidarPropertyMacro(WarmUp, int, 5);
 
   /// Position of the sensor, m, for scans without the field data `position`. Default (0, 0, 0).

@@ -5,8 +5,8 @@
  *
  * The filter implements the tree of "Research on Ground Object Echo Simulation of Avian Lidar",
  * Photonics 2024, 11(2), 153 (Sec. 3.1, Eq. 14, Algorithm 1), with the paper's three structures and
- * three bounding volumes. A surface area heuristic is added. All trees give the same echoes, bit
- * for bit, at different cost.
+ * three bounding volumes. The split rule SPLIT_RULE_SURFACE_AREA_HEURISTIC is not in the paper. All
+ * trees give the same echoes, bit for bit, at different cost.
  *
  * - Input port 0: vtkPolyData, or a composite of vtkPolyData, in which each leaf is an object.
  *   Polygons and strips are triangulated. Vertices, lines and ghost cells are dropped. Optional are
@@ -122,8 +122,8 @@ public:
   int GetNumberOfLeaves() const;
   int GetDepth() const;
 
-  /// Number of trees that this filter has built. A tree of the input that fits is used again and
-  /// not counted.
+  /// Number of trees that this filter has built. If the input already has a tree that fits, the
+  /// filter uses that tree and does not count it.
   int GetNumberOfBuilds() const;
 
   /// Size of the surfaces that this rank has sent to other ranks so far, bytes, for tests and

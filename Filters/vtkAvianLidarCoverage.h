@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarCoverage
- * @brief Maps where a lidar would detect a bird and where it would not, with the reasons, from
- * beams and surfaces.
+ * @brief Computes from beams and surfaces where a lidar would detect a bird, where the lidar would
+ * miss the bird, and why.
  *
  * For each place the filter finds the beams that contain the place, the surfaces in front of the
  * place, the clutter in the same range units, and the probability of detection in closed form,
  * averaged over the bird's poses. No bird is traced. Lines of sight are kept: for another bird, air
- * or receiver the filter only evaluates these lines again, with the bits of a new run. Method and
- * limits: Documentation/guide/coverage.md. We found no measured detection ranges of birds for this
- * kind of lidar.
+ * or receiver the filter only evaluates these lines again. The result has the same bits as a new
+ * run. Method and limits: Documentation/guide/coverage.md. We found no measured detection ranges of
+ * birds for this kind of lidar.
  *
  * - Input port 0, beams of one sensor: as for vtkAvianLidarEchoFilter. The filter requests all
- *   beams for any piece.
+ *   beams for any piece of the output.
  * - Input port 1, surfaces: as for vtkAvianLidarEchoFilter.
  * - Input port 2, places (optional): any vtkDataSet, whose points are evaluated instead of the
  *   image given by Bounds and Spacing. The point array `region_id` (int) and the field data
@@ -24,8 +24,8 @@
  *   wing phases; 80 headings for gliding birds; 1 value without a species). Field data: the field
  *   data of the echo filter, the settings of this filter, and `status_names`.
  * - Output port 1: vtkTable, a row per region, species and height band, then rows for all bands and
- *   all regions. Columns: means, their standard errors, and a share for each status, such as
- *   `share_outside_the_gate`. With several ranks, rank 0 has the table.
+ *   all regions. Columns: means of both probabilities, their standard errors, and a share for each
+ *   status, such as `share_outside_the_gate`. With several ranks, rank 0 has the table.
  * - Output port 2, clutter: vtkPolyData, a vertex per range unit with an echo of a surface, with
  *   the arrays of echoes and `detection_probability`. Piece 0 has the clutter.
  *
@@ -92,8 +92,9 @@ public:
   /// Whether the bird glides instead of flapping. Default: off.
   vtkAvianLidarSwitchMacro(Gliding, false);
 
-  /// Mean effective area from the side at 3 degrees of elevation, m2, 0 to 1e6, to which the bird
-  /// is scaled. The standard avian optical target has 0.018 m2. Default: 0, area of the species.
+  /// Effective area to which the bird is scaled, m2, 0 to 1e6: the mean over all headings and wing
+  /// phases, seen at an elevation of 3 degrees. The standard avian optical target has 0.018 m2.
+  /// Default: 0, area of the species.
   vtkAvianLidarPropertyMacro(EffectiveArea, double, 0.0);
 
   /// Reflectance of the plumage, 1, above 0 to 1. Default: 0.3 (assumed; 0.15 dark, 0.6 white).
@@ -103,7 +104,7 @@ public:
   /// faster. Default: on.
   vtkAvianLidarSwitchMacro(Clutter, true);
 
-  /// Number of detections for a track in NumberOfScans scans, 1 to NumberOfScans. Default: 2.
+  /// Number of detections in NumberOfScans scans that make a track, 1 to NumberOfScans. Default: 2.
   vtkAvianLidarPropertyMacro(RequiredDetections, int, 2);
 
   /// Number of scans of which RequiredDetections must detect a bird, 1 to 100. Default: 3.

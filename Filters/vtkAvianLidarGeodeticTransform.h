@@ -73,11 +73,12 @@ public:
   /// Default: on.
   vtkAvianLidarSwitchMacro(UseFieldDataOrigin, true);
 
-  /// Origin for ENU and automatic UTM, if UseFieldDataOrigin is off: latitude in [-90, 90],
-  /// longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
+  /// Origin of ENU and of the automatic UTM zone, if UseFieldDataOrigin is off: latitude in [-90,
+  /// 90], longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Origin, 3, 0.0, 0.0, 0.0);
 
-  /// UTM zone: 1 to 60 in the north, -1 to -60 in the south. Default 0: the zone of the origin.
+  /// UTM zone: 1 to 60 in the northern hemisphere, -1 to -60 in the southern hemisphere. Default 0:
+  /// the zone of the origin.
   vtkAvianLidarPropertyMacro(UTMZone, int, 0);
 
   vtkAvianLidarErrorsAsDataMacro();

@@ -49,7 +49,7 @@ public:
 
   /// Lookup table of the colours for a mapper or a scalar bar, between the limits of the last
   /// execution or, before the first execution, of EnergyRange. The filter owns the table. The next
-  /// call changes the table.
+  /// call of this function changes the table.
   vtkLookupTable* GetLookupTable();
 
   /// Set the colours and limits of `table` as in GetLookupTable(). The number of colours (at least

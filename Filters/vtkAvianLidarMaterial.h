@@ -54,9 +54,10 @@ public:
   };
 
   ///@{
-  /// Material of the surfaces: wall, glass, metal or wood (paper, Table 1); concrete, asphalt or
-  /// grass (USGS Spectral Library 7, 905 nm) or plumage (assumed), which only scatter; custom, by
-  /// Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default MATERIAL_WALL.
+  /// Material of the surfaces: wall, glass, metal or wood (paper, Table 1); one of the diffuse
+  /// materials concrete, asphalt, grass (USGS Spectral Library 7, 905 nm) and plumage (assumed);
+  /// custom, by Kd, Ks, Kp and Roughness; or unchanged, to name surfaces only. Default
+  /// MATERIAL_WALL.
   vtkAvianLidarPropertyMacro(Material, int, MATERIAL_WALL);
   void SetMaterialToWall() { this->SetMaterial(MATERIAL_WALL); }
   void SetMaterialToGlass() { this->SetMaterial(MATERIAL_GLASS); }
@@ -99,7 +100,8 @@ public:
   /// replaced when surfaces are merged.
   vtkAvianLidarPropertyMacro(ObjectId, int, -1);
 
-  /// Name of the object that each leaf becomes. Default: empty, the name of the leaf or the block.
+  /// Name of the object that each leaf becomes. Default: empty, which keeps the name that the leaf
+  /// has, or else uses the name of the block.
   vtkAvianLidarPropertyMacro(NameOfObject, std::string, {});
 
   /// Pattern of names, with `*` (any text) and `?` (any character). The material is set in blocks

@@ -14,15 +14,15 @@
  *   `skipped_bound` (NaN without a beam). Field data: `column_azimuths`, `row_elevations`, and the
  *   limits of the receiver.
  *
- * Columns and rows are the distinct azimuths and elevations, to 1e-4 degrees: of the sensor's whole
- * scan if the beams come from a vtkAvianLidarBeamSource through the pipeline, and otherwise of the
- * given beams. Rows of a tilted sensor are channels. For grids, spacing and maps see
- * Documentation/guide/clouds.md.
+ * Columns are the distinct azimuths, and rows the distinct elevations, to 1e-4 degrees. If the
+ * beams come from a vtkAvianLidarBeamSource through the pipeline, columns and rows are taken from
+ * the sensor's whole scan, and otherwise from the given beams. Rows of a tilted sensor are
+ * channels. For grids, spacing and maps see Documentation/guide/clouds.md.
  *
  * Before execution, the size of the image comes from the beam source, or from Columns and Rows with
  * origin 0 and spacing 1. MPI ranks share echoes and beams. Each rank makes one sub-extent.
  *
- * An error names array and port and leaves an empty image. Errors are missing or bad arrays, an
+ * An error names array and port, and the image is then empty. Errors are missing or bad arrays, an
  * echo without its beam, a `beam_id` that two beams have, beams that do not form a grid, and a grid
  * whose size differs from the size before execution. Without beams the image has the size given
  * before execution and no echoes.

@@ -73,17 +73,17 @@ public:
   };
 
   ///@{
-  /// Preset of the fidelity. At execution all presets but PRESET_CUSTOM override RaysPerBeam,
+  /// Preset of the fidelity. At execution all presets except PRESET_CUSTOM override RaysPerBeam,
   /// NumberOfConnections, Sampling and NumberOfReflections. The field data hold the values used.
   /// PRESET_PAPER and PRESET_PREVIEW also override BeamSamples. In brackets are the rms error of
   /// energy and the processor time of 15,360 beams, first at the shipped airport, then at Hongqiao
   /// with structures:
   ///
-  /// - PRESET_PREVIEW: only 100 stratified rays, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
+  /// - PRESET_PREVIEW: 100 stratified rays, no cells, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
   /// - PRESET_DRAFT: 25 rays, 0 connections, 2 reflections (0.41 %, 0.13 s; 0.97 %, 0.52 s)
   /// - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.21 %, 0.24 s; 0.40 %, 0.94 s)
   /// - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.85 s; 0.14 %, 4.4 s)
-  /// - PRESET_PAPER: the method of the paper. Only 100 independent rays, 2 connections, 2
+  /// - PRESET_PAPER: the method of the paper with 100 independent rays, no cells, 2 connections, 2
   ///   reflections (16 %, 0.11 s; 16 %, 0.16 s). The preset also overrides BatchCollisionDetection
   ///   (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
   ///   ReflectanceModel (model of the paper) and ReturnMode (a point for each range unit). Tree of
@@ -106,8 +106,8 @@ public:
   ///@{
   /// Method that finds the direct echo of a beam (Documentation/method/beam.md):
   ///
-  /// - BEAM_SAMPLES_CELLS: integrates over the polygons that the beam sees where few triangles
-  ///   enter the beam, and otherwise over a grid of cells with dense rays
+  /// - BEAM_SAMPLES_CELLS: integrates over the polygons that the beam sees if few triangles enter
+  ///   the beam, and otherwise over a grid of cells with dense rays
   /// - BEAM_SAMPLES_RAYS: sums over RaysPerBeam rays, as in the paper
   ///
   /// Default: BEAM_SAMPLES_CELLS.
@@ -162,8 +162,8 @@ public:
   /// Number of reflections, 1 (direct echoes only) or 2 (Sec. 3.4). Default: 2.
   vtkAvianLidarPropertyMacro(NumberOfReflections, int, 2);
 
-  /// Whether second reflections are searched only in the beam's cone, which does not change the
-  /// echoes. Default: on.
+  /// Whether second reflections are searched only in the beam's cone. The echoes are the same if
+  /// this property is off. Default: on.
   vtkAvianLidarSwitchMacro(BeamConstraint, true);
 
   /// Whether paths below LightEnergyThreshold are dropped (paper, Sec. 3.4). Default: on.
@@ -191,9 +191,9 @@ public:
   /// Rays that descend the tree together, without effect on the echoes:
   ///
   /// - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
-  /// - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams, then packets of rays; the fastest
-  /// - BATCH_COLLISION_DETECTION_BEAMS: every beam by itself, then all its rays (the paper, Sec.
-  ///   3.2)
+  /// - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams together, then packets of rays;
+  ///   the fastest choice
+  /// - BATCH_COLLISION_DETECTION_BEAMS: the rays of one beam (the paper, Sec. 3.2)
   ///
   /// Default: BATCH_COLLISION_DETECTION_GROUPS.
   vtkAvianLidarPropertyMacro(BatchCollisionDetection, int, BATCH_COLLISION_DETECTION_GROUPS);
@@ -212,11 +212,12 @@ public:
   }
   ///@}
 
-  /// Whether the parts of the model that `skipped` would name are computed, which takes longer.
-  /// Default: off.
+  /// Whether to compute the parts of the model that are otherwise left out and named in `skipped`.
+  /// A full model takes longer. Default: off.
   vtkAvianLidarSwitchMacro(FullModel, false);
 
-  /// Number M of connections of each connecting ray, at least 0. Default: 2, as accurate as 8.
+  /// Number M of connections of each ray that starts connections, at least 0. Default: 2, as
+  /// accurate as 8.
   vtkAvianLidarPropertyMacro(NumberOfConnections, int, 2);
 
   /// Number of threads, at least 0, without effect on the echoes. Default: 0, which means this

@@ -20,13 +20,13 @@
  * - Field data of both ports: `time` and the settings in snake case.
  *
  * The time of a cloud is DATA_TIME_STEP, else the field data `TimeValue`, else the start of its
- * `revolution`, else 1 s after the cloud before. A cloud of the same time replaces the last cloud.
- * An earlier time empties the memory, with a warning. Timestamps are used only if all timestamps
- * are later than the times of the cloud before. Otherwise a warning is given.
+ * `revolution`, else 1 s after the cloud before. A cloud with the time of the last cloud replaces
+ * the last cloud. An earlier time empties the memory, with a warning. Timestamps are used only if
+ * all timestamps are later than the times of the cloud before. Otherwise a warning is given.
  *
  * Bad settings, points or arrays give an error and empty outputs. After an error, the memory is
- * unchanged. The tracks have the same bits for any order of the points. Rank 0 has the tracks of
- * all ranks. Each rank has its own points.
+ * unchanged. The tracks have the same bits for any order of the points. On port 0, rank 0 has the
+ * tracks of all ranks. On port 1, each rank has its own points.
  *
  * @code
  * tracker->SetInputConnection(echoes->GetOutputPort(0));
@@ -77,7 +77,8 @@ public:
   /// Position of the sensor, m, for clouds without the field data `position`. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(SensorPosition, 3, 0.0, 0.0, 0.0);
 
-  /// Rms distance of echoes from the target's centre, m, 0.001 to 1000. Default 0.2 (assumed).
+  /// Rms distance of echoes from the target's centre along each axis, m, 0.001 to 1000. Default 0.2
+  /// (assumed).
   vtkAvianLidarPropertyMacro(TargetExtent, double, 0.2);
 
   ///@{
@@ -102,11 +103,12 @@ public:
   /// Largest turn rate of a new track, deg/s, 0 to 360. Default 40 (assumed).
   vtkAvianLidarPropertyMacro(MaximumTurnRate, double, 40.0);
 
-  /// Probability that a track's own cluster lies in the gate, 1, 0.5 to 0.999999. Default 0.99.
+  /// Probability that a track's own cluster lies in the gate (the region around the track's
+  /// predicted position), 1, 0.5 to 0.999999. Default 0.99.
   vtkAvianLidarPropertyMacro(GateProbability, double, 0.99);
 
-  /// Number of hits in the last ConfirmScans scans that confirm a track, 1 to ConfirmScans. Default
-  /// 3.
+  /// Number of hits (scans with a cluster of the track) in the last ConfirmScans scans that confirm
+  /// a track, 1 to ConfirmScans. Default 3.
   vtkAvianLidarPropertyMacro(ConfirmHits, int, 3);
 
   /// Number of the last scans in which ConfirmHits hits confirm a track, 1 to 32. Default 4.
@@ -115,7 +117,8 @@ public:
   /// Least speed at which a track is confirmed, m/s, 0 to 1000. Default 0.
   vtkAvianLidarPropertyMacro(MinimumSpeed, double, 0.0);
 
-  /// Number of successive misses after which a confirmed track ends, 1 to 1000. Default 3.
+  /// Number of successive scans without a cluster after which a confirmed track ends, 1 to 1000.
+  /// Default 3.
   vtkAvianLidarPropertyMacro(MaximumMisses, int, 3);
 
   /// Time without a cluster after which any track ends, s, 0.001 to 1e9. Default 30.

@@ -15,8 +15,8 @@
  *   cell arrays `object_id` and `species_id`, and the field data `species_names`.
  *
  * Outputs hold all poses for any requested time or piece. Time 0 is the start of the scan. The same
- * seed gives the same bits. Except in a flock, a bird does not depend on the number of birds.
- * Patterns, file format and assumptions: Documentation/guide/birds.md.
+ * seed gives the same bits. Except in a flock, the flight of a bird does not depend on the number
+ * of birds. Patterns, file format and assumptions: Documentation/guide/birds.md.
  *
  * A bad file, times that do not rise, an unknown species or a number out of its range gives an
  * error and empty outputs. The error names the property, the file and its line, or the line of the

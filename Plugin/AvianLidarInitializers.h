@@ -12,8 +12,8 @@ void AvianLidarAddColourPresets();
 
 /**
  * Registers three domains for the plugin's XML. A client that has not loaded the plugin may make a
- * proxy from a server's XML, without the domains. If the two beamwidths of such a sensor differ,
- * the sensor reports an error.
+ * proxy from a server's XML, without the domains. If HalfBeamwidth and BeamwidthMilliradians of
+ * such a sensor do not agree, the sensor reports an error.
  *
  * AvianLidarBeamsDomain accepts the beams of a sensor.
  *
@@ -32,10 +32,11 @@ void AvianLidarAddDomains();
  * the echo filter and the macros that are installed beside the plugin. The menu Macros and, in
  * ParaView 5.11, the quick launch (Ctrl+Space) have these macros, too. A click on a macro is one
  * step of Edit > Undo. If the XML of a filter has the hint AvianLidarMenu, menus and quick launch
- * show the text of this hint. ParaView searches only the shown texts, and the label is already the
- * name in Python. The first Apply colours echoes and points with classes, and shows a range image
- * in a view. The function also adds the plugin's help pages, the button Advise and the guard of
- * Save Data. Without a window (pvpython, pvserver) the function does nothing.
+ * show the text of this hint. ParaView searches only the shown texts. The label cannot be this
+ * text, because the label gives the name in Python. The first Apply of a source colours echoes and
+ * range images by energy, colours points with classes by class, and shows a range image in a view.
+ * The function also adds the plugin's help pages, the button Advise and the guard of Save Data.
+ * Without a window (pvpython, pvserver) the function does nothing.
  */
 void AvianLidarAddToWindow();
 

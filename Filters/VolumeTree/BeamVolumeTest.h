@@ -41,7 +41,8 @@ public:
   bool meets(const OBB& volume, double& nearest) const;
   bool meets(const BoundingSphere& volume, double& nearest) const;
 
-  /// The paper's test alone, by three projections. @param axis axis of the cone in the box's frame
+  /// The paper's test: three projections, without the two planes in space. @param axis axis of the
+  /// cone in the box's frame
   /// @param center,half centre and half extents of the widened box, relative to the cone's apex, m
   bool projectionsMeet(const Vec3& axis, const Vec3& center, const Vec3& half) const;
 

@@ -178,7 +178,7 @@ bool suiteScan(const Options& options)
       embree.build();
       const Tracer packets = embree.packets();
       std::vector<Contender> contenders = {
-        { "Embree's packets, rays alone", [&]() { packets(hundred, 1, [](auto...) {}); } },
+        { "Embree's packets, 100 rays", [&]() { packets(hundred, 1, [](auto...) {}); } },
         { "Embree's packets, 1,000 rays", [&]() { packets(thousand, 1, [](auto...) {}); } },
       };
       const auto add = [&](const std::string& name, int reflections, int connections,

@@ -28,7 +28,7 @@ def best_of_embree(times):
 
 
 def summary_table(folder):
-    """For each number of rays: the span of Embree's best mode over ours, and in how many cells Embree is faster."""
+    """For each number of rays: the span of Embree's best mode divided by this project's time, and in how many cells Embree is faster."""
     rows = []
     ratios = {k: best_of_embree(t) / t["ours"] for k, t in cells(folder).items()}
     for n in sorted({k[2] for k in ratios}, reverse=True):
@@ -36,11 +36,11 @@ def summary_table(folder):
         spans = [[v for k, v in ratios.items() if k[2] == n and k[0] in AIRPORTS], every]
         rows.append([count(n), *(" to ".join(ratio_text(f(v)).strip("*") for f in (min, max)) if v else "-"
                                  for v in spans), f"{sum(v < 1.0 for v in every)} of {len(every)}"])
-    return table(["rays per beam", "Embree's best / ours, airports", "all scenes", "cells where Embree is faster"], rows)
+    return table(["rays per beam", "airports: time of Embree's best mode / time of this project", "all scenes", "cells where Embree is faster"], rows)
 
 
 def matrix_table(folder):
-    """Embree's best mode over ours on one thread, one row a scene, one column for each N and half-beamwidth."""
+    """Embree's best mode divided by this project's time on one thread, one row a scene, one column for each N and half-beamwidth."""
     found = {}
     for (scene, _, *column, threads), t in cells(folder).items():
         if threads == 1:  # the first channels of a scene, as the others come later

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Air.h
- * @brief The air of a scene: clear air, haze, fog, rain, snow and foliage, by extinction and
- * backscatter.
+ * @brief The air of a scene: clear air, haze, fog, rain, snow and foliage, described by extinction
+ * and backscatter.
  *
  * Air consists of a list of media and the attenuation coefficient of the clear air between the
  * media. A medium with the extinction mu and the extinction-to-backscatter ratio S has the
  * backscatter mu/S per metre and steradian. A medium fills the scene or a volume (MediumVolume.h).
  * BeamAir.h follows the air along a beam.
  *
- * Fog has so many droplets that their number does not matter. Rain has few drops. The diameters D
- * of raindrops are exponentially distributed, N(D) = N0 exp(-Lambda D), with N0 = 8000/(m3 mm),
- * Lambda = 4.1 R^-0.21/mm and the rain rate R in mm/h. Each drop removes the light on twice its
- * area from the beam. Half of this light is diffracted into an angle of about lambda/D, with the
- * wavelength lambda. Most of the diffracted light remains in the view of a lidar and is not lost
- * (keptInView()). Trees have few leaves, too. All leaves are Lambertian and of one size, with
- * random orientations. All drops, and the share of the leaves that the wind moves, are drawn anew
- * in each scan.
+ * Fog has so many droplets that their number does not matter. Raindrops are few, so their number in
+ * a range unit varies. The diameters D of raindrops are exponentially distributed, N(D) = N0
+ * exp(-Lambda D), with N0 = 8000/(m3 mm), Lambda = 4.1 R^-0.21/mm and the rain rate R in mm/h. Each
+ * drop removes the light on twice its area from the beam. Half of this light is diffracted into an
+ * angle of about lambda/D, with the wavelength lambda. Most of the diffracted light remains in the
+ * field of view of a lidar and is not lost (keptInView()). The number of leaves in a range unit
+ * varies, too. All leaves are Lambertian and of one size, with random orientations. All drops, and
+ * the share of the leaves that the wind moves, are drawn anew in each scan.
  *
  * Coefficients are in 1/m everywhere. The paper's coefficients 0.088 and 0.035 have no unit and are
  * read as 1/km.
@@ -43,7 +43,7 @@
 
 namespace avianlidar
 {
-/// Transmission of `length` metres of air: exp(-mu l) (paper, Eq. 9), 0 where this number
+/// Transmission of `length` metres of air: exp(-mu l) (paper, Eq. 9), 0 where exp(-mu l)
 /// underflows. @param attenuation coefficient mu, 1/m, >= 0 @param length length l of the whole
 /// way, m, >= 0 (2 r for a direct echo)
 inline double transmission(double attenuation, double length)
@@ -63,17 +63,19 @@ double attenuationOfVisibility(double visibility, double wavelength);
 /// Optical properties of a medium.
 struct Medium
 {
-  double extinction = 0.0;       ///< mu, extinction of light that the lidar loses, 1/m, 0 to 1e30
+  /// mu, extinction coefficient without diffracted light that remains in view, 1/m, 0 to 1e30.
+  double extinction = 0.0;
   double backscatterRatio = 1.0; ///< S, ratio of extinction to backscatter, sr, 1e-3 to 1e9
-  double drops = 0.0; ///< number of drops or leaves, 1/m^3, 0 to 1e12; 0: too many to count
-  /// Mean square of a drop's energy divided by its squared mean: SquareOfDrops or SquareOfLeaves.
+  double drops = 0.0; ///< number density of drops or leaves, 1/m^3, 0 to 1e12; 0: too many to count
+  /// Mean square of a drop's energy divided by the squared mean of this energy: SquareOfDrops or
+  /// SquareOfLeaves.
   double squareOfDrops = 6.0;
   double renewed = 1.0;   ///< share of the drops that are drawn anew in each scan, 0 to 1
-  bool isFollowed = true; ///< true if a threshold may follow the medium's light; false for trees
+  bool isFollowed = true; ///< true if a threshold may follow its light (Receiver.h); trees: false
   int objectId = -2;      ///< object id of the medium's echoes; ObjectOfAir for air
   /// True if drops are leaves. Light comes back through the gap through which it went out, if its
-  /// ways out and back are closer than a leaf is wide (BeamAir.h). If `drops` is 0, light always
-  /// comes back through this gap.
+  /// ways out and back are less than the width of a leaf apart (BeamAir.h). If `drops` is 0, light
+  /// always comes back through this gap.
   bool sharesGaps = false;
 
   /// Backscatter coefficient mu/S, 1/(m sr).
@@ -95,7 +97,7 @@ struct PlacedMedium
   bool fillsScene() const { return this->volume.shape == MediumShape::Everywhere; }
 };
 
-/// Attenuation coefficient, 1/m, of the clear air and of all media that fill the scene.
+/// Attenuation coefficient, 1/m, of the clear air together with all media that fill the scene.
 /// @param clear attenuation coefficient of the clear air, 1/m
 double attenuationOf(double clear, const std::vector<PlacedMedium>& media);
 
@@ -108,11 +110,11 @@ struct Air
 /// True if at least one medium does not fill the scene.
 bool haveVolumes(const std::vector<PlacedMedium>& media);
 
-/// View of a lidar, for light that drops diffract by a small angle.
+/// Field of view of a lidar, for light that drops diffract by a small angle.
 struct LidarView
 {
   double wavelength = 905e-9; ///< wavelength of the light, m, above 0
-  double halfAngle = 0.0;     ///< half angle of the view, rad; 0: all diffracted light is lost
+  double halfAngle = 0.0;     ///< half angle of the field of view, rad; 0: diffracted light is lost
 };
 
 inline bool operator==(const LidarView& a, const LidarView& b)
@@ -120,14 +122,15 @@ inline bool operator==(const LidarView& a, const LidarView& b)
   return a.wavelength == b.wavelength && a.halfAngle == b.halfAngle;
 }
 
-/// View of a sensor, with the half angle of a round beam that has the sensor's solid angle.
+/// Field of view of a sensor, with the half angle of a round beam that has the solid angle of the
+/// sensor's beam.
 LidarView viewOf(const Sensor& sensor);
 
-/// Share of the diffracted light that remains in view on the way to a target and back. A drop at a
-/// share 1 - u of the way shifts light at the target by u times the angle of diffraction. So the
-/// share is the mean over u of the energy of Airy's pattern within halfAngle/u, weighted with the
-/// areas of the drops. The error of the share is below 6e-4. @param slope Lambda of exponentially
-/// distributed diameters, 1/m
+/// Share of the diffracted light that remains in view on the way to a target and back. If light is
+/// diffracted after 1 - u of the way, its shift at the target, as seen from the lidar, is u times
+/// the angle of diffraction. So the share in view is the mean over u of the energy of Airy's
+/// pattern within halfAngle/u, weighted with the areas of the drops. The error of the share is
+/// below 6e-4. @param slope Lambda of exponentially distributed diameters, 1/m
 double keptInView(const LidarView& view, double slope);
 
 /// Rain. @param rate rain rate, mm/h, above 0 @param backscatterRatio twice the drops' areas

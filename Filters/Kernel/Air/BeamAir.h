@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamAir.h
- * @brief The air along one beam: its transmission, and the light that it returns in each range
- * unit, less the shares of the pulse that nearer surfaces take.
+ * @brief The air along one beam: the transmission of the air, and the light that the air returns in
+ * each range unit from the part of the pulse that no nearer surface has met.
  *
  * From the range R1 to R2 a medium returns E mu/S times the integral over R of O(R) min(A/R^2, 2
  * pi) exp(-depth(R)). E is the pulse energy, mu/S the backscatter (Air.h), A the aperture, O
- * Sensor::nearRangeShare(), and depth the optical depth of all air there and back. Media that fill
- * the scene have a table of these energies. Only the share of the pulse that no nearer surface has
- * met counts.
+ * Sensor::nearRangeShare(), and depth the optical depth of all air on the way to R and back. Media
+ * that fill the scene have a table of these energies. Only the share of the pulse that no nearer
+ * surface has met counts.
  *
  * The axis represents a beam if all volumes are wider than the beam, and if the rim crosses the
  * volumes at the same ranges and with the same optical depth as the axis. Otherwise the beam is
@@ -18,28 +18,29 @@
  * (BeamSamples::columns). So a tree in one half of a beam weakens only this half. A tree that a
  * wall half hides returns half of its light.
  *
- * Leaves stop light on the way out and on the way back, but a leaf that would stop the light twice
+ * Leaves stop light on the way out and on the way back. A leaf that would stop the light twice
  * counts once. Light from a range R returns to any point of the aperture, a disc about the apex. If
- * this point lies q from the apex, the way back at a range z lies x d = q (1 - z/R) beside the way
- * out, with d the diameter of a leaf. A leaf of random orientation that stops the way out also
- * stops the way back with the probability (1 - x)^2, or 0 if x exceeds 1. So leaves transmit
- * exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged over the aperture. For a length L this
- * transmission lies between exp(-2 mu L) and exp(-mu L). It is exp(-mu L) if the aperture is much
- * smaller than a leaf.
+ * this point lies q from the apex, the two ways are q (1 - z/R) apart at a range z. This distance
+ * is x times the diameter of a leaf. A leaf of random orientation that stops light on the way out
+ * also stops light on the way back with the probability (1 - x)^2, or 0 if x exceeds 1. So leaves
+ * transmit exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged over the aperture. For a length
+ * L this transmission lies between exp(-2 mu L) and exp(-mu L). It is exp(-mu L) if the aperture is
+ * much smaller than a leaf.
  *
- * Media may be perceived without other light in the range units that their parts meet, if the media
+ * Range units that parts of media meet may be perceived without light from surfaces, if the media
  * return more than a millionth of the lower limit.
  *
  * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005; the
  * hot spot of leaves: A. Kuusk, Soviet Journal of Remote Sensing 3, 1985 (second-hand).
  * Differs: the paper's air sends nothing back. Kuusk has exp(-x) in place of (1 - x)^2.
- * Valid: along each column the energies of units are right to 2e-6, relative (unit 0 to 1e-3). With
- * leaves, energies are right to 1e-2, relative, up to an optical depth of 4 one way. The table ends
- * at a million units. Mean energies hold for a short pulse. If a straight border divides a round
- * uniform beam, the share on one side errs by 0.095 at worst and 0.017 rms. At the top of a layer,
- * this share errs by 0.093 at worst and 0.037 rms. A border that cuts off less than 0.013 of the
- * beam is ignored. The sum of all shares that surfaces take is exact, unit by unit. The transmitter
- * is a point. Paths with two reflections meet different leaves on each of their three ways.
+ * Valid: along each column the relative error of a unit's energy is at most 2e-6, and at most 1e-3
+ * in unit 0. With leaves, the relative error is at most 1e-2 up to an optical depth of 4 one way.
+ * The table ends at a million units. Mean energies hold for a short pulse. If a straight border
+ * divides a round uniform beam, the share of the pulse on one side errs by 0.095 at worst and 0.017
+ * rms. At the top of a layer, the share below the top errs by 0.093 at worst and 0.037 rms. A
+ * border that cuts off less than 0.013 of the beam is ignored. The sum of all shares that surfaces
+ * take is exact, unit by unit. The transmitter is a point. Paths with two reflections meet
+ * different leaves on each of their three ways.
  * Test: TestAir.cxx, TestBeamAir.cxx, TestWeather.py.
  */
 #ifndef avianlidar_BeamAir_h
@@ -63,7 +64,7 @@ struct MetSurface
 {
   double range;          ///< range of the sample, m
   double weight;         ///< share of the pulse
-  std::uint64_t columns; ///< bits of the grid's cells that the sample meets; 0: all
+  std::uint64_t columns; ///< bits of the grid's cells that the sample meets; 0: all cells
 };
 
 /// The leaf at which a ray of the beam ends.
@@ -86,11 +87,11 @@ public:
   {
     double x, y;        ///< direction, as a point of the beam's plane
     double weight;      ///< share of the pulse
-    std::uint64_t bits; ///< cells of the grid, one bit each
+    std::uint64_t bits; ///< cells of the grid, one bit per cell
     // The point of the aperture to which light returns. Points of neighbouring columns lie far
     // apart.
     std::array<double, 2> towards{}; ///< unit vector from the aperture's middle to this point
-    double nearer = 0.0;             ///< share of the aperture nearer to its middle than the point
+    double nearer = 0.0;             ///< share of the aperture nearer to the middle than this point
     double open = 1.0;               ///< share of the column's light that no surface has met so far
     std::size_t firstPart = 0;
     std::size_t lastPart = 0; ///< one past the last part
@@ -102,8 +103,8 @@ public:
   /// Begin a beam that meets no volume.
   void beginOutside();
 
-  /// Begin a beam that has one direction. @param direction unit vector @param seconds as for
-  /// begin()
+  /// Begin a beam that has one direction. @param direction unit vector @param seconds time at which
+  /// the pulse is sent, s
   void beginRay(const Vec3& origin, const Vec3& direction, double seconds);
 
   /// True if media that fill the scene return light.
@@ -113,17 +114,17 @@ public:
   std::int64_t units() const { return static_cast<std::int64_t>(this->Means->size()); }
 
   /// Set the number of units, from unit 0 on, in which media that fill the scene may be perceived
-  /// by themselves.
+  /// without light from surfaces.
   void lookAt(std::int64_t units) { this->LookedEverywhere = units; }
   std::int64_t looked() const { return this->LookedEverywhere; }
 
   /// True if the beam meets a volume.
   bool isLocal() const { return !this->Parts.empty(); }
 
-  /// True if media may be perceived by themselves.
+  /// True if media may be perceived without light from surfaces.
   bool returnsLight() const { return !this->Looked.empty(); }
 
-  /// Transmission of volumes to a range, m, and back. @param columns bits of cells; 0: all
+  /// Transmission of volumes to a range, m, and back. @param columns bits of cells; 0: all cells
   double transmission(double range, std::uint64_t columns = 0) const;
 
   /// Transmission of volumes one way between two points. @param from, to points relative to the
@@ -152,8 +153,8 @@ public:
   /// Mean energy, J, that a unit receives from all media that a threshold may follow.
   double followed(std::int64_t unit);
 
-  /// First unit, from `unit` on, in which media may be perceived by themselves. The largest integer
-  /// means that no such unit follows.
+  /// First unit, from `unit` on, in which media may be perceived without light from surfaces. The
+  /// largest integer means that no such unit follows.
   std::int64_t nextLooked(std::int64_t unit) const;
 
   /// A medium of leaves, and the ranges between which the beam may meet it.
@@ -179,7 +180,8 @@ public:
   /// Column that contains a cell; valid until the next beam begins.
   const Column& columnOf(const Column& cell) const;
 
-  /// Relative density of a medium in a column at a range, m; 1 where the medium is dense.
+  /// Relative density of a medium in a column at a range, m; 1 where the medium has its full
+  /// density.
   double densityAt(const Column& column, std::uint32_t medium, double range) const;
 
   /// Energy, J, that a leaf returns from a share of the pulse, if no leaf stops this light on the
@@ -259,7 +261,7 @@ private:
   double UnitLength;  ///< length of a range unit, m
   double SolidAngle;  ///< solid angle of the beam, sr
   std::int64_t Gate;  ///< number of units inside the gate
-  std::int64_t Reach; ///< number of units that a drop's pulse reaches on each side of its own
+  std::int64_t Reach; ///< number of units that a drop's pulse reaches on each side of its own unit
   std::array<double, 2> HalfWidths;
   double ApertureRadius;                            ///< radius of the aperture, m
   std::vector<std::uint32_t> Filling;               ///< media that fill the scene and return light
@@ -274,7 +276,7 @@ private:
   std::vector<std::uint32_t> Seen; ///< `Filling`, then media of volumes that the beam may meet
   std::vector<Column> Columns;
   std::vector<Part> Parts; ///< column by column
-  /// Units [first, end) in which media may be perceived by themselves if there is enough light.
+  /// Units [first, end) in which media may be perceived without light from surfaces.
   std::vector<std::pair<std::int64_t, std::int64_t>> Looked;
   std::int64_t Dark = 0;   ///< unit from which on media return no light that matters
   double MostOfUnit = 0.0; ///< bound of a unit's energy from media, J per sr of collected()

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Drops.h
- * @brief Draws the difference between the light of a medium's drops in a range unit and its mean.
+ * @brief Draws the difference between the light of a medium's drops in a range unit and the mean of
+ * this light.
  *
  * The number of drops in the unit's part of the beam is Poisson distributed. The energy of a drop
- * is proportional to the square of an exponentially distributed diameter, or of a leaf's cosine of
- * incidence (Air.h). Up to FewDrops drops are drawn one by one. The energy of more drops is a gamma
- * variate of equal mean and variance.
+ * is proportional to the square of its exponentially distributed diameter (Air.h). The energy of a
+ * leaf is proportional to the square of its cosine of incidence. Below, leaves count as drops. Up
+ * to FewDrops drops are drawn one by one. The energy of more drops is a gamma variate of equal mean
+ * and variance.
  *
  * The pulse of a drop is divided among the units that it overlaps, as for surfaces (RangeUnits.h).
  * So the energy of a unit varies less than with undivided pulses. The energies of neighbouring
@@ -43,7 +45,7 @@ public:
   std::int64_t reach() const { return this->Reach; }
 
   /// Add the energy of a pulse to 2 reach() + 1 units, with the pulse's own unit in the middle.
-  /// @param place place of the drop in its own unit, 0 to 1
+  /// @param place place of the drop in its own unit, as a share of the unit, 0 to 1
   void add(double energy, double place, double* units) const;
 
   /// One of the two places of drops that are drawn together, as a share of the unit, in [0, 1]. The
@@ -84,8 +86,8 @@ public:
   /// Begin a beam.
   void clear() { this->Numbers.assign(this->Numbers.size(), -1); }
 
-  /// Light in a unit beyond its mean, J. @param draw function that adds the light of a unit's drops
-  /// to 2 reach() + 1 sums, which are 0 before the call
+  /// Light in a unit minus the mean of this light, J. @param draw function that adds the light of a
+  /// unit's drops to 2 reach() + 1 sums, which are 0 before the call
   template <class F>
   double in(std::int64_t unit, F draw)
   {

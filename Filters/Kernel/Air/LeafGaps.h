@@ -6,9 +6,9 @@
  *
  * A beam is divided into rays, one through each cell of its grid (BeamAir.h). The light of a ray
  * returns to one point of the aperture. Leaves are discs of one size at random places (Poisson),
- * with all orientations equally likely. A ray ends at the first leaf that it meets. The light of
- * the ray comes back unless another leaf stops this light on the way back, which lies beside the
- * way out. So a part of a beam may meet a leaf while the rest passes. A range unit receives the
+ * with all orientations equally likely. A ray ends at the first leaf that it meets. The way back
+ * lies beside the way out. The light of the ray comes back unless another leaf stops this light on
+ * the way back. So a leaf may stop one part of a beam and not the rest. A range unit receives the
  * light of the rays that end in this unit. Light from a range behind leaves is scaled by the share
  * of rays that no leaf stops on the way to this range and back, divided by the mean of this share.
  * Beams much wider than a leaf are not divided. The leaves in such beams follow the compound
@@ -54,8 +54,8 @@ public:
 
   /// Largest cross-section of a divided beam where its first leaves begin, in projected leaf areas.
   static constexpr double MostLeaves = 64.0;
-  /// Largest cross-section where leaves of further media begin, in projected leaf areas. This
-  /// number limits the number of leaves that are drawn.
+  /// Largest cross-section of the beam where leaves of further media begin, in projected leaf
+  /// areas. This number limits the number of leaves that are drawn.
   static constexpr double MostLeavesBehind = 4096.0;
   /// Largest area of a square about all ways out and back, in projected leaf areas. This number
   /// limits the aperture.

@@ -45,7 +45,7 @@ struct MediumVolume
   std::array<Vec3, 3> halfAxes{ Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0) };
   Vec3 up{ 0.0, 0.0, 1.0 }; ///< upward direction of a layer, unit vector
   double bottom = -std::numeric_limits<double>::infinity(); ///< lowest height of a layer, m
-  double top = 0.0;      ///< height up to which a layer is dense, m
+  double top = 0.0;      ///< height up to which a layer has its full density, m
   double softness = 0.0; ///< height above `top` at which the density is 1/e, m; 0: no fading part
   std::shared_ptr<const CollisionTree> surface;
   Vec3 velocity{ 0.0 }; ///< velocity of the volume from its place at time 0, m/s
@@ -60,7 +60,7 @@ struct MediumVolume
 struct MediumCrossing
 {
   double begin, end; ///< ranges, m
-  double density;    ///< relative density at `begin`; 1 where the medium is dense
+  double density;    ///< relative density at `begin`; 1: full density
   double fall;       ///< rate of decay, 1/m: `density` is multiplied by exp(-fall (range - begin))
 
   /// Integral of the relative density from `begin` to a range, m.
@@ -100,12 +100,12 @@ private:
 /// layers and always false for closed surfaces.
 bool isWiderThan(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 
-/// True if a border or the fading part of a volume at rest may lie in a beam. The test is
-/// conservative.
+/// True if a border or the fading part of a volume at rest may lie in a beam. The result is never
+/// false if a border or the fading part lies in the beam.
 bool mayMeetBorder(const MediumVolume& volume, const BeamFrame& frame, double far);
 
-/// True if a beam may meet a volume within `far`, m. The test is conservative. @param seconds time
-/// of the beam, s
+/// True if a beam may meet a volume within `far`, m. The result is never false for a beam that
+/// meets the volume. @param seconds time of the beam, s
 bool mayMeet(const MediumVolume& volume, const BeamFrame& frame, double far, double seconds);
 }
 

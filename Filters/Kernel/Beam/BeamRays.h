@@ -9,7 +9,7 @@
  * not round. A ray's radius comes from sin^2(theta/2), not from 1 - cos theta, with theta the angle
  * between ray and axis.
  * Valid: half-beamwidths from 1e-9 rad to pi/3. In this range radii are exact to a few units of
- * round-off. The sum over rays is unbiased for any N.
+ * round-off. A sum of energies over the rays is unbiased for any N.
  * Test: TestBeamRays.cxx.
  */
 #ifndef avianlidar_BeamRays_h
@@ -44,14 +44,15 @@ struct BeamRays
 
 /// Compact cells of the unit disc: rings cut into sectors. The energy of a cell is proportional to
 /// the number of the cell's rays. For odd N the last cell, at the rim, has 3/2 of the energy of any
-/// other cell. Every ray has the energy Qs/N, so the estimate is unbiased for any N. The cells
-/// depend only on N. The profile is applied when shares of the energy are converted to radii.
+/// other cell. Every ray has the energy Qs/N, so a sum of energies over the rays is unbiased for
+/// any N. The cells depend only on N. The profile is applied when shares of the energy are
+/// converted to radii.
 class StrataPartition
 {
 public:
   struct Cell
   {
-    double v0, v1;     ///< range of the share of the energy within a radius
+    double v0, v1;     ///< inner and outer radius, as shares of the energy within the radius
     double phi0, phi1; ///< range of the angle about the axis, rad
   };
   /// @param numberOfRays N, at least 1. Each cell has 2 rays. For odd N the last cell has 3 rays,
@@ -85,13 +86,14 @@ struct RadialProfile
   double truncation = 1.0; ///< truncation k of a Gaussian profile (Sensor.h)
 };
 
-/// Density of the rays per solid angle at a point of the beam's plane, divided by its mean: 1 in a
-/// uniform beam, and 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian beam, where u is the share
-/// of the solid angle that lies nearer to the axis than the point.
+/// Density of the rays per solid angle at a point of the beam's plane, divided by the mean density:
+/// 1 in a uniform beam, and 2 k^2 e^(-2 k^2 u)/(1 - e^(-2 k^2)) in a Gaussian beam, where u is the
+/// share of the solid angle that lies nearer to the axis than the point.
 /// @param radius2 x^2 + y^2, in [0, 1]
 double rayDensity(const RadialProfile& profile, double radius2);
 
-/// Draws the rays of a beam, in about 3 ns per ray. A ray depends on (seed, beam, ray) only.
+/// Draws the rays of a beam, in about 3 ns per ray. The random numbers of a ray depend only on the
+/// seed and on the numbers of beam and ray.
 /// @param strata strata of numberOfRays rays; may be null for Sampling::MonteCarlo, which has no
 /// strata
 void sampleBeam(std::int32_t seed, std::uint64_t beam, std::size_t numberOfRays,

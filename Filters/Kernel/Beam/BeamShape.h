@@ -73,9 +73,9 @@ private:
   RadialProfile Profile;
   double ShareOfArea;
   double MostDensity;
-  double Truncation = 0.0; ///< k of a Gaussian in a rectangle; 0: uniform
-  double Fall = 0.0;       ///< rate of a Gaussian in x^2 + y^2; 0: uniform
-  double PerMean = 1.0;    ///< inverse of the mean of the Gaussian
+  double Truncation = 0.0; ///< truncation k of a Gaussian profile in a rectangle; 0: uniform
+  double Fall = 0.0;       ///< factor c of the Gaussian exp(-c (x^2 + y^2)); 0: uniform
+  double PerMean = 1.0;    ///< inverse of the mean of the Gaussian over the outline
 };
 }
 

@@ -24,13 +24,14 @@
  * Differs: the pseudo-rays of Agresti and Coull also change the estimate. Here the estimate has to
  * be unbiased, so the divisor is N, not N + 4.
  * Valid: at least 8 rays. With fewer rays the error is NaN. Only the sampling error is estimated.
- * Not included are errors of geometry, reflectance and selection (a perceived echo near Qlow is too
- * strong), and specular lobes that no ray met. The caller gives bounds of the energy that all rays
- * may miss (UnseenEnergy). Without pseudo-rays, intervals of +-1.96 standard errors of Monte Carlo
- * hold the energy in 89 % of cases at an edge in a random place, and in 39 % of cases where a
- * surface covers a share of 0.995. With pseudo-rays, intervals hold the energy in 95 % of cases. If
- * one plane fills the beam, intervals that are not widened hold the energy in 61 % (N = 2) to 93 %
- * (N = 7) of cases. Widened intervals are up to fourteen times as wide as the error.
+ * Errors of geometry, reflectance and selection (a perceived echo near Qlow is too strong) are not
+ * included, nor is the energy of specular lobes that no ray met. The caller gives bounds of the
+ * energy that all rays may miss (UnseenEnergy). Without pseudo-rays, intervals of +-1.96 standard
+ * errors of Monte Carlo hold the energy in 89 % of cases at an edge in a random place, and in 39 %
+ * of cases where a surface covers a share of 0.995. With pseudo-rays, intervals hold the energy in
+ * 95 % of cases. If one plane fills the beam, intervals without the factor t / 1.96 hold the energy
+ * in 61 % (N = 2) to 93 % (N = 7) of cases. Intervals with this factor are up to fourteen times as
+ * wide as the error.
  * Test: TestStandardError.cxx.
  */
 #ifndef avianlidar_StandardError_h

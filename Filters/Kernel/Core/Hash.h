@@ -4,8 +4,8 @@
  * @brief Checksums of bytes, 64 bits, fast enough to be computed at every run.
  *
  * Source: XXH3 (Y. Collet, library xxHash).
- * Valid: hashes are equal on all machines of the same byte order. The hash does not protect against
- * bytes that are made to collide.
+ * Valid: equal bytes have equal hashes on all machines of the same byte order. The hash does not
+ * protect against bytes that are made to collide.
  * Test: TestTriangleMesh.cxx.
  */
 #ifndef avianlidar_Hash_h

@@ -5,7 +5,7 @@
  *
  * Source: Wassenberg et al., "Vectorized and performance-portable Quicksort", 2022 (Highway's
  * VQSort).
- * Differs: a few integers are sorted by std::sort(), which is then faster.
+ * Differs: short vectors are sorted by std::sort(), which is faster for few integers.
  * Valid: any integers. Two threads must not sort one vector.
  * Test: TestBeamCells.cxx, TestVisiblePolygons.cxx.
  */

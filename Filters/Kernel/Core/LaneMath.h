@@ -177,7 +177,8 @@ AVIANLIDAR_ALWAYS_INLINE void cosSinOfTurns(double turns, double& cosine, double
 {
   const double quarters = 4.0 * turns;
   const double rounded = quarters + Rounder;
-  const double x = (quarters - (rounded - Rounder)) * 1.57079632679489661923; // up to pi/4, rad
+  // Angle from the nearest quarter of a turn, rad, at most pi/4 in magnitude.
+  const double x = (quarters - (rounded - Rounder)) * 1.57079632679489661923;
   const double z = x * x;
   const double s = x +
     x * z *

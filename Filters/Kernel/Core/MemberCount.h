@@ -2,10 +2,10 @@
 /**
  * @file MemberCount.h
  * @brief Number of members of an aggregate at compile time. Code that must name all members of a
- * struct can check the number, so that code without one of the members does not compile.
+ * struct can check the number. Code that omits a member then does not compile.
  *
  * Source: none. An aggregate takes as many initialisers as it has members.
- * Valid: aggregates of C++17 without base classes, arrays or references as members.
+ * Valid: aggregates of C++17 without base classes and without arrays or references as members.
  * Test: Testing/Kernel/check_kept_beams.py.
  */
 #ifndef avianlidar_MemberCount_h

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Multiversion.h
- * @brief Functions compiled for several instruction sets, of which the best is chosen at program
- * start.
+ * @brief Functions compiled for several instruction sets. The version for the best instruction set
+ * of the processor is chosen at program start.
  *
  * The macros serve only loops over independent lanes whose results must have the same bits
- * everywhere. The compiler contracts and reassociates nothing, so every version gives the same
- * bits. Code that only decides which nodes and triangles are tested uses Highway's vectors
+ * everywhere. The compiler does not contract or reassociate operations, so every version gives the
+ * same bits. Code that only decides which nodes and triangles are tested uses Highway's vectors
  * (RayLanes.h).
  *
  * The loops are plain C++ because they call the functions that single rays call, such as
- * rangeOnPlane(). The bits of loops and single rays therefore agree by construction. In the
+ * rangeOnPlane(). The bits of loops and single rays therefore agree by construction. In the paper's
  * corridor, on a processor with AVX-512, the ranges and cosines of a beam's hits took 8.0 ns per
  * ray, and 13.4 ns without the versions.
  * Source: none.
@@ -28,8 +28,8 @@
 #define AVIANLIDAR_MULTIVERSION
 #endif
 
-/// Attributes of functions that multiversion loops call. Only inlined code has a loop's instruction
-/// set.
+/// Attributes of functions that multiversion loops call. Only inlined code is compiled for the
+/// loop's instruction set.
 #if defined(__GNUC__)
 #define AVIANLIDAR_ALWAYS_INLINE inline __attribute__((always_inline))
 #define AVIANLIDAR_INLINE_LAMBDA __attribute__((always_inline))

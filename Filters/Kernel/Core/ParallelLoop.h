@@ -7,7 +7,7 @@
  * determined, so the body must write the result of each item only to the slot of this item.
  *
  * Source: none.
- * Valid: any counts, blocks and numbers of threads. Loops also work in the child of a fork.
+ * Valid: any counts, blocks and numbers of threads. Loops also work in the child process of a fork.
  * Test: TestParallelLoop.cxx.
  */
 #ifndef avianlidar_ParallelLoop_h
@@ -40,12 +40,12 @@ struct WorkStopped : std::exception
 /**
  * Call `body` for all items [0, count) in blocks of `block` items (0 is taken as 1).
  *
- * Thread 0 is the calling thread. Only this thread calls `keepGoing`, before each block of thread 0
- * and once with 1 at the end. So `keepGoing` may use data of this thread. `keepGoing` may be empty.
- * If `keepGoing` returns false, running blocks are finished and no further block begins. An
- * exception of `body` or `keepGoing` stops the work in the same way. parallelFor() throws the first
- * exception again.
- * @param threads number of threads, > 0; 0: loopThreads(0)
+ * Thread 0 is the calling thread. Only this thread calls `keepGoing`, before each block of thread
+ * 0, and once at the end with the fraction 1. So `keepGoing` may use data of this thread.
+ * `keepGoing` may be empty. If `keepGoing` returns false, running blocks are finished and no
+ * further block begins. An exception of `body` or `keepGoing` stops the work in the same way.
+ * parallelFor() throws the first exception again.
+ * @param threads requested number of threads, as for loopThreads(); 0: OpenMP's choice
  * @return true if all items were done and keepGoing never returned false
  */
 bool parallelFor(std::size_t count, std::size_t block, int threads, const LoopBody& body,

@@ -9,7 +9,7 @@
  * Source: Philox4x32-10 (Salmon et al., SC'11), written out for SIMD loops.
  * Differs: doubles are odd multiples of 2^-53, so they are never 0 or 1.
  * Valid: all seeds, beams and indices; with a revolution, index < 2^52 and purpose < 4096.
- * Test: TestRandom.cxx (the authors' library Random123).
+ * Test: TestRandom.cxx (comparison with the authors' library Random123).
  */
 #ifndef avianlidar_Random_h
 #define avianlidar_Random_h
@@ -37,9 +37,9 @@ enum class RandomPurpose : std::uint32_t
   FlockPlaces = 12,   ///< place of a bird in its flock; `beam` is the number of the bird
   RareNoise = 13,     ///< range units with a rare deviate
   Cells = 14,         ///< cells of jittered rays; `beam` is the number of the pattern
-  Mirrors = 15,       ///< rays by way of mirrors
-  RangeNoise = 16,    ///< noise of a return's range, by its strongest range unit
-  Drops = 17,         ///< rain drops, by range unit
+  Mirrors = 15,       ///< rays of mirror paths (MirrorRegions.h)
+  RangeNoise = 16,    ///< noise of a return's range, by the return's strongest range unit
+  Drops = 17,         ///< drops, by range unit
   Leaves = 18,        ///< leaves at which parts of a beam end
   ShortPaths = 19     ///< directions of paths from a hit to a near hit
 };

@@ -7,7 +7,7 @@
  * so that these data are in memory once and not three times.
  *
  * Source: none.
- * Valid: any elements. shareWith() requires elements that can be copied as bytes, without gaps
+ * Valid: any elements. shareWith() requires elements that can be copied as bytes and have no gaps
  * between members.
  * Test: TestScanAgain.cxx (vectors replaced between scans).
  */
@@ -41,7 +41,7 @@ public:
   const T& operator[](std::size_t i) const { return (*this->Values)[i]; }
   bool sharesWith(const SharedVector& other) const { return this->Values == other.Values; }
 
-  /// Share the elements of another vector if they have the same bytes.
+  /// Share the elements of another vector if the elements of both vectors have the same bytes.
   void shareWith(const SharedVector& other)
   {
     static_assert(std::is_trivially_copyable<T>::value, "elements are compared as bytes");

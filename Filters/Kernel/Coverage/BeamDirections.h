@@ -4,7 +4,7 @@
  * @brief Finds the beams of a scan whose cones contain a direction.
  *
  * The faces of a cube are divided into cells. Each cell lists the beams whose cones, widened by a
- * margin, may contain one of its directions. Larger margins have coarser cells.
+ * margin, may contain a direction of the cell. A larger margin has coarser cells.
  *
  * Source: none.
  * Valid: any directions; half-beamwidth plus margin up to pi/3 rad. On a cone's border, rounding
@@ -33,9 +33,9 @@ public:
   BeamDirections(const std::vector<Vec3>& directions, double halfBeamwidth,
     const std::vector<double>& margins = { 0.0 });
 
-  /// Calls f(number of a beam, cosine of the angle to its axis) for each beam whose cone, widened
-  /// by `reach`, contains a direction, in the order of the beams. f may also be called for other
-  /// beams.
+  /// Calls f(beam, cosine), in the order of the beams, for each beam whose cone, widened by
+  /// `reach`, contains a direction. `cosine` is the cosine of the angle between the direction and
+  /// the beam's axis. f may also be called for other beams.
   /// @param direction unit vector @param reach angle, rad, at most the largest margin
   template <class F>
   void forEachNear(const Vec3& direction, double reach, F f) const
@@ -67,7 +67,8 @@ public:
       grid.beams.begin() + grid.begins[cell], grid.beams.begin() + grid.begins[cell + 1], f);
   }
 
-  /// Upper bound of the number of beams within the least margin of any direction.
+  /// Upper bound of the number of beams whose cones, widened by the least margin, contain the same
+  /// direction.
   std::size_t mostNear() const { return this->Most; }
 
   double leastMargin() const { return this->Grids[0].margin; }       ///< least margin, rad

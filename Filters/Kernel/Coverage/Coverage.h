@@ -2,14 +2,14 @@
 /**
  * @file Coverage.h
  * @brief Computes in closed form, for each place, whether a small target, such as a bird, would be
- * detected, and the reason if not. The target is not traced.
+ * detected, or why the target would not be detected. The target is not traced.
  *
- * A beam sees a place if its cone contains the direction to the place and no surface hides the
- * place (one descent of the tree). A beam is in clutter at a place if a perceived echo of a surface
- * lies in a range unit that the echo of a point target at the place may overlap. All other beams
- * that see the place detect the target with the probability of DetectionLaw.h, each beam by the
- * part of the target that the beam lights. Lines of sight are found once and remain valid for
- * another target, air, receiver or clutter.
+ * A beam sees a place if its cone contains the direction to the place and if one descent of the
+ * tree finds no surface that hides the place. A beam is in clutter at a place if a perceived echo
+ * of a surface lies in a range unit that the echo of a point target at the place may overlap. All
+ * other beams that see the place detect the target with the probability of DetectionLaw.h. The
+ * probability depends on the part of the target that each beam lights. Lines of sight are found
+ * once and remain valid for another target, air, receiver or clutter.
  *
  * Source: none.
  * Differs: a surface that hides the target's middle hides all of the target. Other surfaces hide
@@ -76,7 +76,7 @@ struct CoverageValue
   double probability = 0.0;    ///< probability of detection in one scan
   double photoelectrons = 0.0; ///< photoelectrons of the whole target; 0 without a photon receiver
   /// Mean effective area at which half of the targets inside the beams are detected, m^2; infinity
-  /// if half of the targets are never detected.
+  /// if no area suffices.
   double leastArea = std::numeric_limits<double>::infinity();
 };
 

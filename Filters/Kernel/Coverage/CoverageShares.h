@@ -6,7 +6,8 @@
  * Source: heights of bird strikes: R. A. Dolbeer, J. Wildl. Manage. 70 (2006).
  * Differs: heights of strikes at or below 500 feet are uniformly distributed.
  * Valid: standard errors hold for places drawn at random. On a lattice, standard errors are about
- * right if places are far apart, and too small where neighbours are alike.
+ * right if places are far apart. Standard errors are too small where neighbouring places have
+ * similar values.
  * Test: TestCoverageShares.cxx.
  */
 #ifndef avianlidar_CoverageShares_h

@@ -50,7 +50,7 @@ struct SurveyRules
   int requiredDetections = 1; ///< M: number of detections that make a track, 1 to scans
   int scans = 1;              ///< N: number of scans, 1 to MostScans
   bool strikeHeightWeights = false;
-  std::vector<double> heightLimits; ///< ascending borders, m, each included in the band above
+  std::vector<double> heightLimits; ///< ascending borders, m; a border belongs to the upper band
 
   std::size_t bands() const { return this->heightLimits.size() + 1; }
 };
@@ -110,7 +110,8 @@ private:
   std::vector<KeptTarget> Targets; ///< targets of the last calls
 };
 
-/// Returns, for each echo of a scan without noise, the share of scans with noise that perceive it.
+/// Returns, for each echo of a scan without noise, the share of scans with noise in which the echo
+/// is perceived.
 std::vector<double> shareOfScans(const Sensor& sensor, const std::vector<Echo>& echoes);
 }
 

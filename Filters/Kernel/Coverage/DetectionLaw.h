@@ -8,23 +8,25 @@
  * the beam or the target is larger. The echo is a pulse that is lengthened by the depth of this
  * part. Depths are taken as normally distributed. The range units that the echo overlaps share its
  * energy. The position of the target within a range unit is uniformly distributed and the same for
- * all beams, because all beams have one origin. A beam detects the target if it perceives one of
- * these units. A photon receiver perceives a unit with the probability of PhotonReceiver.h. Any
- * other receiver perceives a unit if the unit's energy exceeds Qlow. Noise is independent from
- * pulse to pulse, while the pose is the same for all beams of a scan. The probability is therefore
- * the mean, over poses and positions in the unit, of 1 - product of (1 - p) over beams, with p the
- * probability that one beam detects the target. Where K beams contain the whole target, the
- * probability is tabulated over the logarithm of the energy.
+ * all beams, because all beams have one origin. A beam detects the target if the beam perceives a
+ * unit that the echo overlaps. A photon receiver perceives a unit with the probability of
+ * PhotonReceiver.h. Any other receiver perceives a unit if the unit's energy exceeds Qlow. Noise is
+ * independent from pulse to pulse, while the pose is the same for all beams of a scan. The
+ * probability is therefore the mean, over poses and positions in the unit, of 1 - product of (1 -
+ * p) over beams, with p the probability that one beam detects the target. Where K beams contain the
+ * whole target, the probability is tabulated over the logarithm of the energy.
  *
  * The silhouette of a target depends on the elevation of the line of sight. Silhouettes are drawn
  * at regular steps of elevation. Between two steps, some poses are taken from the lower step and
  * the other poses from the upper step. The share of the upper step grows linearly with the
  * elevation.
  *
- * Each pose represents similar poses, so the energies of a pose are spread by 15 %.
+ * Each pose represents similar poses, so the energies of a pose are spread with a standard
+ * deviation of 15 %.
  *
  * Source: none.
- * Differs: the paper perceives a unit at the target's own range if its energy exceeds Qlow.
+ * Differs: in the paper only the unit at the target's own range counts. This unit is perceived if
+ * its energy exceeds Qlow.
  * Valid: 1 to MostBeams beams (more beams count as MostBeams, or as the largest number in the
  * tables). The error of the probability is below 3e-4 with a photon receiver where beams contain
  * the whole target. Without noise, the energy at which the probability for one area steps from 0 to
@@ -69,8 +71,8 @@ public:
   static constexpr int MostBeams = 64;
 
   /// @param sensor sensor whose limits are set
-  /// @param lowest, highest elevations of the line of sight, rad; an elevation beyond counts as the
-  /// nearer of the two
+  /// @param lowest, highest elevations of the line of sight, rad; an elevation outside [lowest,
+  /// highest] counts as the nearer end
   /// @param mostBeams largest number of beams in the tables, 1 to MostBeams
   DetectionLaw(const Sensor& sensor, const TargetViews& views, double lowest = 0.0,
     double highest = 0.0, int mostBeams = MostBeams);
@@ -125,7 +127,7 @@ public:
 
 private:
   static constexpr std::size_t PointsPerDecade = 300;
-  static constexpr double FirstDecade = -3.0; ///< decimal logarithm of the first energy, in Qlow
+  static constexpr double FirstDecade = -3.0; ///< log10 of the first energy divided by Qlow
   static constexpr std::size_t Decades = 7;
   static constexpr std::size_t Points = Decades * PointsPerDecade + 1;
 
@@ -154,7 +156,7 @@ private:
   std::vector<TargetPoses> Views; ///< poses by elevation
   /// Light that a beam receives from each whole pose at an energy of 1 J; by elevation, pose.
   std::vector<std::vector<Received>> Whole;
-  std::vector<double> Thresholds; ///< weight above which the next view is taken, by pose
+  std::vector<double> Thresholds; ///< share above which a pose is taken from the next view, by pose
   /// Probability that a beam perceives nothing, by depth class, position in the unit, energy.
   std::vector<std::vector<std::vector<double>>> Missed;
   std::vector<std::vector<double>> Tables; ///< probability by elevation; then beams and energy

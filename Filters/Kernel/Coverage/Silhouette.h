@@ -4,11 +4,11 @@
  * @brief Effective area (silhouette weighted by the cosine of incidence) and depth of a target in
  * one pose, as a small image, and the part of the target that a beam lights.
  *
- * The image is drawn as seen from afar, with a depth buffer and 3 x 3 samples for each pixel, so it
- * includes the shadows of parts on other parts. Coarser images sum the pixels of this image. A beam
- * uses the coarsest image in which its radius spans RadiusInPixels. A round beam costs about fifty
- * pixels. Other beams cost more, by the ratio of their length to their width. effectiveArea() draws
- * a finer image and does not keep it.
+ * The image is drawn as seen from afar, with 3 x 3 samples for each pixel. A depth buffer leaves
+ * out parts that other parts hide. Coarser images sum the pixels of this image. A beam uses the
+ * coarsest image in which its radius spans RadiusInPixels. A round beam costs about fifty pixels.
+ * Other beams cost more, by the ratio of their length to their width. effectiveArea() draws a finer
+ * image and does not keep it.
  *
  * Source: none.
  * Valid: beams wider than 0.02 of the target's longer side. A narrower beam is replaced by a beam
@@ -45,7 +45,7 @@ struct BeamAtTarget
   BeamProfile profile = BeamProfile::Uniform;
   // For beams that are not round or whose Gaussian does not fall to 1/e^2 at the border:
   double across = radius; ///< half the shorter side, m
-  double cosine = 1.0;    ///< cosine of the angle from right to the longer side, towards up
+  double cosine = 1.0;    ///< cosine of the longer side's angle, counted from right towards up
   double sine = 0.0;
   bool isRectangle = false;
   double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squaresOf().sum()

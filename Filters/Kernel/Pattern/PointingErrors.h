@@ -9,10 +9,10 @@
  *
  *     tilt(t) = a sqrt(2/SwayTones) sum cos(2 pi (f_k t + p_k)).
  *
- * One frequency f_k is drawn in each of SwayTones equal parts of (1 +- SwayBandwidth)
+ * One frequency f_k is drawn in each of SwayTones equal parts of the band (1 +- SwayBandwidth)
  * SwayFrequency. The phases p_k are uniformly distributed. The tilt about each axis has the rms a
- * and never exceeds sqrt(2 SwayTones) a. The tilt is a function of (seed, axis, t), so it can be
- * computed at any time and in any order.
+ * and never exceeds sqrt(2 SwayTones) a. The tilt is a function of (seed, axis, t), so tilts can be
+ * computed for any times in any order.
  *
  * Jitter. All channels of a column share one error of the azimuth, a normal deviate that is a
  * function of (seed, column, revolution).

@@ -56,12 +56,13 @@ struct PrismTrain
 };
 
 /// The first bad value in words ("PrismWedgeAngles is 70, expected ..."), or an empty string. Light
-/// must pass for all combinations of the prisms' phases in steps of 30 degrees.
+/// must pass through the prisms for all combinations of the prisms' phases in steps of 30 degrees.
 /// @param enters directions of the lasers before the prisms, unit vectors in the frame of the axis
 std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters);
 
 /// Direction of light behind the prisms, in the sensor's frame. Throws std::runtime_error if no
-/// light passes. Start and time are separate so that times of a scan keep their digits.
+/// light passes. Start and time are separate, because their sum would round the time to fewer
+/// digits.
 /// @param start start of the scan, s since time 0 @param time time since the start, s @param enters
 /// direction before the prisms, unit vector in the frame of the axis
 Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enters);

@@ -11,15 +11,16 @@
  * not the unit holds an echo. The uniformly distributed place of a false alarm in its unit is such
  * a function, too. b[m] and z[m] are drawn in steps:
  *
- * 1. Units whose noise exceeds Qlow without light (false alarms) are drawn by geometric gaps. This
- *    method costs one draw per alarm, and not one draw for each of the thousands of empty units.
+ * 1. Units whose noise exceeds Qlow without light (false alarms) are drawn by the geometrically
+ *    distributed gaps between them. This method costs one draw per alarm, and not one draw for each
+ *    of the thousands of empty units.
  * 2. With Gaussian noise, the other units with a rare deviate (the largest 0.14 % of all deviates)
  *    are drawn in the same way. In most units of grazing beams the light is so weak that the unit
  *    is perceived only with a rare deviate.
  * 3. b[m] or z[m] comes from the inverse of its distribution, conditioned on whether the unit is an
  *    alarm and whether its deviate is rare. Tails are computed from the incomplete gamma function
- *    and the error function. Conditioning keeps tails exact that a uniform number of 53 bits does
- *    not reach.
+ *    and the error function. With conditioning, even tails that a uniform number of 53 bits does
+ *    not reach are exact.
  *
  * Source: paper, Sec. 2.4, Eq. 11.
  * Differs: the paper's further factor tau_s, which would give Q_n the unit J s, is left out. Noise
@@ -92,8 +93,8 @@ std::string checkNoise(const NoisePlan& plan, std::uint64_t beams);
 /// @param perEnergy increase of the variance per joule of light, J
 double leastLight(double limit, double dark, double perEnergy);
 
-/// Noise of one beam. An object serves many beams without allocation. Each thread needs its own
-/// object.
+/// Draws the noise of one beam after the other. An object is reused without allocation. Each thread
+/// needs its own object.
 class BeamNoise
 {
 public:
@@ -112,7 +113,7 @@ public:
   /// Noise energy of a unit, J; 0 outside the gate. @param light energy that the unit receives, J
   double energy(std::int64_t unit, double light = 0.0);
 
-  /// A standard normal deviate for the range of a return, by its strongest unit.
+  /// A standard normal deviate for the range of the return whose strongest unit is `unit`.
   double rangeDeviate(std::int64_t unit) const;
 
   /// Place of the noise in a unit, as a share of the unit, uniform in (0, 1).
@@ -121,7 +122,7 @@ public:
 private:
   std::array<double, 2> draw(std::int64_t unit, RandomPurpose purpose) const;
 
-  /// Units for which rare deviates are drawn together.
+  /// Number of units for which rare deviates are drawn together.
   static constexpr std::int64_t UnitsOfBlock = 4096;
 
   template <class F>

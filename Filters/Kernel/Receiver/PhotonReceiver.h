@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PhotonReceiver.h
- * @brief Photoelectrons in a photon receiver, their noise, and the limits that follow.
+ * @brief Photoelectrons in a photon receiver, their noise, and the limits that follow from the
+ * noise.
  *
  * An energy Q at the aperture makes n = eta Q/(h nu) electrons in a range unit. Daylight adds n_b =
  * eta L dlambda Omega A tau_s/(h nu) electrons, with the radiance L, the filter bandwidth dlambda,
  * the solid angle Omega of the beam and the aperture A. The receiver removes the mean n_b (AC
  * coupling), but not the noise of the background. The electrons of a unit are normally distributed
  * with the variance F (n + n_b) + n_a^2, with the excess noise factor F and the amplifier noise
- * n_a. The variance is sigma0^2 if n is 0. A unit is perceived above n_T = k sigma0 electrons. With
- * the factor k a scan of empty sky has the allowed number of false alarms. So a scan has one lower
+ * n_a. The variance is sigma0^2 if n is 0. A unit is perceived above n_T = k sigma0 electrons. The
+ * factor k gives a scan of empty sky the allowed number of false alarms. So a scan has one lower
  * limit in joules, n_T h nu/eta, and one upper limit, which exceeds the lower limit by the dynamic
  * range.
  *
@@ -18,14 +19,15 @@
  * Differs: the paper gives limits in joules and Poisson noise (Receiver.h, Noise.h).
  * Valid: Gaussian noise is right for many electrons. Noise of single electrons is skewed. If the
  * number of detected photons is Poisson distributed with the mean n_b/F, and each photon makes F
- * electrons, the skewness is g = F^2 n_b/sigma0^3, the least of all avalanches with the excess
- * noise factor F. A gamma distribution with the same three moments exceeds n_T with the probability
- * Q(a, a + k sqrt(a)), with a = 4/g^2 and the regularised upper incomplete gamma function Q. So
- * false alarms are 1.04 to 1.7 times as many as allowed with the presets, and about 1,500 times as
- * many with 3.5 background electrons and no amplifier noise. From ten times as many on,
- * warningOnElectrons() returns a warning. The computed ratio of false alarms lies within 2 % of the
- * exact sum for the presets. The ratio is wrong by a factor of up to 2 for a few electrons, and of
- * up to 5 if F is above 1 and no amplifier noise smooths the steps of F electrons.
+ * electrons, the skewness is g = F^2 n_b/sigma0^3. No avalanche with the excess noise factor F has
+ * a smaller skewness. A gamma distribution with the same three moments exceeds n_T with the
+ * probability Q(a, a + k sqrt(a)), with a = 4/g^2 and the regularised upper incomplete gamma
+ * function Q. So with the presets false alarms are 1.04 to 1.7 times as many as allowed. With 3.5
+ * background electrons and no amplifier noise they are about 1,500 times as many. If false alarms
+ * are at least ten times as many as allowed, warningOnElectrons() returns a warning. The computed
+ * ratio of false alarms lies within 2 % of the exact sum for the presets. The ratio is wrong by a
+ * factor of up to 2 for a few electrons, and of up to 5 if F is above 1 and no amplifier noise
+ * smooths the steps of F electrons.
  * Test: TestPhotonReceiver.cxx.
  */
 #ifndef avianlidar_PhotonReceiver_h
@@ -96,8 +98,8 @@ double thresholdFactor(double falseAlarms, double units);
 double rangeUnitsOf(const Sensor& sensor, double beams);
 
 /// Returns an empty string, or a sentence that names the value and what was expected.
-/// @param falseAlarms expected number of false alarms in a scan @param dynamicRange as for
-/// setPhotonLimits(), dB
+/// @param falseAlarms expected number of false alarms in a scan @param dynamicRange ratio of the
+/// upper to the lower limit, dB
 std::string checkPhotonLimits(double falseAlarms, double dynamicRange);
 
 /// Set the limits of a sensor's photon receiver. @param falseAlarms expected number of false alarms
@@ -114,7 +116,8 @@ std::string setPhotonLimits(Sensor& sensor, double falseAlarms, double dynamicRa
 double energyFromTarget(
   const Sensor& sensor, double range, double area, double reflectance, double attenuation);
 
-/// Set limits with which, up to `range`, m, a sensor perceives a surface that fills the beam.
+/// Set limits with which, at ranges up to `range`, m, a sensor perceives a surface that fills the
+/// beam.
 /// @return an empty string, or a sentence that names the value and what was expected
 std::string setDataSheetLimits(
   Sensor& sensor, double range, double reflectance, double attenuation, double dynamicRange);

@@ -11,20 +11,21 @@
  * deviation is subtracted because the strongest of several units is strong partly because of noise.
  * For strong light S tends to twice the ratio m/sqrt(sigma0^2 + F m). S does not grow beyond Qhigh.
  * S exists only for a photon receiver. The range of an echo of the energy Q is too long by w Qlow/Q
- * (walk), with w the walk at Qlow. Ranges before or beyond the gate are folded back. Finally,
+ * (walk), with w the walk at Qlow. Ranges outside the gate are mirrored at its ends. Finally,
  * ranges are rounded to multiples of a quantum. False alarms have the same errors as echoes.
  * Returns keep the order of their true ranges.
  *
  * Source: p = 2 is the exponent of the Cramer-Rao bound of a delay. Data sheets of makers have
- * other exponents. b = 0.649 c tau/2 is calculated for a pulse as long as a unit, tau: the rms
- * error of the centroid of two units over all places in a unit (TestRangeErrors.cxx has the
- * integral). The formula of the walk holds for a leading edge with a straight rise.
+ * other exponents. b = 0.649 c tau/2 holds for a pulse as long as a unit, tau. This b is the rms
+ * error of the centroid of two units over all places of the pulse in a unit (TestRangeErrors.cxx
+ * has the integral). The formula of the walk holds for a leading edge with a straight rise.
  * Differs: the paper's ranges are exact.
- * Valid: b holds for one pulse and one unit. With b = 0.649 c tau/2, the rms error at a ratio
- * n/sqrt(sigma0^2 + F n) of 12 and more lies within 11 % of a Monte Carlo of the waveform. At a
- * ratio of 8, with a threshold that two in five echoes do not reach, the rms error lies 19 % below
- * the Monte Carlo. A pulse shorter than a unit adds an error of at most the unit's length divided
- * by sqrt(12). The model is not valid if two surfaces share a return.
+ * Valid: a value of b holds for one width of the pulse and one length of the unit. With b = 0.649 c
+ * tau/2, the rms error at a ratio n/sqrt(sigma0^2 + F n) of 12 and more lies within 11 % of a Monte
+ * Carlo of the waveform. At a ratio of 8, with a threshold that two in five echoes do not reach,
+ * the rms error lies 19 % below the Monte Carlo. A pulse shorter than a unit adds an error of at
+ * most the unit's length divided by sqrt(12). The model is not valid if two surfaces share a
+ * return.
  * Test: TestRangeErrors.cxx, Testing/Python/TestRangeNoise.py (Monte Carlo of the waveform).
  */
 #ifndef avianlidar_RangeErrors_h
@@ -49,7 +50,7 @@ public:
   double deviation(double energy) const;
 
   /// Range that the receiver reports, m, within the gate. @param range true range, m @param energy
-  /// as for deviation()
+  /// Qrec of the strongest unit, J
   /// @param normal a standard normal deviate
   double measured(double range, double energy, double normal) const;
 

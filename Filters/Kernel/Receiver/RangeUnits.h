@@ -52,7 +52,7 @@ struct WeightedSum
   double moment = 0.0;
 };
 
-/// Sums over shares, in their order. @param value function of the number of a share
+/// Sums over shares, in the order of the shares. @param value function of the number of a share
 template <class F>
 WeightedSum sumShares(const RangeShares& shares, F value)
 {
@@ -148,7 +148,7 @@ private:
   std::vector<RangeUnit> Units;
   std::vector<RangeUnit> Table; ///< sums of a window of units; zero between beams
   std::vector<std::uint64_t>
-    Marks; ///< a bit for each unit of the table with a share; 0 between beams
+    Marks; ///< bits of the table's units, 1 for units with a share; 0 between beams
   // The shares requested last, in units [ShareFirst, ShareLast).
   std::vector<double> Portions;
   std::vector<std::uint32_t> Sharers;
@@ -156,7 +156,7 @@ private:
   std::int64_t ShareFirst = 0;
   std::int64_t ShareLast = 0;
   int Requests = 0;                   ///< number of requests since accumulate()
-  std::vector<std::uint32_t> ByFirst; ///< contributions by first unit, after some requests
+  std::vector<std::uint32_t> ByFirst; ///< contributions sorted by first unit, after some requests
   std::vector<std::uint32_t> Near;    ///< contributions near the requested units, by number
 };
 

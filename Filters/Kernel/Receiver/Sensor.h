@@ -5,7 +5,8 @@
  *
  * Source: paper, Table 2; defaults of Sec. 5.3.
  * Differs: the Gaussian profile, beams that are not round, the receiver's aperture and the photon
- * receiver are added. Their defaults (uniform, round, 0 and given limits) are the paper's.
+ * receiver are added. Their defaults (uniform, round, 0 and given limits) are the values of the
+ * paper.
  * Valid: the ranges of sensorFields(), far beyond any instrument.
  * Test: TestScanReport.cxx, TestStabilitySweep.cxx (bad values are named).
  */
@@ -47,7 +48,7 @@ enum class ReceiverModel
 enum class ThresholdLaw
 {
   Fixed = 0,     ///< no effect
-  FollowsAir = 1 ///< mean of the air's echo, plus as many deviations of noise as without air
+  FollowsAir = 1 ///< threshold at the air's mean echo plus as many noise deviations as without air
 };
 
 constexpr double SpeedOfLight = 299792458.0; // m/s, exact
@@ -72,7 +73,7 @@ struct Sensor
   double gaussianTruncation = 1.0; ///< half-beamwidth divided by 1/e^2 radius, 0.1 to 3
   BeamOutline beamOutline = BeamOutline::Ellipse;
   double halfBeamwidthAcross = 0.0;  ///< second half-beamwidth, rad, 1e-9 to 0.1; 0: halfBeamwidth
-  double beamRotation = 0.0;         ///< angle of halfBeamwidth from the horizontal to `up`, deg
+  double beamRotation = 0.0;         ///< angle of halfBeamwidth from horizontal towards `up`, deg
   Vec3 up{ 0.0, 0.0, 1.0 };          ///< up axis of the sensor, unit vector in scene coordinates
   double pulseEnergy = 3.6e-4;       ///< pulse energy Qs, J, 1e-50 to 1e50
   double pulseWidth = 5e-9;          ///< pulse width tau_e, s, >= 0 and <= 1000 tau_s
@@ -107,7 +108,7 @@ struct Sensor
   // Errors of ranges (RangeErrors.h), which the paper's receiver does not have.
   double rangeNoise = 0.0;         ///< b, standard deviation at a signal-to-noise ratio of 1, m
   double rangeNoiseExponent = 2.0; ///< exponent p, 0 to 10
-  double rangeNoiseFloor = 0.0;    ///< a, standard deviation of the strongest echoes, m
+  double rangeNoiseFloor = 0.0;    ///< a, standard deviation of the ranges of strong echoes, m
   double rangeWalk = 0.0;          ///< range walk at the lower limit, m
   double rangeQuantum = 0.0;       ///< step of the ranges, m; 0: ranges are not rounded
 
@@ -148,7 +149,8 @@ struct Sensor
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
 };
 
-/// Beams whose input must contain a number of the sensor. Other inputs have the default.
+/// Beams whose input must contain a value of the sensor. For other beams the default replaces an
+/// absent value.
 enum class NeededOf
 {
   All,
@@ -156,7 +158,7 @@ enum class NeededOf
   None
 };
 
-/// Description of a number of the sensor, for checks, keys, field data and files.
+/// Description of a numeric value of the sensor, for checks, keys, field data and files.
 struct SensorField
 {
   const char* name; ///< name in field data and sensor files
@@ -167,7 +169,7 @@ struct SensorField
   NeededOf neededOf;
 };
 
-/// All numbers of the sensor. Choices such as profile and receiver model have no entry.
+/// All numeric values of the sensor. Choices such as profile and receiver model have no entry.
 const std::vector<SensorField>& sensorFields();
 
 /// Entry of a member in sensorFields().

@@ -3,15 +3,15 @@
  * @file BeamEchoes.h
  * @brief Third stage of a beam: makes returns, with standard errors and labels.
  *
- * The labels of a return follow from all paths with a share in the return: the object and material
- * with the most energy, the mean angle of incidence, and the share of the energy from paths with
- * two reflections.
+ * The labels of a return are computed from all paths with a share in the return. The labels are the
+ * object and material with the most energy, the mean angle of incidence, and the share of the
+ * energy from paths with two reflections.
  *
  * Source: paper, Eq. 10-12.
  * Differs: the paper gives one point per perceived range unit, without labels. Returns are defined
  * in Receiver.h.
  * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
- * StandardError.h gives no error. For an integrated beam the standard error is the bound of
+ * StandardError.h gives no error. For an integrated beam the standard error includes the bound of
  * PolygonQuadrature.h.
  * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
  */
@@ -30,7 +30,7 @@
 namespace avianlidar
 {
 /// Energies of a return by object and material. A list is faster than a map, because a beam meets
-/// few pairs of object and material and most rays meet the pair of the ray before. An object is
+/// few pairs of object and material. Most rays meet the same pair as the ray before. A LabelSums is
 /// reused without allocation. Each thread needs its own object.
 class LabelSums
 {
@@ -64,7 +64,8 @@ public:
     bool is(int o, int m) const { return this->object == o && this->material == m; }
   };
 
-  /// The largest sum. If sums are equal, the lowest object is taken, then the lowest material.
+  /// The largest sum. If sums are equal, the lowest object id is taken, then the lowest material
+  /// id.
   const Sum& largest() const
   {
     return *std::min_element(this->Sums.begin(), this->Sums.end(),
@@ -91,8 +92,8 @@ private:
   std::size_t Last = 0;
 };
 
-/// Finds the labels of echoes. An object is reused without allocation. Each thread needs its own
-/// object.
+/// Finds the labels of echoes. An EchoLabels is reused without allocation. Each thread needs its
+/// own object.
 class EchoLabels
 {
 public:
@@ -127,8 +128,8 @@ public:
   BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
     StandardErrorEstimator& ofRays);
 
-  /// Append the echoes of the beam lit last. @param keep output: values of the returns that do not
-  /// depend on noise; may be null @param report output: status and range
+  /// Append the echoes of the beam lit last. @param keep output: those values of the returns that
+  /// do not depend on noise; may be null @param report output: status and range
   void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
 
   /// Append the echoes of a beam lit in an earlier scan. @param report output: status, range, lost

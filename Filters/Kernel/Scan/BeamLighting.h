@@ -21,10 +21,11 @@
  * rays. Mirror paths of integrated beams and of beams in cells come from MirrorRegions.h.
  *
  * Source: paper, Eq. 4-9 and Sec. 3.4.
- * Differs: the constraint limits the energy that a whole range unit loses. To compare each ray with
- * Qlow would remove every wall.
- * Valid: no range unit loses more than epsilon Qlow. A beam whose secondary paths are not traced
- * would have no echo, unless paths from random rays exceed the bound by chance.
+ * Differs: the constraint limits the energy that a whole range unit loses. A comparison of each
+ * ray's energy with Qlow would remove every wall.
+ * Valid: no range unit loses more than epsilon Qlow. A beam to which the third rule applies would
+ * have no echo with its secondary paths either, unless paths from random rays exceed the bound by
+ * chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
@@ -48,7 +49,8 @@ namespace avianlidar
 class BeamLighting
 {
 public:
-  /// @param wanted function called every 4096 steps within a beam; false: throws WorkStopped
+  /// @param wanted function called every 4096 steps within a beam; WorkStopped is thrown if it
+  /// returns false
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
     std::function<bool()> wanted);

@@ -11,8 +11,8 @@
  *
  * Source: none.
  * Valid: shares of a round beam are shares of its solid angle. Shares of other beams are shares of
- * the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: a beam of few
- * triangles is integrated, and other beams are sampled.
+ * the area of the beam's plane (BeamShape.h). Shares are as exact as the samples: a beam that few
+ * triangles enter is integrated, and other beams are sampled.
  * Test: Testing/Python/TestBeamView.py.
  */
 #ifndef avianlidar_BeamSight_h
@@ -38,14 +38,15 @@ struct SeenSurface
   double share = 0.0;    ///< share of the beam's solid angle
   double weight = 0.0;   ///< share of the pulse's energy that reaches the surface
   double energy = 0.0;   ///< energy received, J
-  double range = 0.0;    ///< mean range, weighted with the energy that arrives, m
-  double cosine = 0.0;   ///< mean cosine of incidence, weighted with the energy that arrives
+  double range = 0.0;    ///< mean range, weighted with the energy at the surface, m
+  double cosine = 0.0;   ///< mean cosine of incidence, weighted with the energy at the surface
   double nearest = 0.0;  ///< least range, m
   double farthest = 0.0; ///< largest range, m
 };
 
 /// Surfaces that beam `beam` sees, in the order of the triangles. @param setup setup planned by
-/// planModel() @param wanted function called during the work; false: throws WorkStopped
+/// planModel() @param wanted function called during the work; WorkStopped is thrown if it returns
+/// false
 std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& beams,
   std::size_t beam, const std::function<bool()>& wanted = {});
 

@@ -33,7 +33,7 @@ class BeamSimulator
 public:
   /// @param keepsLight true: keep lit beams where noise matters or surfaces move
   /// @param wanted function called every 4096 steps within a beam, and every 512 units for which
-  /// noise is drawn; false: throws WorkStopped
+  /// noise is drawn; WorkStopped is thrown if it returns false
   /// @param sampler sampler for the sensor, sampling and N of the setup; must outlive the object
   BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, std::function<bool()> wanted = {});

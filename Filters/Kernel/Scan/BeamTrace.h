@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamTrace.h
- * @brief Data kept for one beam: the geometry of its rays and paths, which does not depend on
- * energies, and the energies of the beam (LitBeam.h).
+ * @brief Data kept for one beam: the geometry of its rays and paths, independent of energies, and
+ * the energies of the beam (LitBeam.h).
  *
  * Each part of the data is computed when first needed. A scan with other coefficients, limits,
  * noise or attenuation does not trace kept parts again. The memory is 72 bytes for a beam without

@@ -79,7 +79,7 @@ private:
   BeamTracer Tracer;
   RaySamples Finder;
   SampleGeometry Geometry;
-  std::vector<std::uint32_t> Own; ///< triangles at the rays of an integrated beam
+  std::vector<std::uint32_t> Own; ///< triangles that the rays of an integrated beam meet
   std::size_t First = 0;          ///< first beam of the block
   std::vector<BeamState> BeamStates;
   std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to

@@ -13,8 +13,8 @@
  * Source: none. arXiv 2605.10457 also searches for the beams that a moving triangle can hit,
  * instead of building a tree again.
  * Valid: results with a mover at rest are bitwise identical to results with its triangles at the
- * end of the static mesh. Exceptions are costs, and faces of the mover that coincide with other
- * faces. Movers of equal content keep the order of the input.
+ * end of the static mesh. Exceptions are the costs in reports, and faces of the mover that coincide
+ * with other faces. Movers of equal content keep the order of the input.
  * Test: TestMovedBeams.cxx.
  */
 #ifndef avianlidar_MovedBeams_h

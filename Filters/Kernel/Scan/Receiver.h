@@ -89,7 +89,7 @@ class BeamReceiver
 {
 public:
   /// @param wanted function called every 512 units for which noise is drawn, counted over all
-  /// beams; false: throws WorkStopped
+  /// beams; WorkStopped is thrown if it returns false
   /// @param air media along each beam; must outlive the object; null: no light from the air
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
     std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);

@@ -25,7 +25,7 @@ namespace avianlidar
 {
 struct ScanResult
 {
-  std::vector<Echo> echoes;               ///< echoes, in the order of the beams, then of ranges
+  std::vector<Echo> echoes;               ///< echoes, in the order of the beams, then by range
   std::vector<std::size_t> beamOfEcho;    ///< index of the beam of each echo
   std::vector<BeamReport> reports;        ///< report on each beam
   std::uint64_t raysTraced = 0;           ///< number of rays traced; 0 if all beams were kept

@@ -48,7 +48,8 @@ inline std::string checkPosition(const Vec3& position)
   return {};
 }
 
-/// Check display_length, the length of the lines that show beams, m. @return as checkPosition()
+/// Check display_length, the length of the lines that show beams, m. @return empty, or a sentence
+/// with the error and the expected values
 inline std::string checkDisplayLength(double length)
 {
   return length > 0.0 && length <= MaximumCoordinate
@@ -78,7 +79,7 @@ enum class DirectEcho : std::uint8_t
 struct BeamReport
 {
   DirectEcho direct = DirectEcho::Unknown;
-  bool isCrowded = false; ///< whether rays descended the tree, as lists would be too long
+  bool isCrowded = false; ///< whether too many triangles for lists enter the beam (ViewFinder.h)
   BeamStatus status = BeamStatus::NoSurface;
   double range = 0.0;              ///< range of the strongest return, m; NaN without a return
   TraceCounters counters;          ///< cost of tracing all kept parts of the beam

@@ -61,8 +61,8 @@ private:
 std::uint64_t checksumOf(const ScanBeams& beams);
 
 /// Hash of all inputs of a beam's geometry except the beam: mesh, beam shape, borders of media, all
-/// settings of rays (such as N and the sampling), and the seed. If beams may be integrated or
-/// divided into cells, range units, gate and object ids are inputs, too.
+/// settings of rays (such as N and the sampling), and the seed. Range units, gate and object ids
+/// are inputs, too, if beams may be integrated or divided into cells.
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

@@ -5,7 +5,9 @@
  *
  * A beam that few triangles enter is integrated over the polygons that it sees (VisiblePolygons.h,
  * PolygonQuadrature.h). A beam that more triangles enter is divided into cells (BeamCells.h). If
- * the cells have too many strips, the rays of the beam are the samples.
+ * more than MostTrianglesOfCells triangles enter, the beam is crowded: each ray of the cells
+ * descends the collision tree. If the cells have too many strips, the rays of the beam are the
+ * samples.
  *
  * Source: see the headers named above.
  * Differs: the paper draws N rays for every beam.

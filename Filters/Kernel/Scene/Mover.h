@@ -6,8 +6,9 @@
  *
  * Between two poses the position is linear in time. The orientation is a spherical linear
  * interpolation (slerp). The object is absent before the first pose and after the last pose. An
- * object without times has one pose and is present at all times. A part turns about its hinge by
- * amplitude sin(2 pi (frequency t + phase)) before the pose is applied.
+ * object without times has one pose and is present at all times. Before the pose is applied, a part
+ * turns about its hinge by the angle a sin(2 pi (f t + phase)), with a the amplitude and f the
+ * frequency.
  *
  * Source: slerp: K. Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985.
  * Valid: positions up to 1e30 m. An object at rest in the scene's frame (position 0, orientation 1)

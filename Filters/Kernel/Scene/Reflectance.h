@@ -99,7 +99,7 @@ inline constexpr MaterialCoefficient MaterialCoefficients[] = {
     false },
   { "kp", "1", &Material::kp, 1e6, false, "from 0 to 1e6",
     [](const Material& material) { return material.isGlossy(); }, false },
-  // The limit lets pi/2 in single precision pass.
+  // The limit is above pi/2 rounded to single precision.
   { "roughness", "rad", &Material::roughness, 0.5 * Pi + 1e-7, false, "from 0 to pi/2 rad",
     [](const Material&) { return false; }, true },
 };

@@ -27,7 +27,7 @@
 
 namespace avianlidar
 {
-/// Numbers of the triangles in this order; empty if the triangles are sorted already.
+/// Numbers of the triangles, sorted; empty if the triangles are sorted already.
 /// @param objectIds, materialIds ids of each triangle
 std::vector<std::uint32_t> triangleOrder(
   const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds);

@@ -3,7 +3,7 @@
  * @file Bird.h
  * @brief A bird as closed surfaces: a body and two wings.
  *
- * The body stands for an ellipsoid of revolution, whose length is 0.65 of the bird's length. The
+ * The body represents an ellipsoid of revolution, whose length is 0.65 of the bird's length. The
  * frontal area of the body is S_b = 0.0129 M^0.614 m^2 for passerines and 0.00813 M^0.666 m^2 for
  * other birds, with the mass M in kg. The wings are flat plates with an angle of attack of 6
  * degrees. Both wings together have 0.85 of the wing area. The thickness of a wing is 0.001 of its
@@ -11,9 +11,10 @@
  * wing is a sine of time with an amplitude of 35 degrees. In a glide, wings are held 5 degrees up.
  *
  * The body is a polyhedron of 48 triangles that has the effective area of the ellipsoid (silhouette
- * weighted by the cosine of incidence) from every direction. For any convex body with a centre this
- * area is half a quadratic form of the direction, so a fit of two values suffices. The wings have
- * 24 triangles. With so few triangles, a beam that meets a bird is still integrated over polygons.
+ * weighted by the cosine of incidence) from every direction. For any convex body with a centre of
+ * symmetry this area is half a quadratic form of the direction, so a fit of two values suffices.
+ * The wings have 24 triangles. With so few triangles, a beam that meets a bird is still integrated
+ * over polygons.
  *
  * Frame of a bird: x right, y forward, z up. The bird is turned by the bank (to the right) first,
  * and then by the heading (clockwise from north).
@@ -22,7 +23,7 @@
  * Exp. Biol. 135 (1988). Wingbeats: C. J. Pennycuick, J. Exp. Biol. 199 (1996).
  * Differs: the bird has no head, neck, tail or legs. Shares, angles and thickness are assumed.
  * Valid: the effective area of the body is exact. The effective area of the wings is within 1 % of
- * the area of plates. The body is some per cent longer than the ellipsoid.
+ * the effective area of flat plates. The body is some per cent longer than the ellipsoid.
  * Test: TestBird.cxx.
  */
 #ifndef avianlidar_Bird_h

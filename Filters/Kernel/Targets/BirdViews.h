@@ -9,8 +9,8 @@
  *
  * Source: none.
  * Differs: the bird has no bank and no pitch.
- * Valid: as in Silhouette.h, for a bird that is seen from afar. The mean of probabilities over
- * these poses lies within 0.02 of the mean over all poses.
+ * Valid: as in Silhouette.h, for a bird that is seen from afar. The mean of detection probabilities
+ * over these poses lies within 0.02 of the mean over all poses.
  * Test: TestBirdViews.cxx.
  */
 #ifndef avianlidar_BirdViews_h
@@ -28,7 +28,7 @@ constexpr std::size_t BirdPhases = 5;
 constexpr std::size_t GlidingHeadings =
   BirdHeadings * BirdPhases; ///< number of headings of a gliding bird, which has one phase
 
-/// Views of a bird. @param meanArea unit of areas, m^2
+/// Views of a bird. @param meanArea area that serves as the unit of areas, m^2
 TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea);
 
 /// Mean effective area of a bird in flight over all headings and wing phases, m^2, seen at an

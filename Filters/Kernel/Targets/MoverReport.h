@@ -26,10 +26,10 @@ struct MoverReport
 {
   /// True if the mover exists at the time of `pose`. If false, the other members are invalid.
   bool present = false;
-  Pose pose; ///< pose at the time of `beam`, or in the middle of the scan without a beam
+  Pose pose; ///< pose at the time of `beam`; if `touched` is false, in the middle of the scan
   /// Poses at the times of the first and the last beam that contains the mover's origin or receives
-  /// energy from the mover; `pose` without such beams. The two poses are a revolution apart if the
-  /// mover crosses from the last column to the first column.
+  /// energy from the mover; `pose` if there is no such beam. The two poses are a revolution apart
+  /// if the mover crosses from the last column to the first column.
   Pose first, last;
   std::size_t beam = 0; ///< beam with most of the mover's light, 0 if no beam may touch the mover
   Vec3 origin{ 0.0 };   ///< origin of `beam`, m

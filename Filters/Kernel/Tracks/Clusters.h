@@ -13,7 +13,7 @@
  * Source: connected components of the graph of neighbours. The method is DBSCAN with clusters of
  * one point or more: M. Ester et al., "A density-based algorithm for discovering clusters", KDD
  * 1996.
- * Valid: coordinates and ranges up to 1e9 m. The order of the points changes no bit.
+ * Valid: coordinates and ranges up to 1e9 m. The order of the points changes no bit of the result.
  * Test: TestClusters.cxx.
  */
 #ifndef avianlidar_Clusters_h

@@ -15,8 +15,8 @@
  *
  * Source: background subtraction by the share of scans, as in Examples/sequence. The exponential
  * window is added.
- * Valid: finite points. The order of the points changes no bit. Neighbours wrap around at azimuths
- * of +-180 degrees, but not across the zenith.
+ * Valid: finite points. The order of the points changes no bit of the result. Neighbours wrap
+ * around at azimuths of +-180 degrees, but not across the zenith.
  * Test: TestClutterMap.cxx; TestClutterFilter.py (NumPy, point by point).
  */
 #ifndef avianlidar_ClutterMap_h
@@ -91,8 +91,7 @@ public:
   int scans() const { return this->Scans; }
   const ClutterGrid& grid() const { return this->Grid; }
 
-  /// Persistence below which cells are removed: 0.001, or half the persistence of one echo in a
-  /// long window.
+  /// Persistence below which cells are removed: 0.5/W, but at most 0.001.
   double persistenceKept() const;
 
 private:

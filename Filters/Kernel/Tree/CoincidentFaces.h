@@ -11,10 +11,10 @@
  * coordinates, projected on the triangle's normal, with u_s = 2^-24. The growth is at most half a
  * millimetre.
  *
- * Pairs are found by descending the tree against itself. Triangles that coincide, directly or
- * through other triangles, then take the plane of the triangle whose least altitude is largest,
- * because rounding tilts this plane least. The ranges of a ray on coincident triangles are equal
- * bit for bit, and the triangle with the lowest number is seen.
+ * Pairs are found by descending the tree against itself. Triangles that coincide, directly or by a
+ * chain of coincident triangles, then take the plane of the triangle whose least altitude is
+ * largest, because rounding tilts this plane least. The ranges of a ray on coincident triangles are
+ * equal bit for bit, and the triangle with the lowest number is seen.
  *
  * Source: none.
  * Valid: any triangles. The result depends only on the mesh, not on the tree or the threads. A

@@ -31,7 +31,7 @@ namespace avianlidar
 /// @param from may be reordered
 /// @param centers box of twice the centres of the boxes
 /// @param depth depth of the node (0 for the root), which chooses the axis of SplitRule::Median.
-/// From depth 96 on every rule halves the list, because a rule that splits off single triangles
+/// From depth 96 on, every rule halves the list, because a rule that splits off single triangles
 /// would otherwise turn the tree into a list.
 /// @return number of boxes of the first child, in [1, count - 1]. Where a rule cannot divide (equal
 /// centres), the list is halved in its given order.

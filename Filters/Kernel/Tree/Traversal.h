@@ -39,7 +39,7 @@ struct WidePolicy
 {
   /// True if the descent goes no deeper than this entry.
   static bool isEnd(const DescentEntry& entry) { return entry.count > 0; }
-  /// Called before each inner node and at the end of the descent.
+  /// Called before each inner node is opened, and at the end of the descent.
   void afterEnds() {}
 };
 
@@ -66,7 +66,7 @@ std::uint64_t descendWide(
   std::uint64_t visited = 0;
   while (top != bottom)
   {
-    // A reference: the entry was mostly written just before, and a copy would wait for that write.
+    // A copy would have to wait for the write of the entry, which mostly happened just before.
     const DescentEntry& entry = *--top;
     if (policy.isEnd(entry))
     {

@@ -43,7 +43,7 @@ AVIANLIDAR_ALWAYS_INLINE Lanes larger(Lanes a, Lanes b)
 /// Upper bound of all numbers whose nearest float is `nearest`.
 AVIANLIDAR_ALWAYS_INLINE Lanes roundedUp(Lanes nearest)
 {
-  // The product is one or two units in the last place. The constant covers underflow.
+  // The product is one or two units in the last place of `nearest`. The constant covers underflow.
   const Lanes size = larger(nearest, -nearest);
   return (nearest + size * std::numeric_limits<float>::epsilon()) + 2e-38f;
 }

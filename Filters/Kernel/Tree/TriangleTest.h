@@ -6,7 +6,8 @@
  * - Corners are moved to the apex in double precision. The edge vector of a side is E = (a - b) x
  *   (a + b) = 2 a x b. Exchanging a and b changes the sign of E and no other bit, as long as no
  *   product is fused with a sum (compile with -ffp-contract=off). Triangles that share an edge
- *   therefore agree on E. Unlike a x b, the product E is accurate for small triangles far away.
+ *   therefore have the same E for the edge, except for its sign. Unlike a x b, the product E is
+ *   accurate for small triangles far away.
  * - In the beam's own plane the edge function of the ray (x, y) is ex x + ey y + ez with ex =
  *   tan(theta0.5) e1 . E, ey = tan(theta0.5) e2 . E, ez = axis . E. The edge function is linear in
  *   E, so exchanging a and b still changes only its sign.

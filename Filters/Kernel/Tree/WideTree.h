@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WideTree.h
- * @brief Collision tree with eight children per node, whose axis-aligned boxes are in single
- * precision for speed; the tests of cones and rays against the boxes; the entry points at which
- * rays begin their descent.
+ * @brief Collision tree with eight children per node and axis-aligned boxes in single precision,
+ * tests of cones and rays against the boxes, and entry points at which rays begin their descent.
  *
  * Eight boxes are tested in one loop over lanes. Boxes are relative to the middle of the scene, and
  * tests widen them by the rounding of single precision.
  *
- * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; tests as in
- * BeamVolumeTest.h for the other volumes.
+ * Source: Wald, Benthin and Boulos, "Getting Rid of Packets", IEEE RT 2008; the tests follow
+ * BeamVolumeTest.h.
  * Differs: packets of rays and groups of beams descend the tree, too.
- * Valid: the tests are conservative. All boxes are met if scene and apex are within
+ * Valid: the tests are conservative. All boxes count as met if scene and apex are within
  * LeastWideExtent, or if scene or apex is beyond LargestWideExtent.
  * Test: TestWideTree.cxx, TestBeamGroup.cxx and TestBeamTracer.cxx (entry points).
  */
@@ -71,7 +70,7 @@ struct EntryPoints
 
   void clear();
   void add(const WideNode& node, int lane, float distance);
-  /// Add a leaf whose box is not known.
+  /// Add a leaf with a box that every ray meets.
   void addLeaf(std::uint32_t first, std::uint32_t count);
 
 private:

@@ -38,15 +38,15 @@ struct vtkAvianLidarBeams
   /// Elevation of a direction, deg.
   static double ElevationOf(const avianlidar::Vec3& d);
 
-  /// Read `input`. Earlier results are kept if points and arrays have the same values. Throws
-  /// std::runtime_error, which names the input and the array.
+  /// Read `input`. Earlier results are kept if the values of points and arrays have not changed.
+  /// Throws std::runtime_error, which names the input and the array.
   void Read(vtkPolyData* input);
 
   /// Check that the beams of all ranks belong to one sensor, and that no id occurs twice. All ranks
   /// must call this function.
   void CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self);
 
-  /// Check ids again at the next CheckRanks(), as the ranks may have changed.
+  /// Check ids again at the next CheckRanks(), because the ranks may have changed.
   void ForgetRanks() { this->checkedWith = nullptr; }
 
   /// Hash of sensor, revolution and beams.

@@ -4,8 +4,9 @@
  * @brief Information keys of a sensor's revolutions. Not installed.
  *
  * The beam source publishes several steps as VTK's TIME_STEPS, and the length of its revolutions
- * under another key. Filters downstream pass both keys on. So a filter with beams and surfaces as
- * inputs can find the start of the revolution at a given time before any filter executes.
+ * under another key. Filters downstream pass both keys on. So, before any filter executes, a filter
+ * with beams and surfaces as inputs can find the start of the revolution that contains a given
+ * time.
  */
 #ifndef vtkAvianLidarRevolutions_h
 #define vtkAvianLidarRevolutions_h

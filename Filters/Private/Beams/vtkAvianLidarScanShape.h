@@ -20,8 +20,8 @@ class vtkInformation;
 
 namespace vtkAvianLidarScanShape
 {
-/// Publish the pattern, in RequestInformation of the sensor, unless it is bad, or its beams do not
-/// form a grid (tables of beams, prisms).
+/// Publish the pattern, in RequestInformation of the sensor, unless the pattern is bad or its beams
+/// do not form a grid (tables of beams, prisms).
 void Publish(const avianlidar::ScanPattern& pattern, vtkInformation* output);
 
 /// Remove the pattern from an output, in RequestInformation, if the input has no pattern.

@@ -13,8 +13,8 @@
 
 namespace vtkAvianLidarAbort
 {
-/// True if the algorithm is to stop. Call the function only on the calling thread, after
-/// vtkAlgorithm::UpdateProgress(), whose observers set the flag.
+/// True if the algorithm is to stop. Call the function only on the thread that runs the filter,
+/// after vtkAlgorithm::UpdateProgress(), whose observers set the flag for stopping.
 inline bool Wanted(vtkAlgorithm* algorithm)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
@@ -47,7 +47,7 @@ inline void Require(bool done)
 
 /// Throws if an observer has stopped the algorithm at progress 0, which the executive reports
 /// before RequestData. Call the function in the body of RequestData. Ranks that work together call
-/// the function in a step.
+/// the function in a step (vtkAvianLidarRanks.h).
 inline void StopIfWanted(vtkAlgorithm* algorithm)
 {
   Require(!Wanted(algorithm));

@@ -26,9 +26,9 @@ namespace vtkAvianLidarArrays
 /// Attach the unit to an array (vtkDataArray::UNITS_LABEL).
 void SetUnit(vtkAbstractArray* array, const char* unit);
 
-/// Set the number of tuples of a new array, whose components are set. The values are not
-/// initialised. Without memory the function throws std::bad_alloc. VTK's own function, as Debian
-/// builds VTK, ends the process.
+/// Set the number of tuples of a new array, whose number of components is set. The values are not
+/// initialised. If memory does not suffice, the function throws std::bad_alloc. VTK's own function,
+/// as Debian builds VTK, ends the process.
 template <class ValueT>
 void SetTuples(vtkAOSDataArrayTemplate<ValueT>* array, vtkIdType tuples)
 {

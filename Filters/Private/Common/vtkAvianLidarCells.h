@@ -73,7 +73,8 @@ vtkSmartPointer<vtkCellArray> vtkAvianLidarMakeTriangles(const Triangles& triang
   return cells;
 }
 
-/// An error text if the offsets of cells are bad, else an empty string. Takes O(cells) time.
+/// An error text if the offsets of cells are bad, else an empty string. The time is proportional to
+/// the number of cells.
 inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
 {
   return !cells || cells->GetNumberOfCells() == 0 || cells->IsValid()
@@ -81,8 +82,8 @@ inline std::string vtkAvianLidarOffsetsError(vtkCellArray* cells)
     : "the offsets of its cells do not fit their points";
 }
 
-/// An error text if cells are bad for `points` points, else an empty string. Takes O(points of
-/// cells) time.
+/// An error text if cells are bad for `points` points, else an empty string. The time is
+/// proportional to the number of point ids in the cells.
 inline std::string vtkAvianLidarCellsError(vtkCellArray* cells, vtkIdType points)
 {
   if (!cells || cells->GetNumberOfCells() == 0)

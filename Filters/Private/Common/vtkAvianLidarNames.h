@@ -25,7 +25,7 @@ struct Name
   const char* words = ""; ///< description in LAS files, with the unit at most 31 bytes
 };
 
-// Beams, and mostly also echoes and beam report (point data).
+// Beams (point data); most of these arrays also in echoes and beam report.
 /// column * channels + channel, unique among all pieces of a scan (vtkIdType)
 constexpr Name BeamId{ "beam_id", "", "index of the beam" };
 /// unit vector along the beam: east, north, up
@@ -48,7 +48,7 @@ constexpr Name AirBackscatter{ "air_backscatter", "1" };
 constexpr Name RainRate{ "rain_rate", "mm/h" };
 /// outline of the beam: 0 ellipse, 1 rectangle (int)
 constexpr Name BeamOutline{ "beam_outline", "1" };
-/// threshold in scattering air: 0 fixed, 1 raised by the light of the air (int)
+/// threshold in scattering air: 0 fixed, 1 raised by backscatter of the air (int)
 constexpr Name ThresholdLaw{ "threshold_law", "1" };
 /// profile of the beam: 0 uniform, 1 Gaussian (int)
 constexpr Name BeamProfile{ "beam_profile", "1" };
@@ -62,7 +62,7 @@ constexpr Name ReceiverModel{ "receiver_model", "1" };
 constexpr Name Wavelength{ "wavelength", "nm" };
 /// false alarms expected in a scan of empty sky
 constexpr Name FalseAlarmsPerScan{ "false_alarms_per_scan", "1" };
-/// ratio of the upper to the lower limit, 10 log10 of electrons
+/// 10 log10 of the ratio of the upper to the lower limit in electrons
 constexpr Name DynamicRange{ "dynamic_range", "dB" };
 /// names of the settings with assumed values (text)
 constexpr Name Assumed{ "assumed", "" };
@@ -76,7 +76,7 @@ constexpr Name Orientation{ "orientation", "deg" };
 constexpr Name NumberOfChannels{ "number_of_channels", "1" };
 /// elevation of channel 0
 constexpr Name MinimumElevation{ "minimum_elevation", "deg" };
-/// elevation from channel to channel
+/// step of elevation between channels
 constexpr Name ElevationStep{ "elevation_step", "deg" };
 /// elevation of each channel, if tabulated
 constexpr Name ChannelElevations{ "channel_elevations", "deg" };
@@ -100,15 +100,15 @@ constexpr Name PrismAxisElevation{ "prism_axis_elevation", "deg" };
 constexpr Name PrismAxisRotationRate{ "prism_axis_rotation_rate", "Hz" };
 /// first azimuth and excluded end
 constexpr Name AzimuthRange{ "azimuth_range", "deg" };
-/// azimuth from column to column
+/// step of azimuth between columns
 constexpr Name AzimuthStep{ "azimuth_step", "deg" };
 /// scans per second
 constexpr Name RotationRate{ "rotation_rate", "Hz" };
 /// time between firings of a column
 constexpr Name FiringInterval{ "firing_interval", "s" };
-/// revolutions to play (int)
+/// number of revolutions to play (int)
 constexpr Name NumberOfRevolutions{ "number_of_revolutions", "1" };
-/// time steps that play a revolution (int)
+/// time steps per revolution (int)
 constexpr Name StepsPerRevolution{ "steps_per_revolution", "1" };
 /// number of the revolution, from 0 (int)
 constexpr Name Revolution{ "revolution", "" };

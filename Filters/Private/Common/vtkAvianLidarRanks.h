@@ -61,9 +61,10 @@ public:
     std::vector<std::pair<const char*, std::string>> Each;
   };
 
-  /// Run the body of a RequestData on the ranks that execute the request, unless the producer of an
-  /// input of one of these ranks failed. Returns 0 or 1. No exception leaves the function. Failures
-  /// are handled as in vtkAvianLidarGuarded(). If the work was stopped, outputs are empty.
+  /// Run the body of a RequestData on the ranks that execute the request. If the producer of an
+  /// input failed on one of these ranks, the body is not run. Returns 0 or 1. No exception leaves
+  /// the function. Failures are handled as in vtkAvianLidarGuarded(). If the work was stopped,
+  /// outputs are empty.
   template <class Filter, class Work>
   static int Execute(
     Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Work& body)
@@ -89,7 +90,7 @@ public:
   /// Run this rank's part of a step. If the step fails or stops on one rank, the function throws on
   /// all ranks, and Execute() ends.
   /// @param step function that throws an error, or avianlidar::WorkStopped to stop. `self` reports
-  /// an error on the rank itself, and on rank 0 with the number of the rank.
+  /// the error of a rank on this rank, and on rank 0 with the number of the rank.
   template <class Step>
   void Together(vtkAlgorithm* self, const Step& step) const
   {
@@ -105,10 +106,10 @@ public:
   /// True if `mine` is true on every rank.
   bool All(bool mine) const;
 
-  /// The sum over all ranks.
+  /// The sum of `mine` over all ranks.
   double Sum(double mine) const;
 
-  /// The largest value on any rank.
+  /// The largest `mine` of all ranks.
   double Largest(double mine) const;
 
   /// True if all ranks that have a value have the same value.

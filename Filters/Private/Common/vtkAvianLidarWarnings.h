@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarWarnings.h
- * @brief Decides whether a warning about surfaces is new: each warning is given once per scene, and
- * once for all times of a scene that moves. Not installed.
+ * @brief Decides whether a warning about surfaces is new. A warning is given once per scene. For a
+ * scene that moves, a warning is given once for all times. Not installed.
  */
 #ifndef vtkAvianLidarWarnings_h
 #define vtkAvianLidarWarnings_h

@@ -37,8 +37,8 @@ void FillReport(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& 
   const avianlidar::NoisePlan& noise, vtkPolyData* report);
 
 /**
- * Fill in a vertex for each mover that is present. The vertex is the position of the mover when the
- * beam is fired that receives most energy from the mover. Arrays: see vtkAvianLidarEchoFilter.
+ * Fill in a vertex for each mover that is present. The vertex is the mover's position at the firing
+ * time of the beam that receives most energy from the mover. Arrays: see vtkAvianLidarEchoFilter.
  *
  * @param reports reports of the movers of `setup` from `beams` @param result result of the scan
  * @param report empty output

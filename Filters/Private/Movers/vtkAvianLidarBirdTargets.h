@@ -23,10 +23,10 @@ public:
     std::shared_ptr<const avianlidar::TargetViews> Views;
   };
 
-  /// The chosen targets, beginning with the target to show. Throws std::runtime_error, which names
-  /// the property. @param species name of the species; empty: a target with the effective area
-  /// `area` from all sides @param area mean effective area, m^2; 0: the area of the species @param
-  /// all true if all other species follow
+  /// The chosen targets, first the target of `species`. Throws std::runtime_error, which names the
+  /// property. @param species name of the species; empty: a target with the effective area `area`
+  /// from all sides @param area mean effective area, m^2; 0: the area of the species @param all
+  /// true if all other species follow
   std::vector<Target> Choose(const std::string& species, const std::string& speciesFileName,
     bool gliding, double area, bool all);
 

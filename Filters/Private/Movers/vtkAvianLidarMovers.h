@@ -9,7 +9,7 @@
  * (n x 3, m), `pose_orientation` (n x 4, unit quaternion w, x, y, z; may be missing for a mover
  * that is not turned). Parts that flap are given by the cell array `part` and by the field data
  * `flap_hinge` (k x 3, m), `flap_axis` (k x 3), `flap_amplitude` (k, rad), `flap_frequency` (k,
- * Hz), `flap_phase` (k). Materials and ids are given as for surfaces.
+ * Hz), `flap_phase` (k, turns). Materials and ids are given as for surfaces.
  */
 #ifndef vtkAvianLidarMovers_h
 #define vtkAvianLidarMovers_h
@@ -37,8 +37,8 @@ struct vtkAvianLidarMovers
   std::vector<std::string> materialNames;
 
   /// Read the movers of all ranks, unless input, surfaces and ranks are unchanged. All ranks must
-  /// call this function. Ids of movers are kept if all ids are beyond the ids of the surfaces.
-  /// Otherwise new ids follow the ids of the surfaces.
+  /// call this function. Ids of movers are kept if all these ids are larger than the ids of the
+  /// surfaces. Otherwise new ids follow the ids of the surfaces.
   /// @param input movers, may be null @param surfaces surfaces, whose ids and names come first
   void Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
     const vtkAvianLidarSurfaces& surfaces);

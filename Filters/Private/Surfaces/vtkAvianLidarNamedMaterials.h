@@ -3,9 +3,9 @@
  * @file vtkAvianLidarNamedMaterials.h
  * @brief Lists the named materials. Not installed.
  *
- * The materials of the paper's Table 1 have their index as `material_id`. Other materials get the
- * next free id when they are used. This file includes no VTK header: headers of newer VTK rename
- * the namespace of the JSON library that the scene reader includes beside this file.
+ * The materials of the paper's Table 1 have their index as `material_id`. A material outside Table
+ * 1 has the next free id from its first use on. This file includes no VTK header: headers of newer
+ * VTK rename the namespace of the JSON library that the scene reader includes beside this file.
  */
 #ifndef vtkAvianLidarNamedMaterials_h
 #define vtkAvianLidarNamedMaterials_h
@@ -31,8 +31,8 @@ inline constexpr NamedMaterial NamedMaterials[] = {
   { "Glass", { 0.020, 0.852, 8046.0 }, { 0.55, 0.75, 0.85 }, Paper },
   { "Metal", { 0.075, 0.634, 6803.0 }, { 0.60, 0.63, 0.68 }, Paper },
   { "Wood", { 0.107, 0.100, 82.0 }, { 0.62, 0.44, 0.27 }, Paper },
-  // Kokaly et al. 2017, doi:10.3133/ds1035. Spectra give no lobe: the reflectance is taken as
-  // diffuse. No roughness of such ground was found.
+  // Kokaly et al. 2017, doi:10.3133/ds1035. Spectra do not give a specular lobe: the reflectance is
+  // taken as diffuse. No roughness of such ground was found.
   { "Concrete", { 0.3104, 0.0, 1.0, 0.35 }, { 0.66, 0.66, 0.64 },
     "USGS Spectral Library 7, 905 nm: Concrete GDS375 light grey road; roughness assumed" },
   { "Asphalt", { 0.1298, 0.0, 1.0, 0.52 }, { 0.25, 0.25, 0.27 },

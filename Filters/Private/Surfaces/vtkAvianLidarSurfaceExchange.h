@@ -7,9 +7,9 @@
  * 1. Each rank hashes its surfaces, block by block, and all ranks compare one hash. Nothing is sent
  *    if all ranks have the same surfaces, or the same surfaces as at the last exchange.
  * 2. Otherwise the ranks list their blocks, with the hashes. Blocks with the same place in the
- *    composite (flat index) are one block. Equal data count once. Different data are parts of the
- *    block. The lowest rank that has a part sends the part to all ranks, as a vtkPolyData with the
- *    arrays that a scan needs.
+ *    composite (flat index) are one block. If ranks have equal data of a block, the data count
+ *    once. Data that differ are parts of the block. The lowest rank that has a part sends the part
+ *    to all ranks, as a vtkPolyData with the arrays that a scan needs.
  * 3. Every rank puts the parts together: blocks in leaf order, parts of a block in the order of
  *    ranks. So the scene, its ids and its names are the same on all ranks.
  */

@@ -3,26 +3,27 @@
  * @file BeamCells.h
  * @brief Samples of a beam that many triangles enter, from a grid of cells and rays.
  *
- * 1. The disc is divided into 4 x 4 cells, and each cell into 4 x 4 smaller cells. The surfaces in
- * the list of a cell are tested against its sixteen children at once (CellLanes.h). A child keeps a
- * surface unless a side of the surface separates surface and child, or a nearer surface covers the
- * child.
- * 2. A cell that one surface covers within one strip (RangeStrips.h) is one exact sample.
+ * 1. The disc is divided into 4 x 4 cells. Each cell is divided into 4 x 4 smaller cells, its
+ * children. The surfaces in the list of a cell are tested against the sixteen children at once
+ * (CellLanes.h). A child keeps a surface unless a side of the surface separates surface and child,
+ * or a nearer surface covers the child.
+ * 2. A cell that one surface covers, with all ranges in one strip (RangeStrips.h), is one exact
+ * sample.
  * 3. Every other cell of the last level holds m x m blocks of 16 jittered rays (CellDensity), one
  * ray in each square of a grid. These rays are tested only against the list of the cell.
  *
- * The density of rays follows from N (densityOfCells()) and never from hits, so missed surfaces
- * cause no bias. A cell has more rays, or is divided further, if it holds an object on which fewer
- * than CellDensity::raysOnObject() rays would fall. A cell that may hold the middle of a specular
- * lobe is also divided further.
+ * The density of rays follows from the number N of rays per beam (densityOfCells()) and never from
+ * hits, so missed surfaces cause no bias. A cell has more rays, or is divided further, if it holds
+ * a small object, on which fewer than CellDensity::raysOnObject() rays would fall. A cell that may
+ * hold the middle of a specular lobe is also divided further.
  *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that become shorter in smaller cells.
- * Differs: instead of pixels, the smallest cells hold stratified rays, whose sums have a standard
- * error.
+ * Differs: the smallest cells are not pixels. These cells hold stratified rays, whose sums have a
+ * standard error.
  * Valid: any triangles. Samples depend only on the beam, and on the triangles that enter its disc
  * and their object ids. Samples do not depend on the order of the triangles, their materials or the
- * tree. Specular lobes are resolved up to exponents of about 1e8 in a beam of 5.6 mrad.
+ * tree. Specular lobes are resolved up to exponents of about 1e8 at a half-beamwidth of 5.6 mrad.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx, TestBird.cxx.
  */
 #ifndef avianlidar_BeamCells_h
@@ -43,8 +44,8 @@
 
 namespace avianlidar
 {
-/// Largest number of triangles in a beam whose cells have lists of surfaces. The rays of other
-/// beams are traced through the tree.
+/// Largest number of triangles in a beam whose cells have lists of surfaces. With more triangles,
+/// the cells have no lists, and each ray descends the collision tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
 /// Smallest share of the disc that the triangles of an object must cover for the object to have
@@ -69,9 +70,10 @@ public:
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
 
   /// Place the rays of a beam with too many triangles for lists. The cells of the beam are divided
-  /// as small objects require. The rays must then be traced through the tree.
-  /// @param numbers triangles in any order, among them all triangles of small objects; the list is
-  /// changed
+  /// as small objects require. The caller must then find the triangle of each ray by descents of
+  /// the collision tree.
+  /// @param numbers triangles in any order, including all triangles of small objects; the function
+  /// changes the list
   /// @return the rays, valid until the next beam
   const BeamRays& place(
     std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
@@ -124,7 +126,7 @@ private:
   const SceneTriangles& Scene;
   const CellDensity Density;
   const BeamShape Shape;
-  std::vector<double> Areas; ///< areas, in the beam, of the cells of the first two levels
+  std::vector<double> Areas; ///< parts in the beam of cells of two levels, half-beamwidths squared
   std::vector<float> Jitter; ///< places of rays in a block, in units of their spacing
 
   // The current beam.
@@ -133,11 +135,12 @@ private:
   const std::vector<const BeamSurface*>* All = nullptr;
   double Tangent2 = 0.0;
   double ShareOfArea = 0.0;
-  double LeastShare = LeastShareOfObject; ///< least share of a small object
+  double LeastShare = LeastShareOfObject; ///< least share of the disc that a small object covers
   bool HasObjects = false;                ///< whether small objects enter the disc
   bool HasFeet = false;                   ///< whether middles of specular lobes may be in the disc
   std::vector<CellSurface> Surfaces;      ///< surfaces of `All` in single precision
-  /// Id and area of each small object, after sumObjects().
+  /// Id of each small object, and sum of the areas of its triangles in units of 2^-40
+  /// half-beamwidths squared, after sumObjects().
   std::vector<std::pair<int, std::uint64_t>> Objects;
   std::vector<int> Large; ///< ids of objects that are large for certain
   std::vector<Level> Levels;
@@ -147,7 +150,7 @@ private:
   RangeStrips Strips;
   std::vector<std::uint32_t> Whole; ///< numbers of all surfaces, or of triangles that are hit
 
-  // A beam whose rays are traced through the tree.
+  // A beam with more than MostTrianglesOfCells triangles.
   bool Plans = false; ///< whether rays are only placed, not tested
   BeamTriangles Seen;
   BeamRays Rays; ///< rays that lie in the beam

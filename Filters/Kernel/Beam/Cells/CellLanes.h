@@ -25,14 +25,14 @@ constexpr int CellLanes = 16;
 /// A BeamSurface in single precision. Sides that do not meet the disc are (0, 0, 1).
 struct CellSurface
 {
-  float lines[4][3];  ///< PlaneLine of each side: x, y and z
+  float lines[4][3];  ///< coefficients x, y and z of each side's PlaneLine
   float slopes[4];    ///< |x| + |y| of each side
   float inverse[3];   ///< PlaneLine of 1/z, divided by the largest 1/z in the beam
   float inverseSlope; ///< |x| + |y| of `inverse`
   float most;         ///< upper bound of `inverse`
   float slack;        ///< bound of the rounding of `inverse`
   float share;        ///< share of the beam filled by the surface's small object; 0: not small
-  float foot[2];      ///< foot of the perpendicular from the apex (middle of the lobe)
+  float foot[2];      ///< foot of the apex's perpendicular (middle of the lobe), half-beamwidths
 };
 
 /// Sixteen children of a cell, four by four.

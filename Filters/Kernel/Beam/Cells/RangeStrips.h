@@ -14,7 +14,7 @@
  * in a square of four rays. Neighbours differ more than two rays in one square of the grid would,
  * so the estimate tends to be too large. addVariance() accounts for surfaces that no ray of a cell
  * met.
- * Valid: at most four million strips per beam. Lanes of any width give the same bits.
+ * Valid: at most four million strips per beam. SIMD lanes of any width give the same bits.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx.
  */
 #ifndef avianlidar_RangeStrips_h
@@ -47,9 +47,9 @@ struct CellSamples
   /// Variance, by sample, of the weight that may move to a neighbouring sample of the same unit.
   std::vector<double> moves;
   std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; empty: zero
-  /// The surfaces that the beam sees, with hidden parts; null with one reflection.
+  /// The surfaces that the beam sees, including their hidden parts; null with one reflection.
   std::unique_ptr<VisiblePolygons> surfaces;
-  bool isCrowded = false; ///< whether the rays were traced through the tree (MostTrianglesOfCells)
+  bool isCrowded = false; ///< whether more than MostTrianglesOfCells triangles enter
 
   std::size_t bytes() const
   {
@@ -65,7 +65,8 @@ struct CellSamples
   double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
-/// The strips of a surface. Integers are stored as doubles, for SIMD lanes.
+/// The strips of a surface. Range units are divided into equal parts, so that strips are short
+/// (MostOfRange). Integers are stored as doubles, for SIMD lanes.
 struct SurfaceStrips
 {
   double number; ///< number of the surface
@@ -118,7 +119,7 @@ private:
   const ScanSetup& Setup;
   const double UnitLength; ///< length of a range unit, m
   const double Gate;       ///< range beyond which nothing is received, m
-  const double Offset;     ///< range units between a border and the range at which a pulse enters
+  const double Offset;     ///< half the length of the pulse, range units
   const BeamShape Shape;
   double Tangent2 = 0.0;
   double Flatness2 = 1.0; ///< flatness2 of the current beam's BeamFrame

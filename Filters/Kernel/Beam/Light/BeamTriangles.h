@@ -7,8 +7,8 @@
  * intersection of the half-planes of its edge functions (TriangleTest.h). On the triangle, 1/z is
  * an affine function, with z the distance along the axis. Triangles are set up eight at a time, in
  * SIMD lanes. Two triangles with consecutive numbers become one surface if they form a convex
- * quadrilateral in one plane, except for the rounding of scene coordinates. Triangles that share a
- * plane (CoincidentFaces.h) have the same 1/z and are sorted by number.
+ * quadrilateral whose corners lie in one plane within the rounding of scene coordinates. Triangles
+ * that share a plane (CoincidentFaces.h) have the same 1/z and are sorted by number.
  *
  * Source: Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988, for half-planes.
  * Differs: the plane lies across a beam's axis, and the unit disc takes the place of pixels.

@@ -98,7 +98,7 @@ struct EchoSettings
 {
   BeamSampleSource beamSamples = BeamSampleSource::Cells;
   int raysPerBeam = 100;                    ///< number of rays of a beam, N, 1 to 1e6
-  Sampling sampling = Sampling::Stratified; ///< sampling of rays; in cells only for connections
+  Sampling sampling = Sampling::Stratified; ///< sampling of rays, except rays in cells
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< attenuation coefficient mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
@@ -113,7 +113,7 @@ struct EchoSettings
   bool noise = true;
   bool fullModel = false; ///< whether parts of the model that cannot matter are computed, too
   ReturnMode returnMode = ReturnMode::All;
-  int numberOfConnections = 2; ///< connections of each ray, M, at least 0; see connectionsOf()
+  int numberOfConnections = 2; ///< number M of connections of a ray, at least 0 (connectionsOf())
 };
 
 /// Effect of a setting, apart from the time of a scan.
@@ -121,7 +121,7 @@ enum class SettingEffect
 {
   None,
   Echoes,
-  Rays ///< new rays, so that kept beams are traced again, and new echoes
+  Rays ///< new rays and new echoes: kept beams are traced again
 };
 
 /// Description of a setting, for checks, keys, field data and the agreement of ranks.
@@ -154,7 +154,7 @@ std::uint32_t tracedRaysOf(const EchoSettings& settings);
 /// minus one; 0 with one reflection.
 std::uint32_t connectionsOf(const EchoSettings& settings);
 
-/// Number of paths of a beam with one and two reflections: N (2 + M).
+/// Number of a beam's paths, with one or two reflections: N (2 + M).
 double pathsOfABeam(const EchoSettings& settings);
 
 /// Empty if no beam can meet more than MaximumUnitsPerBeam range units; otherwise a sentence that

@@ -14,8 +14,8 @@
  * beam that meets only such surfaces from a beam that meets no surface.
  *
  * Source: none. Documentation/guide/accuracy.md describes the bounds.
- * Valid: no range unit of a beam with an echo differs from the full model by more than
- * ModelNeeds::skippedEnergyBound. The energy of detail between the rays is not bounded
+ * Valid: in a beam with an echo, the energy of any range unit differs from the full model by at
+ * most ModelNeeds::skippedEnergyBound. The energy of detail between the rays is not bounded
  * (missedDetailEnergy).
  * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx, Testing/Stability/TestStabilitySweep.cxx,
  * Testing/Python/TestModelNeeds.py.
@@ -60,15 +60,15 @@ struct ModelNeeds
   /// returns as much as the scene's brightest surface. Infinity if there is no such range.
   double perceivableRange = 0.0;
   bool secondaryReflections = false; ///< whether two reflections are enabled and can matter
-  double secondaryBound = 0.0;       ///< bound of a beam's energy by two reflections, J
-  double furtherBound = 0.0;         ///< bound of a beam's energy by more reflections, J
+  double secondaryBound = 0.0;       ///< bound of a beam's energy by paths with two reflections, J
+  double furtherBound = 0.0;         ///< bound of a beam's energy by paths with more reflections, J
   double lightEnergyBound = 0.0; ///< bound of a range unit's loss by the light-energy constraint, J
   /// Bound of the energy, J, that a range unit of a beam with an echo loses by all omissions, plus
   /// the energy that skipped noise might have added.
   double skippedEnergyBound = 0.0;
-  /// Energy, J, above which all rays of a beam miss an object with a probability below 5 %. A beam
-  /// in cells has the rays of its grid, and more rays on small objects that have their own id.
-  /// Every other beam has N rays.
+  /// Energy of an object, J, above which the probability that all rays of a beam miss the object is
+  /// below 5 %. A beam in cells has the rays of its grid, and more rays on small objects that have
+  /// their own id. Every other beam has N rays.
   double missedDetailEnergy = 0.0;
 };
 

@@ -4,7 +4,8 @@
  * @brief Throughputs of direct echoes: energy received / energy of the pulse, without loss in air.
  *
  * The sum of the throughputs and the nearest range give an upper bound of the energy of all direct
- * echoes together. This bound suffices to skip most beams below the limit.
+ * echoes together. This bound suffices to skip most beams whose energy lies below the detection
+ * limit Qlow.
  *
  * Source: paper, Eq. 4-9.
  * Differs: see Reflectance.h. Loss in air is applied at the end, to the length of the whole path.
@@ -39,7 +40,7 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
 /// nearest range. @param nearest range of the nearest surface, m
 double transmissionBound(double nearest, double attenuation);
 
-/// Upper bound of the light that returns by both directions of a mirror path together, as a share
+/// Upper bound of the light that returns by a mirror path and its reverse path together, as a share
 /// of the light that leaves the mirror. @param nearest lower bound of the ranges of the beam's
 /// surfaces, m
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);

@@ -5,18 +5,20 @@
  * and the throughput of each connection without attenuation by air.
  *
  * 1. Two surfaces may face each other if each surface has a hit in front of the plane of the other
- * surface. A beam without such a pair, as at the outer corner of two walls, has no connections.
- * 2. The partners of a ray follow from M cyclic shifts of the ray numbers. Rays are stored twice in
- * a row, so that one SIMD loop tests all pairs of a shift, with about thirty operations per vector
- * of pairs.
+ * surface. A beam without two such surfaces, as at the outer corner of two walls, has no
+ * connections.
+ * 2. Each ray is connected to M other rays, its partners, by M cyclic shifts of the ray numbers.
+ * Rays are stored twice in a row, so that one SIMD loop tests all pairs of a shift, with about
+ * thirty operations per vector of pairs.
  * 3. Throughputs are computed in SIMD loops, in about 5 ns per connection.
  *
  * Source: paper, Sec. 3.4; Floyd's algorithm for samples without repetition, for the shifts.
  * Differs: the paper leaves open which secondary directions are followed, and with which weight.
- * Here the sum over a ray's connections is an unbiased estimate of the mean over the cone's solid
- * angle. With an aperture, the sum estimates the mean of the form factor, limited to
- * MostFormFactor.
- * Valid: M from 1 to N - 1. Connected pairs face each other by more than surfaceMargin().
+ * Here the weighted sum of the throughputs of a ray's connections is an unbiased estimate of the
+ * mean throughput over the cone's solid angle. With an aperture, the sum estimates the mean of the
+ * form factor, limited to MostFormFactor.
+ * Valid: M from 1 to N - 1, with N the number of rays. Connected pairs face each other by more than
+ * surfaceMargin().
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx.
  */
 #ifndef avianlidar_ConnectionFinder_h
@@ -73,7 +75,7 @@ private:
   std::vector<double> Heights;         ///< largest heights of surfaces above planes, m
 };
 
-/// Form factor, seen from P1, of the part of a surface in the cone, as if all of the part lay at
+/// Form factor at P1 of the part of a surface in the cone, computed as if all of the part lay at
 /// P2: the solid angle of the part, weighted with cosOut, divided by pi.
 /// @param cosOut, cosIn cosines of the segment at P1 and P2 @param length distance from P1 to P2, m
 /// @param range range of P2, m @param cosBack cosine of incidence of the lidar's own light at P2
@@ -94,8 +96,9 @@ constexpr double MostFormFactor = 1.0;
 void connectionThroughputs(const ScanSetup& setup, const SecondaryBeam& beam,
   const MaterialLanes& materials, std::vector<double>& throughputs);
 
-/// Scale min(1, B/(g R2)) of a path over two surfaces, which keeps the ray within the ray's budget
-/// (SecondaryReflection.h). @param direct share that the direct echo of the first surface returns
+/// Scale min(1, B/(g R2)) of a path with two reflections. The scale keeps the ray within the ray's
+/// budget (SecondaryReflection.h). @param direct share of the arriving energy that the first
+/// surface returns as the direct echo
 double secondaryScale(const ScanSetup& setup, const Material& first, const Material& second,
   double cosIncidence, double direct);
 }

@@ -2,20 +2,20 @@
 /**
  * @file MirrorRegions.h
  * @brief Mirror paths of a beam whose visible surfaces are known. Samples lie only in parts of the
- * beam whose light goes from one surface to another.
+ * beam whose light goes from one surface to another surface.
  *
  * In the mirror image of the scene behind a plane mirror, a mirror path continues as a straight
  * line. The point on the second surface is therefore a projective function of the ray. Rays to a
  * side of the second surface lie on a straight line of the beam's plane. The rays from one surface
  * to another surface fill a convex polygon of the plane, called a region, cut from the polygon of
- * the first surface. Samples lie in strata of equal area, twice as dense as rays in the disc. If a
- * surface has at most 32 regions, each region has at least two samples. More than 32 regions
- * together have at least 64 samples.
+ * the first surface. Samples lie in strata of equal area. The density of the samples is twice the
+ * density of the rays in the disc. If a surface has at most 32 regions, each region has at least
+ * two samples. More than 32 regions together have at least 64 samples.
  *
  * In an integrated beam all polygons are visible (VisiblePolygons.h), so both ends of a path are
  * visible. In a beam in cells the surfaces are whole triangles. Rays from the apex then test
- * whether both ends are visible. A ray through the tree tests the segment between the ends
- * (SecondaryTracer.h).
+ * whether both ends are visible. A ray that descends the collision tree tests whether a surface
+ * blocks the segment between the ends (SecondaryTracer.h).
  *
  * Source: paper, Sec. 3.4, the beam constraint; Heckbert and Hanrahan, "Beam Tracing Polygonal
  * Objects", SIGGRAPH 1984, for the mirror image.
@@ -102,7 +102,7 @@ private:
   /// Rays that go from one facet to another facet.
   struct Region
   {
-    std::uint32_t one, two; ///< facets
+    std::uint32_t one, two; ///< numbers of the facets
     PlaneRing ring;
     double area;
   };
@@ -133,7 +133,7 @@ private:
   BeamFrame Frame;
   const VisiblePolygons* Seen = nullptr;
   double ShareOfArea = 0.0;
-  std::uint32_t Sample = 0; ///< next sample on `Start`; samples 2k and 2k + 1 form a stratum
+  std::uint32_t Sample = 0; ///< number of the next sample; samples 2k and 2k + 1 form a stratum
   std::uint64_t Pair = 0;   ///< pair of surfaces between which paths were placed last
   std::uint64_t Drawn = 0;  ///< number of samples drawn for `Pair`
   std::uint32_t Start = 0;  ///< surface on which paths start

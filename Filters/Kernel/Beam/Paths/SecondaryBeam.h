@@ -37,8 +37,8 @@ struct SecondaryBeam
   const StrataPartition* strata;  ///< strata of `rays`; null for Monte Carlo
   SecondaryTrace& trace;
   double nearest; ///< lower bound of the ranges of the beam's surfaces, m
-  /// Function called every StepsBetweenChecks steps. If the function returns false, WorkStopped is
-  /// thrown. Null: the work is never stopped.
+  /// Function called every StepsBetweenChecks steps of the search. If the function returns false,
+  /// WorkStopped is thrown. Null: the work is never stopped.
   const std::function<bool()>* wanted = nullptr;
   /// Visible surfaces between which mirror paths go (MirrorRegions.h); null: mirror paths start
   /// from `samples`.

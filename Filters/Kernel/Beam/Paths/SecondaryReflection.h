@@ -6,17 +6,18 @@
  * By the beam constraint the second reflection point P2 lies inside the receiving beam. Two kinds
  * of paths start at a primary hit P1:
  *
- * 1. A mirror path follows the mirror direction of the incident ray, with weight 1 and only f_s at
- * P1. If the visible surfaces are known, MirrorRegions.h places the samples from which mirror paths
- * start.
+ * 1. A mirror path follows the mirror direction of the incident ray, with weight 1 and only the
+ * specular reflectance f_s at P1. If the visible surfaces are known, MirrorRegions.h places the
+ * samples from which mirror paths start.
  * 2. Diffuse connections lead to the hit points of M other rays of the beam. The lidar both lights
- * and sees these points. Only f_d counts at P1 (f_s would count the mirror lobe twice). The
- * partners follow from M random cyclic shifts of the ray numbers. The weighted sum of the
- * connections estimates the mean over the cone's solid angle.
+ * and sees these points. Only the diffuse reflectance f_d counts at P1 (f_s would count the mirror
+ * lobe twice). The partners follow from M random cyclic shifts of the ray numbers. The weighted sum
+ * of the connections' throughputs estimates the mean over the cone's solid angle.
  *
  * At P2 both f_d and f_s count. A path counts only if P2 lies in the cone and is visible from the
  * apex, and if the segment leaves P1 and reaches P2 on the sides that face the apex. The energy of
- * a path is Q f(P1) f_sur(P2) exp(-mu length), with Q the energy of the ray.
+ * a path is Q f(P1) f_sur(P2) exp(-mu length), with Q the energy of the ray, f_sur = f_d + f_s, and
+ * mu the attenuation coefficient.
  *
  * A ray never returns more than Q times the albedo at P1. The direct echo leaves the budget B =
  * albedo - f_direct at P1. P1 passes on at most the share g of the energy. R2 = kd2 + ks2 is the
@@ -24,11 +25,11 @@
  * materials of the paper. The weights of connections are random. Where the weights exceed their
  * mean, the excess over the budget is cut.
  *
- * With a receiver aperture A > 0, and Omega the solid angle of the cone:
+ * The following holds for a receiver aperture A > 0, where Omega is the solid angle of the cone:
  *
  * 1. The matt light that a mirror path returns at P2 also comes back by the reverse path, which
  * ends on the mirror. The reverse path is weighted by the beam's density at P2 divided by the
- * density at P1. The widths of two mirrors' lobes add up where the light arrives.
+ * density at P1. If both surfaces are mirrors, the widths of their lobes add up.
  * 2. Both reflections of a connection are matt. The throughput of a connection contains the form
  * factor F = cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most
  * MostFormFactor = 1.
@@ -80,8 +81,9 @@ class SecondaryReflection
 public:
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// Upper bound of the sum of the throughputs of all paths of a beam. Paths from rays may exceed
-  /// this bound a little by chance. @param samples samples of the direct echo, from rays or not
+  /// Upper bound of the sum of the throughputs of all paths of a beam. The throughputs of paths
+  /// from rays may exceed this bound a little by chance. @param samples samples of the direct echo,
+  /// from rays or not
   /// @param tight false: the bound is the part of the albedo that direct echoes leave
   double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
 
@@ -90,7 +92,8 @@ public:
   /// @param albedo largest albedo of the beam's surfaces @param nearest lower bound of ranges, m
   double bound(double albedo, double nearest) const;
 
-  /// Set the paths of the beam: mirror paths in the order of the samples, connections, short paths.
+  /// Set the paths of the beam: first mirror paths in the order of the samples, then connections,
+  /// then short paths.
   /// @param lost energy, J, increased by the bounds of the paths that are dropped
   /// @return false if all paths together, blocked or not, have less energy than
   /// SecondaryBeam::silentBelow. In this case no path is traced, and `lost` is the bound of all
@@ -125,7 +128,7 @@ private:
   MaterialLanes Materials;                   ///< material of each sample
   std::vector<double> SpecularBounds;        ///< bound of the mirror path's throughput, by sample
   double OverMirror = 1.0;                   ///< mirrorReturnBound()
-  double NumberWanted = 0.0;                 ///< number of paths by mirrors that may matter
+  double NumberWanted = 0.0;                 ///< number of mirror paths that may matter
   std::vector<char> Wanted;                  ///< whether mirror paths may matter, by surface
   std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror and reverse paths
   std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by reverse paths

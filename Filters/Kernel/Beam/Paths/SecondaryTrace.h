@@ -4,8 +4,8 @@
  * @brief Geometry of a beam's paths with two reflections: ends of mirror paths and short paths, and
  * connections of hits. The geometry is found when first needed, and kept with the beam.
  *
- * A connection is a pair of hits that face each other, with all values except materials on which
- * the energy of the connection depends, in SIMD lanes. A beam into a corner has M connections per
+ * A connection is a pair of hits that face each other. All values on which the connection's energy
+ * depends, except materials, are stored for SIMD lanes. A beam into a corner has M connections per
  * ray. A connection takes 81 bytes of memory and a few ns of time.
  *
  * Source: paper, Sec. 3.4; angles as in ReflectionGeometry (Reflectance.h).
@@ -71,7 +71,8 @@ enum class MirrorEnd : std::uint8_t
   Arrives = 2
 };
 
-/// A mirror path that arrives, with all values except materials on which the path's energy depends.
+/// A mirror path that arrives, with all values on which the path's energy depends, except
+/// materials.
 struct MirrorPath
 {
   std::uint32_t start;       ///< surface of MirrorRegions.h on which the path starts

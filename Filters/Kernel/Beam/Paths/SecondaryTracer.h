@@ -4,8 +4,9 @@
  * @brief Traces paths with two reflections from the hits of a beam (SecondaryReflection.h): finds
  * where mirror paths and short paths end, and which connections are blocked.
  *
- * The results are geometry and are stored in the beam's trace. Paths below the caller's threshold
- * are not traced. Mirror paths from surfaces without pairs (MirrorPairs.h) are not traced either.
+ * The results are geometry and are stored in the beam's trace. Paths whose throughput lies below
+ * the caller's threshold are not traced. Mirror paths from surfaces without pairs (MirrorPairs.h)
+ * are not traced either.
  *
  * Source: paper, Sec. 3.4.
  * Differs: see SecondaryReflection.h.

@@ -6,8 +6,8 @@
  *
  * Each polygon has the samples of its rule (PolygonRule.h), if the beam needs at most MostNodes
  * samples. Ground at a grazing angle spreads little energy over hundreds of range units. With
- * EchoSettings::lightEnergyConstraint such polygons are dropped as long as no unit loses more than
- * half the tolerance of the constraint.
+ * EchoSettings::lightEnergyConstraint, the faintest polygons over more than FewUnits range units
+ * are dropped as long as no unit loses more than half the tolerance of the constraint.
  *
  * Source: paper, Eq. 4-9, and the light-energy constraint of Sec. 3.4.
  * Differs: the paper samples all beams with rays.
@@ -32,7 +32,7 @@
 
 namespace avianlidar
 {
-/// Largest number of range units of a polygon that is never dropped.
+/// Number of range units up to which a polygon is never dropped.
 constexpr double FewUnits = 16.0;
 
 /// Largest estimated number of samples of a beam. Specular lobes add samples to the estimate.

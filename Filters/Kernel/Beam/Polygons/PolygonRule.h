@@ -138,7 +138,7 @@ private:
   const double UnitLength;  ///< length of a range unit, m
   const double PulseLength; ///< length of the pulse in range, m
   const double LastBorder;  ///< range beyond which nothing is received, m
-  double Offsets[2];        ///< range at which a pulse begins or ends at a border, units, modulo 1
+  double Offsets[2];        ///< ranges at which a pulse begins or ends at a border, units modulo 1
   int NumberOfOffsets;
   double Tangent2 = 0.0; ///< tan(theta0.5)^2
   double ShareOfArea = 0.0;
@@ -147,7 +147,7 @@ private:
   DiscPolygon Disc;
   std::vector<double> Ranges;
   std::vector<double> Borders; ///< values of p at the borders of parts, ascending
-  std::vector<double> OfUnits; ///< whether borders are of range units: 1, else 0
+  std::vector<double> OfUnits; ///< 1 for each border of a range unit, else 0
   std::vector<Piece> Along, Across;
   PartMoments Parts;
 };

@@ -4,11 +4,11 @@
  * @brief Triangles seen from one apex, prepared for the single-precision tests of packets: scaled
  * edge vectors and planes, computed once and kept in a table.
  *
- * All beams of a scan begin at one point. Neighbouring beams meet the same triangles. The table has
- * 8192 places. The place of a triangle follows from the triangle's position in the tree's order. A
- * later triangle replaces an earlier triangle in the same place. A record fills one cache line. The
- * table fills much of a core's second-level cache. Preparing eight triangles takes about as long as
- * testing 64 rays against a few triangles.
+ * Unless the sensor moves, all beams of a scan begin at one point. Neighbouring beams meet the same
+ * triangles. The table has 8192 places. The place of a triangle follows from the triangle's
+ * position in the tree's order. A later triangle replaces an earlier triangle in the same place. A
+ * record fills one cache line. The table fills much of a core's second-level cache. Preparing eight
+ * triangles takes about as long as testing 64 rays against a few triangles.
  *
  * Source: none; the bounds are derived in RayPacketTriangles.h.
  * Valid: any triangle. Where the bounds decide nothing (`inside` is infinite, or an edge vector is

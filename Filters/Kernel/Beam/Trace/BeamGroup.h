@@ -4,12 +4,12 @@
  * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. The descent
  * ends at boxes, called entry points, from which packets of rays descend further (RayPacket.h).
  *
- * Eight boxes are tested against the planes about the group, then sixteen cones against each box
- * that is left (BoxTests.h). The descent ends at a box that is a leaf, at a box whose half diagonal
- * is at most sixteen half-beamwidths, and at a box that at most three beams meet. A beam without
- * entry points hits no triangle, so the beam's rays are not drawn. With smaller entry points, lists
- * of entry points are long where all beams hit triangles. With larger entry points, every packet
- * descends the upper levels of the tree.
+ * Eight boxes are tested against the planes about the group. Each box that is left is then tested
+ * against sixteen cones (BoxTests.h). The descent ends at a box that is a leaf, at a box whose half
+ * diagonal is at most sixteen half-beamwidths, and at a box that at most three beams meet. A beam
+ * without entry points hits no triangle, so the beam's rays are not drawn. With smaller entry
+ * points, lists of entry points are long where all beams hit triangles. With larger entry points,
+ * every packet descends the upper levels of the tree.
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
@@ -33,7 +33,7 @@
 
 namespace avianlidar
 {
-/// True if two beams have one apex and one width, so that the beams may descend together.
+/// True if two beams have equal apexes and equal widths, so that the beams may descend together.
 inline bool areTogether(const BeamFrame& one, const BeamFrame& two)
 {
   return one.origin == two.origin && one.halfBeamwidth == two.halfBeamwidth;

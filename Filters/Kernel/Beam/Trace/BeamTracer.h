@@ -4,9 +4,9 @@
  * @brief Finds the nearest hits of the rays of beams.
  *
  * Acceptance and range of a (ray, triangle) pair come from one function (TriangleTest.h). The hit
- * is the accepted triangle of least range, and of lowest number among equal ranges. A hit is
- * therefore bitwise identical for any tree and any TraceMode. All geometry is moved to the beam's
- * origin in double precision before anything is rounded.
+ * is the accepted triangle of least range. Among triangles at equal ranges, the hit is the triangle
+ * with the lowest number. A hit is therefore bitwise identical for any tree and any TraceMode. All
+ * geometry is moved to the beam's origin in double precision before anything is rounded.
  *
  * Source: paper, Sec. 3.2-3.4.
  * Differs: beams and rays descend in groups and packets (BeamGroup.h, RayPacket.h).

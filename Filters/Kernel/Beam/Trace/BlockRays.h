@@ -49,7 +49,8 @@ public:
   /// Trace all rays of a beam, with one descent for each ray.
   void rayByRay(std::uint32_t beam);
 
-  /// Trace all rays of a cluster in packets. The rays of several beams must fit into one packet.
+  /// Trace all rays of a cluster in packets. If the cluster has several beams, the rays of all
+  /// beams must fit into one packet.
   /// @param entryPoints entry points of the cluster; null: the whole tree
   void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
 

@@ -7,7 +7,7 @@
  * clusters. A cluster has as many beams as fill a packet of rays, mostly one beam. Beams of fewer
  * than eight rays form no groups and fill packets in the order in which the beams come. A group
  * descends the wide tree (BeamGroup.h). From the entry points of a cluster, the cluster's rays
- * descend further in packets (BlockRays.h). Without a wide tree, and with TraceMode::Beams, each
+ * descend further in packets (BlockRays.h). Without a wide tree, or with TraceMode::Beams, each
  * beam's cone descends by itself. The leaves that the cone meets are then the entry points.
  *
  * Source: paper, Sec. 3.2.

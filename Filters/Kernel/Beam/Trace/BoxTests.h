@@ -16,8 +16,8 @@
  * Differs: the planes of the frustum are parallel to coordinate axes, and are tested against eight
  * boxes at a time.
  * Valid: conservative, rounding included, with the margins of WideTree.h. Cones are widened as in
- * BeamCone.h. setFrustum() fails if the directions do not all point along one coordinate axis, and
- * outside the range of single precision (wideningFor()).
+ * BeamCone.h. setFrustum() fails if the directions do not all point along one coordinate axis, or
+ * if scene or apex lies outside the range of single precision (wideningFor()).
  * Test: TestRayPacket.cxx, TestBeamGroup.cxx.
  */
 #ifndef avianlidar_BoxTests_h

@@ -4,10 +4,10 @@
  * @brief Up to 64 rays from one apex descend the wide tree together, in single precision with
  * bounds of the error.
  *
- * The exact functions (PacketRanges.h) decide at once the hits that RayPacketTriangles.h leaves
- * undecided. The steps of a node depend on each other, so the time of a node hardly grows with the
- * number of rays. Only groups of sixteen rays that meet a leaf are tested against the triangles of
- * the leaf. For both reasons packets are wider than a vector. Packets of 128 rays are faster for
+ * If RayPacketTriangles.h leaves a hit undecided, the exact functions (PacketRanges.h) decide
+ * immediately. The steps of a node depend on each other, so the time of a node hardly grows with
+ * the number of rays. Only groups of sixteen rays that meet a leaf are tested against the triangles
+ * of the leaf. For both reasons packets are wider than a vector. Packets of 128 rays are faster for
  * narrow beams and slower for fine meshes. Rays that lie closer together share more nodes. The rays
  * of a packet need not belong to one beam.
  *

@@ -79,8 +79,8 @@ public:
       this->corner(triangle, 2) - point };
   }
 
-  /// Values of CollisionTree. A mover's triangle coincides with no other triangle and owns its
-  /// plane.
+  /// Functions with the meaning of the same functions of CollisionTree. A mover's triangle
+  /// coincides with no other triangle and owns its plane.
   bool coincides(std::uint32_t triangle) const
   {
     return !this->isMoved(triangle) && this->Tree.coincides(triangle);
@@ -90,7 +90,8 @@ public:
     return this->isMoved(triangle) ? triangle : this->Tree.planeOwner(triangle);
   }
 
-  /// The plane on which the ranges of a triangle lie: its own plane, or its planeOwner()'s plane.
+  /// The plane from which ranges on a triangle follow: the triangle's own plane, or the plane of
+  /// its planeOwner().
   /// @param corners relative to `point`
   TrianglePlane planeOf(std::uint32_t triangle, const Corners& corners, const Vec3& point) const
   {
