@@ -360,8 +360,8 @@ public:
   /// 1e8. Default 1.
   vtkAvianLidarPropertyMacro(FalseAlarmsPerScan, double, 1.0);
 
-  /// Ratio of the upper to the lower energy limit, dB of electrons (10 log10), 0 to 1000. Default
-  /// 40 (assumed).
+  /// Ratio of the upper to the lower energy limit, in dB (10 log10 of the ratio of electrons), 0 to
+  /// 1000. Default 40 (assumed).
   vtkAvianLidarPropertyMacro(DynamicRange, double, 40.0);
 
   ///@{

@@ -10,8 +10,8 @@
  * Passes: read beams and sensor; merge the surfaces; take the tree that came with the surfaces, or
  * build a tree; find what each beam sees; compute energies; sum energies in range units; form
  * returns. After a change of materials, air, limits, noise or return mode, only the energies are
- * computed again. The result has the same bits as a new run. The filter uses OpenMP, but neither a
- * VTK locator nor vtkSMPTools.
+ * computed again, and weak paths that an earlier execution left out are traced. The result has the
+ * same bits as a new run. The filter uses OpenMP, but neither a VTK locator nor vtkSMPTools.
  *
  * - Input port 0, beams: vtkPolyData, one point per beam at the sensor, with the point array
  *   `direction` and the field data of a vtkAvianLidarBeamSource.

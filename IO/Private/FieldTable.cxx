@@ -99,8 +99,9 @@ TableTargets targetsOf(const FieldTable& table, Cloud& to)
     if (axis < 3)
     {
       found |= 1 << axis;
-      targets.emplace_back([type = field.type, points = to.points.data() + axis](std::uint64_t i,
-                             const unsigned char* bytes) { points[3 * i] = loadAs(type, bytes); });
+      targets.emplace_back(
+        [type = field.type, points = to.points.data(), axis](std::uint64_t i,
+          const unsigned char* bytes) { points[3 * i + axis] = loadAs(type, bytes); });
     }
     else if (field.name == "_")
     {

@@ -91,7 +91,7 @@ VERBS = {
   avianlidar design hongqiao-design.coverage.json -o design --design-set share=0.4
 """),
     "report": ("maps, sections, shares and sites as one page of HTML", "Writes one page of HTML for a plan. "
-               "The page needs no network. Tables and pictures are in a folder beside it.", """\
+               "The page needs no internet. Tables and pictures are in a folder beside it.", """\
   avianlidar report hongqiao.coverage.json -o report.html
 """),
     "reach": ("how far birds are seen", "Computes how far one scan of a sensor detects birds within its beams, in free air. In brackets "

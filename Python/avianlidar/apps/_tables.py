@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files of tables and sites, and pages of HTML that need no network."""
+"""Files of tables and sites, and pages of HTML that need no internet."""
 from __future__ import annotations
 
 import base64
