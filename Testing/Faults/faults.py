@@ -81,7 +81,7 @@ FAULTS = [Fault(*fault) for fault in (
      "vtkSmartPointer<vtkPointSet> converted(leaf->NewInstance());"),
     # Readers and writers.
     ("not_initialised", "a member without a value", "Python-TestKITTIWriter$|Plugin-TestProxies$",
-     "IO/vtkAvianLidarKITTIWriter.h", "bool WriteLabels = true;", "bool WriteLabels;"),
+     "IO/vtkAvianLidarKITTIWriter.h", "Macro(WriteLabels, true)", "Macro(WriteLabels, WriteLabels)"),
     ("las_seconds", "a wrong unit", "Python-Test(LASWriter|PointCloudReader)$",
      "IO/Private/LasReading.cxx", "1e6 * load<double>(at + place)", "load<double>(at + place)"),
     ("las_colour_index", "a swapped index", "Python-Test(LASWriter|Laz|PointCloudReader)$",
