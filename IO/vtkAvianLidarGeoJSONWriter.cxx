@@ -7,6 +7,7 @@
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -20,9 +21,9 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
+using avianlidar::failIf;
 using avianlidar::Frame;
 using avianlidar::GeodeticFrame;
-using formats::FormatError;
 using formats::Point;
 
 namespace
@@ -40,13 +41,11 @@ public:
   {
     const std::optional<Point> origin = fields::FindOrigin(input);
     const bool local = fields::FindText(input, names::CrsWkt.name).empty();
-    if (!this->FromArrays() && (!origin || !local) && input->GetNumberOfPoints() > 0)
-    {
-      throw FormatError(std::string("the input has neither the point arrays '") +
-        names::Longitude.name + "', '" + names::Latitude.name + "', '" + names::Height.name +
-        "' nor points in metres around the field data '" + names::GeodeticOrigin.name +
-        "': let vtkAvianLidarGeodeticTransform add the arrays");
-    }
+    failIf(!this->FromArrays() && (!origin || !local) && input->GetNumberOfPoints() > 0,
+      "the input has neither the point arrays '", names::Longitude.name, "', '",
+      names::Latitude.name, "', '", names::Height.name,
+      "' nor points in metres around the field data '", names::GeodeticOrigin.name,
+      "': let vtkAvianLidarGeodeticTransform add the arrays");
     if (origin)
     {
       this->Geodesy.setOrigin((*origin)[0], (*origin)[1], (*origin)[2]);
@@ -170,13 +169,10 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   if (this->UseFieldDataLimit)
   {
     limit = 0.0;
-    fields::Require(
+    vtkAvianLidarWithin("the ",
       [&] { names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit); });
   }
-  else if (std::isnan(limit))
-  {
-    throw FormatError("MinimumEnergy is not a number, expected an energy in J");
-  }
+  failIf(std::isnan(limit), "MinimumEnergy is not a number, expected an energy in J");
   const Places places(input);
 
   std::vector<formats::Field> numbers;

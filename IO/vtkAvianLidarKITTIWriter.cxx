@@ -21,7 +21,7 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
-using formats::FormatError;
+using avianlidar::failIf;
 using formats::Point;
 
 namespace
@@ -31,17 +31,12 @@ Point PlaceOf(vtkPointSet* input, const formats::SensorPose& pose, vtkIdType i)
 {
   Point p;
   input->GetPoint(i, p.data());
-  if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-  {
-    throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
-  }
+  failIf(!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]), "point ", i,
+    " has a coordinate that is not finite");
   p = pose.toSensor(p);
-  if (std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
-    std::numeric_limits<float>::max())
-  {
-    throw FormatError("point " + std::to_string(i) +
-      " has a coordinate beyond the range of single precision, which KITTI uses");
-  }
+  failIf(std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
+      std::numeric_limits<float>::max(),
+    "point ", i, " has a coordinate beyond the range of single precision, which KITTI uses");
   return p;
 }
 
@@ -104,11 +99,9 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
     labelFile.emplace(std::filesystem::path(this->FileName).replace_extension(".label").string());
   }
   formats::OutputFile file(this->FileName);
-  if (labelFile && labelFile->isSameAs(file))
-  {
-    throw FormatError("FileName is the name of the labels beside it, expected another ending than "
-                      ".label, such as .bin");
-  }
+  failIf(labelFile && labelFile->isSameAs(file),
+    "FileName is the name of the labels beside it, expected another ending than .label, such as "
+    ".bin");
 
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
   const vtkIdType size = input->GetNumberOfPoints();

@@ -25,9 +25,9 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
+using avianlidar::failIf;
 using avianlidar::Frame;
 using avianlidar::GeodeticFrame;
-using formats::FormatError;
 using formats::Point;
 
 namespace
@@ -244,11 +244,8 @@ Frame PlaceFile(vtkPointSet* input, int system, int zone,
 {
   const std::optional<Point> origin = fields::FindOrigin(input);
   output.crs = fields::FindText(input, CrsName);
-  if (!output.crs.empty() && !IsWkt(output.crs))
-  {
-    throw FormatError(std::string("the field data '") + CrsName +
-      "' is not WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
-  }
+  failIf(!output.crs.empty() && !IsWkt(output.crs), "the field data '", CrsName,
+    "' is not WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
   if (system == vtkAvianLidarLASWriter::COORDINATE_SYSTEM_LOCAL || !output.crs.empty())
   {
     return Frame::ENU;

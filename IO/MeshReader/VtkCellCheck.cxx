@@ -22,18 +22,10 @@ namespace avianlidar::scene
 {
 namespace
 {
-[[noreturn]] void Broken(const std::string& what)
-{
-  throw Error("is broken: " + what);
-}
-
 void CheckPoints(vtkCellArray* cells, vtkIdType points)
 {
   const std::string wrong = vtkAvianLidarCellsError(cells, points);
-  if (!wrong.empty())
-  {
-    Broken(wrong);
-  }
+  failIf(!wrong.empty(), "is broken: ", wrong);
 }
 
 // Returns the least number of points of a type with a variable number, or 0 for any other type.
@@ -62,11 +54,8 @@ vtkIdType LeastPoints(int type)
 void CheckSize(int type, vtkIdType size, vtkGenericCell* of)
 {
   constexpr int lastOfFixedOrder = VTK_POLYHEDRON;
-  if (type > lastOfFixedOrder)
-  {
-    throw Error("has cells of type " + std::to_string(type) +
-      ", of variable order, which are not supported: tessellate them first");
-  }
+  failIf(type > lastOfFixedOrder, "has cells of type ", type,
+    ", of variable order, which are not supported: tessellate them first");
   vtkIdType least = LeastPoints(type);
   vtkIdType most = VTK_ID_MAX;
   if (least == 0)
@@ -74,32 +63,20 @@ void CheckSize(int type, vtkIdType size, vtkGenericCell* of)
     of->SetCellType(type);
     least = most = of->GetNumberOfPoints();
   }
-  if (size < least || size > most)
-  {
-    Broken("a " + std::string(vtkCellTypes::GetClassNameFromTypeId(type)) + " has " +
-      std::to_string(size) + " points");
-  }
+  failIf(size < least || size > most, "is broken: a ", vtkCellTypes::GetClassNameFromTypeId(type),
+    " has ", size, " points");
 }
 
 // Throws Error unless a polyhedron has a face.
 void CheckNumberOfFaces(vtkIdType faces)
 {
-  if (faces < 1)
-  {
-    Broken("a polyhedron's faces are missing");
-  }
-  if (faces < 4)
-  {
-    Broken("a polyhedron has " + std::to_string(faces) + " faces");
-  }
+  failIf(faces < 1, "is broken: a polyhedron's faces are missing");
+  failIf(faces < 4, "is broken: a polyhedron has ", faces, " faces");
 }
 
 void CheckSizeOfFace(vtkIdType points)
 {
-  if (points < 3)
-  {
-    Broken("a face of a polyhedron has " + std::to_string(points) + " points");
-  }
+  failIf(points < 3, "is broken: a face of a polyhedron has ", points, " points");
 }
 
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 20230807)
@@ -150,11 +127,8 @@ void CheckFaces(vtkUnstructuredGrid* grid, vtkIdType cell)
     for (CheckSizeOfFace(point); point > 0; --point)
     {
       const vtkIdType id = place < end ? next() : -1;
-      if (id < 0 || id >= grid->GetNumberOfPoints())
-      {
-        Broken(
-          "a cell has a point id outside 0 to " + std::to_string(grid->GetNumberOfPoints() - 1));
-      }
+      failIf(id < 0 || id >= grid->GetNumberOfPoints(),
+        "is broken: a cell has a point id outside 0 to ", grid->GetNumberOfPoints() - 1);
     }
   }
 }
@@ -180,11 +154,8 @@ void CheckGrid(vtkUnstructuredGrid* grid)
 void CheckPointsOfAxis(vtkDataArray* coordinates, int expected)
 {
   const vtkIdType found = coordinates ? coordinates->GetNumberOfTuples() : 0;
-  if (found != expected || expected < 1)
-  {
-    Broken("an axis has " + std::to_string(found) + " coordinates, expected " +
-      std::to_string(std::max(expected, 1)));
-  }
+  failIf(found != expected || expected < 1, "is broken: an axis has ", found,
+    " coordinates, expected ", std::max(expected, 1));
 }
 
 void CheckRectilinear(vtkRectilinearGrid* grid)
@@ -205,11 +176,8 @@ void CheckStructured(vtkStructuredGrid* grid)
     expected *= std::max(dimension, 0);
   }
   const vtkIdType found = grid->GetNumberOfPoints();
-  if (static_cast<double>(found) != expected)
-  {
-    Broken("a grid of " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) +
-      " x " + std::to_string(dimensions[2]) + " has " + std::to_string(found) + " points");
-  }
+  failIf(static_cast<double>(found) != expected, "is broken: a grid of ", dimensions[0], " x ",
+    dimensions[1], " x ", dimensions[2], " has ", found, " points");
 }
 
 void CheckSurface(vtkPolyData* surface)

@@ -88,10 +88,7 @@ public:
   // The legacy reader only warns of missing values and does not initialise their memory.
   void DisplayGenericWarningText(const char* text) override
   {
-    if (std::strstr(text, "Error reading"))
-    {
-      throw Error("VTK cannot read it: " + FirstLine(text));
-    }
+    failIf(std::strstr(text, "Error reading"), "VTK cannot read it: ", FirstLine(text));
     this->Superclass::DisplayGenericWarningText(text);
   }
 
@@ -110,11 +107,9 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file)
   reader->SetFileName(file.c_str());
   reader->Update();
   vtkSmartPointer<vtkDataObject> data = reader->GetOutputDataObject(0);
-  if (!data || !quiet.Reason().empty() || !quietExecutive.Reason().empty())
-  {
-    throw Error("VTK cannot read it: " + quiet.Reason() +
-      (quiet.Reason().empty() ? quietExecutive.Reason() : std::string()));
-  }
+  failIf(!data || !quiet.Reason().empty() || !quietExecutive.Reason().empty(),
+    "VTK cannot read it: ", quiet.Reason(),
+    (quiet.Reason().empty() ? quietExecutive.Reason() : std::string()));
   return data;
 }
 
@@ -125,15 +120,10 @@ void RequireRegularParts(vtkXMLDataElement* element, const std::string& folder)
   {
     const std::string part = vtksys::SystemTools::CollapseFullPath(name, folder);
     const std::string irregular = whyNotRegular(part);
-    if (!irregular.empty() || !vtksys::SystemTools::FileExists(part))
-    {
-      throw Error(
-        "names the file " + part + ": " + (irregular.empty() ? "no such file" : irregular));
-    }
-    if (!IsVtkFile(part) || EndingOf(part) == ".vtk" || EndingOf(part).find(".vtm") == 0)
-    {
-      throw Error("names the file " + part + ", expected .vtp, .vtu, .vts, .vtr or .vti");
-    }
+    failIf(!irregular.empty() || !vtksys::SystemTools::FileExists(part), "names the file ", part,
+      ": ", (irregular.empty() ? "no such file" : irregular));
+    failIf(!IsVtkFile(part) || EndingOf(part) == ".vtk" || EndingOf(part).find(".vtm") == 0,
+      "names the file ", part, ", expected .vtp, .vtu, .vts, .vtr or .vti");
   }
   for (int i = 0; i < element->GetNumberOfNestedElements(); ++i)
   {
@@ -235,10 +225,8 @@ Mesh ReadVtkMesh(const std::string& file)
   {
     throw Error(std::string("holds no geometry but a ") + data->GetClassName());
   }
-  if (mesh.triangles.empty() && !throwing->First.empty())
-  {
-    throw Error("VTK cannot read it: " + throwing->First);
-  }
+  failIf(
+    mesh.triangles.empty() && !throwing->First.empty(), "VTK cannot read it: ", throwing->First);
   return mesh;
 }
 }

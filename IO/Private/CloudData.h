@@ -7,6 +7,7 @@
 #define AvianLidarCloudData_h
 
 #include "AvailableMemory.h"
+#include "FileError.h"
 #include "ParallelLoop.h"
 #include "Scalars.h"
 
@@ -14,7 +15,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
@@ -22,11 +22,7 @@
 namespace avianlidar::formats
 {
 /// Error about a file that is invalid, or that cannot be read or written.
-class FormatError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
+using FormatError = FileError;
 
 /// Number of points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;

@@ -52,11 +52,8 @@ double Limit(const char* variable, double otherwise)
   }
   char* end = nullptr;
   const double number = std::strtod(text, &end);
-  if (end == text || *end != '\0' || !(number > 0.0))
-  {
-    throw Error(std::string("the environment variable ") + variable + " is '" + text +
-      "', expected a number above 0");
-  }
+  failIf(end == text || *end != '\0' || !(number > 0.0), "the environment variable ", variable,
+    " is '", text, "', expected a number above 0");
   return number;
 }
 
@@ -177,12 +174,9 @@ private:
         throw WorkStopped();
       }
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Begin;
-      if (passed.count() > this->Seconds)
-      {
-        throw Error(this->Library + " cannot read it in " +
-          std::to_string(std::llround(this->Seconds)) +
-          " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
-      }
+      failIf(passed.count() > this->Seconds, this->Library, " cannot read it in ",
+        std::llround(this->Seconds),
+        " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
     }
   }
 

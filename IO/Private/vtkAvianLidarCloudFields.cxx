@@ -3,6 +3,7 @@
 
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDoubleArray.h"
@@ -17,14 +18,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 
 namespace vtkAvianLidarCloudFields
 {
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
-using formats::FormatError;
+using avianlidar::fail;
+using avianlidar::failIf;
 using formats::Scalar;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
@@ -51,27 +52,22 @@ std::string UnitOf(vtkAbstractArray* array)
 /// Returns three numbers of the field data, or no value if the array is missing.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
-  Require([&] { names::RequireNumeric(input->GetFieldData(), name, "field data"); });
+  vtkAvianLidarWithin(
+    "the ", [&] { names::RequireNumeric(input->GetFieldData(), name, "field data"); });
   vtkDataArray* array = input->GetFieldData()->GetArray(name.name);
   if (!array)
   {
     return std::nullopt;
   }
-  if (array->GetNumberOfValues() != 3)
-  {
-    throw FormatError(std::string("the field data '") + name.name + "' has " +
-      std::to_string(array->GetNumberOfValues()) + " values, expected three");
-  }
+  failIf(array->GetNumberOfValues() != 3, "the field data '", name.name, "' has ",
+    array->GetNumberOfValues(), " values, expected three");
   Point values;
   for (int i = 0; i < 3; ++i)
   {
     values[i] =
       array->GetComponent(i / array->GetNumberOfComponents(), i % array->GetNumberOfComponents());
-    if (!std::isfinite(values[i]))
-    {
-      throw FormatError(
-        std::string("the field data '") + name.name + "' has a value that is not finite");
-    }
+    failIf(
+      !std::isfinite(values[i]), "the field data '", name.name, "' has a value that is not finite");
   }
   return values;
 }
@@ -82,11 +78,9 @@ Field CoordinateField(vtkPointSet* input, int axis, bool single)
     [input, axis, single](std::int64_t i)
     {
       const double value = input->GetPoint(i)[axis];
-      if (single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
-      {
-        throw FormatError("point " + std::to_string(i) +
-          " has a coordinate beyond the range of single precision: set Precision to Double");
-      }
+      failIf(single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max(),
+        "point ", i,
+        " has a coordinate beyond the range of single precision: set Precision to Double");
       return value;
     } };
 }
@@ -174,14 +168,17 @@ bool IsTooLongForDouble(vtkDataArray* array)
 //------------------------------------------------------------------------------
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
 {
-  Require(
+  vtkAvianLidarWithin("the ",
     [&] { names::RequireShape(array, "point array", components, input->GetNumberOfPoints()); });
 }
 
 //------------------------------------------------------------------------------
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
-  Require([&] { names::RequireNumeric(input->GetPointData(), { name, "" }, "point array"); });
+  vtkAvianLidarWithin("the ",
+    [&] {
+      names::RequireNumeric(input->GetPointData(), { name, "" }, "point array");
+    });
   vtkDataArray* array = input->GetPointData()->GetArray(name);
   RequireShape(array, 1, input);
   return array;
@@ -191,10 +188,8 @@ vtkDataArray* Find(vtkPointSet* input, const char* name)
 vtkDataArray* Need(vtkPointSet* input, const char* name)
 {
   vtkDataArray* array = Find(input, name);
-  if (!array && input->GetNumberOfPoints() > 0)
-  {
-    throw FormatError(std::string("the input has no numeric point array '") + name + "'");
-  }
+  failIf(
+    !array && input->GetNumberOfPoints() > 0, "the input has no numeric point array '", name, "'");
   return array;
 }
 
@@ -244,10 +239,8 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
   const double rounding = single ? RoundingOf(input) : 0.0;
   if (rounding > noticeable)
   {
-    std::ostringstream text;
-    text << ": single precision moves coordinates by up to " << rounding
-         << " m so far from the origin: set Precision to Double.";
-    warn(text.str());
+    warn(avianlidar::joined(": single precision moves coordinates by up to ", rounding,
+      " m so far from the origin: set Precision to Double."));
   }
   formats::TableOutput output;
   std::vector<Field>& all = output.fields;
@@ -314,8 +307,7 @@ double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise)
   const double value = array ? array->GetComponent(i, 0) : otherwise;
   if (!std::isfinite(value))
   {
-    throw FormatError(std::string("the point array '") + array->GetName() +
-      "' is not finite, at point " + std::to_string(i));
+    fail("the point array '", array->GetName(), "' is not finite, at point ", i);
   }
   return value;
 }
@@ -326,8 +318,7 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
   const double value = array ? array->GetComponent(i, 0) : otherwise;
   if (!names::IsInt(value))
   {
-    throw FormatError(std::string("the point array '") + array->GetName() +
-      "' is not a whole number of 32 bits, at point " + std::to_string(i));
+    fail("the point array '", array->GetName(), "' is not a whole number of 32 bits, at point ", i);
   }
   return static_cast<int>(value);
 }
@@ -336,17 +327,15 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
 vtkDataArray* FindColours(vtkPointSet* input)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
-  Require([&] { names::RequireNumeric(input->GetPointData(), names::Rgb, "point array"); });
+  vtkAvianLidarWithin(
+    "the ", [&] { names::RequireNumeric(input->GetPointData(), names::Rgb, "point array"); });
   if (!array || array->GetNumberOfComponents() == 1)
   {
     return nullptr;
   }
   RequireShape(array, 3, input);
-  if (array->GetDataType() != VTK_UNSIGNED_CHAR)
-  {
-    throw FormatError(std::string("the point array '") + names::Rgb.name + "' has values of type " +
-      array->GetDataTypeAsString() + ", expected unsigned char");
-  }
+  failIf(array->GetDataType() != VTK_UNSIGNED_CHAR, "the point array '", names::Rgb.name,
+    "' has values of type ", array->GetDataTypeAsString(), ", expected unsigned char");
   return array;
 }
 
@@ -399,17 +388,14 @@ std::optional<Point> FindOrigin(vtkPointSet* input)
   const std::string bad = origin
     ? avianlidar::GeodeticFrame::checkOrigin((*origin)[0], (*origin)[1], (*origin)[2])
     : std::string();
-  if (!bad.empty())
-  {
-    throw FormatError(std::string("the field data '") + names::GeodeticOrigin.name + "': " + bad);
-  }
+  failIf(!bad.empty(), "the field data '", names::GeodeticOrigin.name, "': ", bad);
   return origin;
 }
 
 //------------------------------------------------------------------------------
 vtkStringArray* FindTexts(vtkPointSet* input, const char* name)
 {
-  Require([&] { names::RequireText(input->GetFieldData(), { name, "" }); });
+  vtkAvianLidarWithin("the ", [&] { names::RequireText(input->GetFieldData(), { name, "" }); });
   return vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
 }
 
@@ -438,10 +424,7 @@ Point Carry(const avianlidar::GeodeticFrame& geodesy, avianlidar::Frame from, av
   std::string wrong = GeodeticFrame::checkPoint(from, point);
   const Point carried = wrong.empty() && from != to ? geodesy.convert(from, to, point) : point;
   wrong = wrong.empty() ? GeodeticFrame::checkPoint(to, carried) : wrong;
-  if (!wrong.empty())
-  {
-    throw FormatError("point " + std::to_string(i) + ": " + wrong);
-  }
+  failIf(!wrong.empty(), "point ", i, ": ", wrong);
   return carried;
 }
 

@@ -18,7 +18,6 @@
 
 #include <new>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,18 +37,6 @@ using avianlidar::formats::Field;
 using avianlidar::formats::FormatError;
 using avianlidar::formats::Point;
 using avianlidar::formats::SensorPose;
-
-/// Runs a check of vtkAvianLidarArrays. Throws FormatError with the fault that the check finds.
-template <class Check>
-void Require(const Check& check)
-try
-{
-  check();
-}
-catch (const std::runtime_error& error)
-{
-  throw FormatError(std::string("the ") + error.what());
-}
 
 /// Returns the numeric point array of a name, or null. Throws if the array has several components.
 vtkDataArray* Find(vtkPointSet* input, const char* name);
@@ -124,28 +111,24 @@ std::size_t StepOf(const std::vector<double>& times, vtkInformation* output);
 /// Returns whether a piece other than piece 0 is requested.
 bool IsOtherPiece(vtkInformation* output);
 
-/// Runs a step of reading. Returns the name of the file and the error of the step, or an empty
-/// text.
+/// Runs a step of reading, and puts the name of the file in front of its error.
 template <class Step>
-std::string ErrorIn(const std::string& fileName, const char* noMemory, Step step)
+void Within(const std::string& fileName, const char* noMemory, const Step& step)
+try
 {
-  try
-  {
-    step();
-    return {};
-  }
-  catch (const avianlidar::WorkStopped&)
-  {
-    throw;
-  }
-  catch (const std::bad_alloc&)
-  {
-    return fileName + ": " + noMemory;
-  }
-  catch (const std::exception& error)
-  {
-    return fileName + ": " + error.what();
-  }
+  step();
+}
+catch (const avianlidar::WorkStopped&)
+{
+  throw;
+}
+catch (const std::bad_alloc&)
+{
+  avianlidar::fail(fileName, ": ", noMemory);
+}
+catch (const std::exception& error)
+{
+  avianlidar::fail(fileName, ": ", error.what());
 }
 
 /// Converts a cloud to vtkPolyData with a vertex for each point. Frees the values of the cloud as
