@@ -58,7 +58,6 @@ set(scene_sources
   IO/Private/SceneBuilder.cxx
   IO/Private/SceneDescription.cxx
   IO/Private/SceneFrame.cxx
-  IO/Private/SceneReport.cxx
   IO/Private/Terrain.cxx
   IO/Private/VirtualFiles.cxx)
 
