@@ -10,7 +10,6 @@
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkInformationVector.h"
-#include "vtkStringArray.h"
 
 namespace
 {
@@ -26,26 +25,20 @@ bool IsEmpty(vtkDataObject* data)
     0;
 }
 
-std::string ErrorIn(vtkFieldData* fields)
-{
-  auto* error =
-    fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(Arrays::Error.name)) : nullptr;
-  return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
-}
-
 /// The error that data, or one of their blocks, hold.
 std::string ErrorOf(vtkDataObject* data)
 {
   // Outputs of what failed are empty, but for images; a field of that name of others is theirs.
   const bool may = data && (IsEmpty(data) || data->IsA("vtkImageData"));
-  std::string error = may ? ErrorIn(data->GetFieldData()) : std::string();
+  std::string error = may ? Arrays::TextAt(data->GetFieldData(), Arrays::Error, 0) : std::string();
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
   {
     auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
     for (each->InitTraversal(); error.empty() && !each->IsDoneWithTraversal(); each->GoToNextItem())
     {
       vtkDataObject* block = each->GetCurrentDataObject();
-      error = IsEmpty(block) ? ErrorIn(block->GetFieldData()) : std::string();
+      error =
+        IsEmpty(block) ? Arrays::TextAt(block->GetFieldData(), Arrays::Error, 0) : std::string();
     }
   }
   return error;
