@@ -21,6 +21,7 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
+using avianlidar::asciiLine;
 using avianlidar::failIf;
 using avianlidar::Frame;
 using avianlidar::GeodeticFrame;
@@ -99,11 +100,6 @@ void appendNumber(std::string& text, const formats::Field& field, double value)
   text.append(digits, end.ptr);
 }
 
-std::string dumped(const json& value)
-{
-  return value.dump(-1, ' ', true, json::error_handler_t::replace);
-}
-
 /// Text property of a feature: the identifier is an index of texts in the field data.
 struct TextField
 {
@@ -144,7 +140,7 @@ std::string FeatureOf(const Point& place, const std::vector<formats::Field>& num
   const char* separator = "";
   for (const formats::Field& field : numbers)
   {
-    text += separator + dumped(field.name) + ":";
+    text += separator + asciiLine(field.name) + ":";
     appendNumber(text, field, field.value(i));
     separator = ",";
   }
@@ -152,7 +148,7 @@ std::string FeatureOf(const Point& place, const std::vector<formats::Field>& num
   {
     const int id = fields::IntegerOf(ids, i, -1);
     const bool isKnown = id >= 0 && id < values->GetNumberOfValues();
-    text += separator + dumped(property) + ":" + dumped(isKnown ? values->GetValue(id) : "");
+    text += separator + asciiLine(property) + ":" + asciiLine(isKnown ? values->GetValue(id) : "");
     separator = ",";
   }
   return text + "}}";
@@ -203,7 +199,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
              R"("description":"Echoes of a lidar; heights are metres above the WGS84 ellipsoid",)"
              "\n"
              R"("units":)" +
-    dumped(units) + ",\n" + R"("features":[)");
+    asciiLine(units) + ",\n" + R"("features":[)");
   const char* separator = "\n";
   const vtkIdType size = input->GetNumberOfPoints();
   for (vtkIdType i = 0; i < size; ++i)
@@ -213,7 +209,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
       file.write(separator + FeatureOf(places(i), numbers, texts, i));
       separator = ",\n";
     }
-    formats::goOn(keepGoing, i, size, 0.0, 1.0);
+    formats::goOn(keepGoing, i, size);
   }
   file.write("\n]}\n");
   file.commit();

@@ -497,7 +497,7 @@ Mesh ReadAssimpMesh(const std::string& file)
     {
       reason.pop_back();
     }
-    throw Error("Assimp cannot read it: " + reason + files->GetReason());
+    fail("Assimp cannot read it: ", reason, files->GetReason());
   }
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)
   {

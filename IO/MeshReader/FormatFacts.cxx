@@ -223,7 +223,7 @@ double IfcUnit(const std::vector<Entity>& entities)
         return factor * metres;
       }
     }
-    throw Error("has a unit of length, " + id +
+    fail("has a unit of length, ", id,
       ", that cannot be read, expected an IFCCONVERSIONBASEDUNIT of metres");
   }
   return 1.0;
@@ -454,7 +454,7 @@ double OpenGexUnit(const std::string& text, char& upAxis)
     }
     else if (metres = std::atof(value.c_str()); !(metres > 0.0))
     {
-      throw Error("has the distance '" + value + "' in its Metric, expected metres above 0");
+      fail("has the distance '", value, "' in its Metric, expected metres above 0");
     }
   }
   return metres;
@@ -478,7 +478,7 @@ void CheckPly(const std::string& text)
       return;
     }
   }
-  throw Error("is broken: its header has no line end_header");
+  fail("is broken: its header has no line end_header");
 }
 
 std::vector<std::string> Check3mf(const std::string& text)
@@ -542,8 +542,7 @@ double PrintUnit(const std::string& text)
       return known.length;
     }
   }
-  throw Error("has the unit '" + std::string(*unit) +
-    "', expected micron, millimeter, centimeter, inch, foot or meter");
+  fail("has the unit '", *unit, "', expected micron, millimeter, centimeter, inch, foot or meter");
 }
 
 void CheckAmf(const std::string& text)

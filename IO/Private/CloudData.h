@@ -27,15 +27,23 @@ using FormatError = FileError;
 /// Number of points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;
 
-/// Reports the progress at point `done` of `all`, as a share between `from` and `to`. Throws
-/// WorkStopped if KeepGoing returns false.
-inline void goOn(
-  const KeepGoing& keepGoing, std::int64_t done, std::int64_t all, double from, double to)
+/// Reports the progress, and throws WorkStopped if KeepGoing returns false.
+inline void goOn(const KeepGoing& keepGoing, double progress)
 {
-  if (done % PointsPerBlock == 0 && keepGoing &&
-    !keepGoing(from + (to - from) * static_cast<double>(done) / static_cast<double>(all)))
+  if (keepGoing && !keepGoing(progress))
   {
     throw WorkStopped();
+  }
+}
+
+/// Calls goOn() at the first point of each block, with point `done` of `all` as a share between
+/// `from` and `to`.
+template <class Index>
+void goOn(const KeepGoing& keepGoing, Index done, Index all, double from = 0.0, double to = 1.0)
+{
+  if (done % static_cast<Index>(PointsPerBlock) == 0)
+  {
+    goOn(keepGoing, from + (to - from) * static_cast<double>(done) / static_cast<double>(all));
   }
 }
 

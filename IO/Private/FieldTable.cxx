@@ -146,7 +146,7 @@ std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
       }
     }
     failIf(bool(words >> word), "point ", i, " has too many values");
-    goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(table.points), 0, 1);
+    goOn(keepGoing, i, table.points);
   }
   return lines.position();
 }
@@ -171,7 +171,7 @@ void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTarg
           bytes += size;
         }
       }
-      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(table.points), 0, 1);
+      goOn(keepGoing, i, table.points);
     });
 }
 
@@ -238,7 +238,7 @@ void writeRows(
       file.write(block);
       block.clear();
     }
-    goOn(keepGoing, index, static_cast<std::int64_t>(rows), 0.0, 1.0);
+    goOn(keepGoing, cell, rows);
   }
   file.write(block);
 }

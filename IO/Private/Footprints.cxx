@@ -12,6 +12,7 @@
 #include <ogrsf_frmts.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -54,34 +55,34 @@ struct Region
 
 // Finds a value in the list "key"=>"value","key"=>"value" that GDAL's OSM driver gives for tags
 // without a column.
-bool FindOtherTag(const std::string& tags, const std::string& key, std::string& value)
+std::optional<std::string> FindOtherTag(const std::string& tags, const std::string& key)
 {
   const std::string start = "\"" + key + "\"=>\"";
   std::size_t at = tags.find(start);
   if (at == std::string::npos)
   {
-    return false;
+    return {};
   }
-  value.clear();
+  std::string value;
   for (at += start.size(); at < tags.size() && tags[at] != '"'; ++at)
   {
     at += tags[at] == '\\';
     value += at < tags.size() ? std::string(1, tags[at]) : std::string();
   }
-  return true;
+  return value;
 }
 
-bool FindAttribute(const OGRFeature& feature, const std::string& name, std::string& value)
+std::optional<std::string> FindAttribute(const OGRFeature& feature, const std::string& name)
 {
   const int field = feature.GetFieldIndex(name.c_str());
   if (field >= 0 && feature.IsFieldSetAndNotNull(field))
   {
-    value = feature.GetFieldAsString(field);
-    return true;
+    return feature.GetFieldAsString(field);
   }
   const int other = feature.GetFieldIndex("other_tags");
-  return other >= 0 && feature.IsFieldSetAndNotNull(other) &&
-    FindOtherTag(feature.GetFieldAsString(other), name, value);
+  return other >= 0 && feature.IsFieldSetAndNotNull(other)
+    ? FindOtherTag(feature.GetFieldAsString(other), name)
+    : std::nullopt;
 }
 
 // Reads lengths such as "12", "12.5" and "12 m". Texts with other units, such as feet or floors,
@@ -89,11 +90,7 @@ bool FindAttribute(const OGRFeature& feature, const std::string& name, std::stri
 std::optional<double> FindLength(
   const OGRFeature& feature, const std::string& name, double unit = 1)
 {
-  std::string text;
-  if (name.empty() || !FindAttribute(feature, name, text))
-  {
-    return {};
-  }
+  const std::string text = name.empty() ? std::string() : FindAttribute(feature, name).value_or("");
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const std::string given(end);
@@ -151,15 +148,12 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
 
 bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filters)
 {
-  for (const AttributeFilter& filter : filters)
-  {
-    std::string value;
-    if (!FindAttribute(feature, filter.attribute, value) || !MatchesPattern(filter.pattern, value))
+  return std::all_of(filters.begin(), filters.end(),
+    [&](const AttributeFilter& filter)
     {
-      return false;
-    }
-  }
-  return true;
+      const auto value = FindAttribute(feature, filter.attribute);
+      return value && MatchesPattern(filter.pattern, *value);
+    });
 }
 
 // Drivers of GDAL that are allowed. Other drivers open further files or servers that a file names.
@@ -263,7 +257,7 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
       continue;
     }
     Feature feature;
-    FindAttribute(*source, options.nameAttribute, feature.name);
+    feature.name = FindAttribute(*source, options.nameAttribute).value_or("");
     feature.height = FindLength(*source, options.heightAttribute, unit);
     feature.minHeight = FindLength(*source, options.minHeightAttribute);
     feature.width = FindLength(*source, options.widthAttribute);

@@ -104,7 +104,7 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
           greatest = intensity[i];
         }
       }
-      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(n), 0.0, 1.0);
+      goOn(keepGoing, i, n);
     });
   checkReflectance(least, greatest, points);
   checkStride(points);

@@ -443,8 +443,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
     columns.take(i, bytes);
-    goOn(
-      keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(header.points), 0.0, 1.0);
+    goOn(keepGoing, i, header.points);
   };
   if (header.compressed)
   {

@@ -11,7 +11,6 @@
 #include <new>
 #include <ostream>
 #include <streambuf>
-#include <utility>
 
 #include <laszip/laszip_api.h>
 #endif
@@ -497,8 +496,8 @@ namespace
 {
 [[noreturn]] void missing()
 {
-  throw FormatError("LAZ needs LASzip, which this build is without: install liblaszip-dev (Debian "
-                    "13) and build again, or use LAS");
+  fail("LAZ needs LASzip, which this build is without: install liblaszip-dev (Debian 13) and build "
+       "again, or use LAS");
 }
 }
 

@@ -4,7 +4,6 @@
 #include "AvailableMemory.h"
 #include "MeshFormats.h"
 #include "MeshStream.h"
-#include "SceneTypes.h"
 
 #include <cerrno>
 #include <chrono>
@@ -124,8 +123,9 @@ public:
       {
         close(this->Pipe);
       }
-      throw Error("the program that reads meshes, " + words.front() + ", cannot be started: " +
-        std::strerror(error) + "; expected it there, or where AVIANLIDAR_MESH_READER says");
+      fail("the program that reads meshes, ", words.front(),
+        ", cannot be started: ", std::strerror(error),
+        "; expected it there, or where AVIANLIDAR_MESH_READER says");
     }
   }
 
@@ -156,7 +156,7 @@ public:
       }
       else if (count == 0 || (errno != EINTR && errno != EAGAIN))
       {
-        throw Error(this->Library + " cannot read it: " + this->HowItEnded());
+        fail(this->Library, " cannot read it: ", this->HowItEnded());
       }
     }
   }
@@ -215,16 +215,10 @@ private:
 // taken, as is usual in surveying.
 char UpAxis(const std::string& file)
 {
-  const std::string ending = EndingOf(UncompressedName(file));
-  for (const char* y : { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb",
-         ".ac", ".acc", ".ac3d", ".fbx", ".x3d" })
-  {
-    if (ending == y)
-    {
-      return 'y';
-    }
-  }
-  return 'z';
+  const bool isY = EndsWithAny(UncompressedName(file),
+    { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb", ".ac", ".acc",
+      ".ac3d", ".fbx", ".x3d" });
+  return isY ? 'y' : 'z';
 }
 }
 

@@ -372,8 +372,7 @@ Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
   {
     if (number++ % PacketsPerCall == 0)
     {
-      goOn(
-        keepGoing, 0, 1, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()), 1.0);
+      goOn(keepGoing, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()));
     }
     const std::uint64_t looked = std::min(size, MostBeforePayload);
     const Datagram datagram = datagramOf(link, source.at(at, looked), looked);
@@ -495,7 +494,7 @@ std::vector<PacketIndex::Turn> turnsOf(
     }
     if (number % PacketsPerCall == 0)
     {
-      goOn(keepGoing, 0, 1, 0.5, 1.0);
+      goOn(keepGoing, 0.5);
     }
   }
   return turns;
@@ -584,7 +583,7 @@ Cloud readTurn(
     if (p % PacketsPerCall == 0)
     {
       const auto done = static_cast<double>(p - from.packet);
-      goOn(keepGoing, 0, 1, 0.5 + 0.5 * done / static_cast<double>(packets), 1.0);
+      goOn(keepGoing, 0.5 + 0.5 * done / static_cast<double>(packets));
     }
   }
   Cloud& cloud = points.cloud;

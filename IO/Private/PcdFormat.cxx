@@ -46,9 +46,10 @@ void understandFields(Words& words, PcdHeader& header)
     field.name = words["FIELDS"][i];
     const auto size = numberOf<std::uint64_t>(sizes[i], "SIZE");
     const std::string& type = types[i];
-    failIf(type.size() != 1 || !scalarOf(upper(type[0]), size, field.type), "the field ",
-      shown(field.name), " has TYPE ", shown(types[i]), " and SIZE ", shown(sizes[i]),
-      ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
+    const auto scalar = type.size() == 1 ? scalarOf(upper(type[0]), size) : std::nullopt;
+    failIf(!scalar, "the field ", shown(field.name), " has TYPE ", shown(types[i]), " and SIZE ",
+      shown(sizes[i]), ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
+    field.type = *scalar;
     field.count = counts.empty() ? 1 : numberOf<std::uint64_t>(counts[i], "COUNT");
     // Old converters of ROS write 0 for a single value. The Point Cloud Library accepts 0 too.
     field.count += field.count == 0;
@@ -93,7 +94,7 @@ PcdData understandData(std::string kind)
   {
     return PcdData::Compressed;
   }
-  throw FormatError("DATA is " + shown(kind) + ", expected ascii, binary or binary_compressed");
+  fail("DATA is ", shown(kind), ", expected ascii, binary or binary_compressed");
 }
 
 using Bytes = std::vector<unsigned char>;
@@ -135,10 +136,7 @@ void takeCompressed(const Bytes& data, const PcdHeader& header, const TableTarge
         bytes += sizeOf(header.fields[f].type);
       }
     }
-    if (keepGoing && !keepGoing(static_cast<double>(f + 1) / header.fields.size()))
-    {
-      throw WorkStopped();
-    }
+    goOn(keepGoing, static_cast<double>(f + 1) / header.fields.size());
   }
 }
 

@@ -114,9 +114,8 @@ std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
     }
     else
     {
-      throw FormatError(
-        "this is not a PLY file of up to 4096 properties: its header has the line \"" +
-        shown(line) + "\"");
+      fail("this is not a PLY file of up to 4096 properties: its header has the line \"",
+        shown(line), "\"");
     }
   }
   header.begin = lines.position();

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 namespace avianlidar::formats
@@ -33,9 +34,8 @@ std::size_t sizeOf(Scalar type);
 bool isFloat(Scalar type);
 bool isSigned(Scalar type);
 
-/// Finds the type of a kind ('I', 'U' or 'F') and a size, bytes. Returns false if the type does not
-/// exist.
-bool scalarOf(char kind, std::size_t size, Scalar& type);
+/// Returns the type of a kind ('I', 'U' or 'F') and a size, bytes, or no value if there is none.
+std::optional<Scalar> scalarOf(char kind, std::size_t size);
 
 /// Calls f with a value of the C++ type of the scalar type.
 template <class F>

@@ -304,9 +304,8 @@ BuiltScene Build(const std::string& file, const std::function<bool(double)>& pro
     {
       throw WorkStopped();
     }
-    const auto fail = [&](const std::string& reason) {
-      throw Error(scene.file + ": " + object.key + FileKey(object) + object.file + ": " + reason);
-    };
+    const std::string where =
+      joined(scene.file, ": ", object.key, FileKey(object), object.file, ": ");
     try
     {
       if (outline && !HasParts(object) && terrainsOfParts.count(object.name) == 0)
@@ -323,11 +322,11 @@ BuiltScene Build(const std::string& file, const std::function<bool(double)>& pro
     }
     catch (const std::runtime_error& e) // an Error or a MemoryError
     {
-      fail(e.what());
+      fail(where, e.what());
     }
     catch (const std::bad_alloc&)
     {
-      fail("there is not enough memory for it");
+      fail(where, "there is not enough memory for it");
     }
   }
   WarnOfUnmapped(unmapped, built.warnings);

@@ -3,7 +3,7 @@
  * @file vtkAvianLidarCloudFields.h
  * @brief Converts between VTK's arrays and the clouds of the file formats. Not installed.
  *
- * The functions throw FormatError, which names the array, for bad input.
+ * The functions throw std::runtime_error, which names the array, for bad input.
  */
 #ifndef vtkAvianLidarCloudFields_h
 #define vtkAvianLidarCloudFields_h
@@ -12,7 +12,8 @@
 #include "CloudNotes.h"
 #include "FieldTable.h"
 #include "GeodeticFrame.h"
-#include "SensorPose.h"
+#include "SemanticLabels.h"
+#include "Vector.h"
 
 #include "vtkSmartPointer.h"
 
@@ -36,7 +37,30 @@ using avianlidar::formats::CloudNotes;
 using avianlidar::formats::Field;
 using avianlidar::formats::FormatError;
 using avianlidar::formats::Point;
-using avianlidar::formats::SensorPose;
+
+/// Position and orientation of a sensor.
+class SensorPose
+{
+public:
+  /// Makes a pose at the origin, without rotation.
+  SensorPose() = default;
+
+  /// Makes a pose from a position, m, and yaw, pitch and roll, deg, as in ScanPattern.h.
+  SensorPose(const Point& position, const Point& orientation);
+
+  /// Transforms a point from the scene's frame to the sensor's frame: x right, y forward, z up.
+  Point toSensor(const Point& point) const;
+
+  /// Returns the position, m, and the unit quaternion (w x y z, w >= 0) of the rotation from the
+  /// sensor's frame to the scene's frame.
+  std::array<double, 7> viewpoint() const;
+
+private:
+  Point Position{};
+  /// Axes of the sensor in the scene's frame, unit vectors.
+  std::array<avianlidar::Vec3, 3> Axes{ { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 },
+    { 0.0, 0.0, 1.0 } } };
+};
 
 /// Returns the numeric point array of a name, or null. Throws if the array has several components.
 vtkDataArray* Find(vtkPointSet* input, const char* name);
@@ -92,6 +116,10 @@ vtkStringArray* FindTexts(vtkPointSet* input, const char* name);
 
 /// Returns the first text of a name in the field data, or an empty text.
 std::string FindText(vtkPointSet* input, const char* name);
+
+/// Returns a function that gives the labels of an object by its id, from the classes in the field
+/// data. Throws as FindTexts() does.
+std::function<avianlidar::formats::SemanticLabel(int)> LabelsOf(vtkPointSet* input);
 
 /// Returns the pose that the field data `position` and `orientation` give, or no value without
 /// `position`.
