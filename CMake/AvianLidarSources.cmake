@@ -47,7 +47,6 @@ set(cloud_sources
   IO/Private/ReadCloud.cxx
   IO/Private/Scalars.cxx
   IO/Private/SemanticLabels.cxx
-  IO/Private/SensorPose.cxx
   IO/Private/TextLines.cxx)
 set(scene_sources
   IO/Private/Extrusion.cxx
@@ -58,7 +57,6 @@ set(scene_sources
   IO/Private/SceneBuilder.cxx
   IO/Private/SceneDescription.cxx
   IO/Private/SceneFrame.cxx
-  IO/Private/SceneReport.cxx
   IO/Private/Terrain.cxx
   IO/Private/VirtualFiles.cxx)
 

@@ -178,13 +178,6 @@ std::vector<SeenSurface> RowsOf(const std::vector<SeenSurface>& seen)
   return rows;
 }
 
-/// Name of an id in field data; empty if the id has no name.
-std::string NameOf(vtkFieldData* fields, const Arrays::Name& names, int id)
-{
-  auto* array = vtkStringArray::SafeDownCast(fields->GetAbstractArray(names.name));
-  return array && id >= 0 && id < array->GetNumberOfValues() ? array->GetValue(id) : std::string();
-}
-
 void FillTable(const std::vector<SeenSurface>& rows, vtkFieldData* fields, vtkTable* table)
 {
   auto objects = Arrays::Make<vtkStringArray>(Arrays::Object);
@@ -192,8 +185,8 @@ void FillTable(const std::vector<SeenSurface>& rows, vtkFieldData* fields, vtkTa
   for (const SeenSurface& row : rows)
   {
     objects->InsertNextValue(
-      &row == &rows.back() ? NoSurface : NameOf(fields, Arrays::ObjectNames, row.objectId));
-    materials->InsertNextValue(NameOf(fields, Arrays::MaterialNames, row.materialId));
+      &row == &rows.back() ? NoSurface : Arrays::TextAt(fields, Arrays::ObjectNames, row.objectId));
+    materials->InsertNextValue(Arrays::TextAt(fields, Arrays::MaterialNames, row.materialId));
   }
   table->AddColumn(objects);
   table->AddColumn(materials);

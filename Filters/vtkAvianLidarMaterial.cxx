@@ -117,8 +117,7 @@ void FindLeaves(vtkDataObject* node, const std::string& name, const std::string&
 std::vector<std::string> StringsOf(vtkFieldData* fields, const Arrays::Name& name)
 {
   std::vector<std::string> strings;
-  auto* array =
-    fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(name.name)) : nullptr;
+  auto* array = Arrays::FindTexts(fields, name);
   for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
   {
     strings.push_back(array->GetValue(i));

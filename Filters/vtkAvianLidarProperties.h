@@ -29,6 +29,16 @@ public:
   vtkAvianLidarPropertyMacro(name, bool, value); \
   vtkBooleanMacro(name, bool)
 
+/// Declares a whole number, limited to `low` to `high` by the setter.
+#define vtkAvianLidarLimitedMacro(name, low, high, value) \
+  vtkSetClampMacro(name, int, low, high);                 \
+  vtkGetMacro(name, int);                                 \
+                                                          \
+protected:                                                \
+  int name = value;                                       \
+                                                          \
+public:
+
 /// Declares a property of `size` doubles: 2, 3 or 6.
 #define vtkAvianLidarVectorMacro(name, size, ...) \
   vtkSetVector##size##Macro(name, double);        \

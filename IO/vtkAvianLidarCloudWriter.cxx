@@ -12,8 +12,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <stdexcept>
-#include <string>
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudWriter::~vtkAvianLidarCloudWriter()

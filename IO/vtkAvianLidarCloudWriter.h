@@ -21,6 +21,7 @@
 #define vtkAvianLidarCloudWriter_h
 
 #include "vtkAvianLidarModule.h" // For export macro
+#include "vtkAvianLidarProperties.h"
 #include "vtkWriter.h"
 
 #include <string> // For std::string

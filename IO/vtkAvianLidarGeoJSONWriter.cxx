@@ -7,6 +7,7 @@
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -20,9 +21,10 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
+using avianlidar::asciiLine;
+using avianlidar::failIf;
 using avianlidar::Frame;
 using avianlidar::GeodeticFrame;
-using formats::FormatError;
 using formats::Point;
 
 namespace
@@ -40,13 +42,11 @@ public:
   {
     const std::optional<Point> origin = fields::FindOrigin(input);
     const bool local = fields::FindText(input, names::CrsWkt.name).empty();
-    if (!this->FromArrays() && (!origin || !local) && input->GetNumberOfPoints() > 0)
-    {
-      throw FormatError(std::string("the input has neither the point arrays '") +
-        names::Longitude.name + "', '" + names::Latitude.name + "', '" + names::Height.name +
-        "' nor points in metres around the field data '" + names::GeodeticOrigin.name +
-        "': let vtkAvianLidarGeodeticTransform add the arrays");
-    }
+    failIf(!this->FromArrays() && (!origin || !local) && input->GetNumberOfPoints() > 0,
+      "the input has neither the point arrays '", names::Longitude.name, "', '",
+      names::Latitude.name, "', '", names::Height.name,
+      "' nor points in metres around the field data '", names::GeodeticOrigin.name,
+      "': let vtkAvianLidarGeodeticTransform add the arrays");
     if (origin)
     {
       this->Geodesy.setOrigin((*origin)[0], (*origin)[1], (*origin)[2]);
@@ -100,11 +100,6 @@ void appendNumber(std::string& text, const formats::Field& field, double value)
   text.append(digits, end.ptr);
 }
 
-std::string dumped(const json& value)
-{
-  return value.dump(-1, ' ', true, json::error_handler_t::replace);
-}
-
 /// Text property of a feature: the identifier is an index of texts in the field data.
 struct TextField
 {
@@ -145,7 +140,7 @@ std::string FeatureOf(const Point& place, const std::vector<formats::Field>& num
   const char* separator = "";
   for (const formats::Field& field : numbers)
   {
-    text += separator + dumped(field.name) + ":";
+    text += separator + asciiLine(field.name) + ":";
     appendNumber(text, field, field.value(i));
     separator = ",";
   }
@@ -153,7 +148,7 @@ std::string FeatureOf(const Point& place, const std::vector<formats::Field>& num
   {
     const int id = fields::IntegerOf(ids, i, -1);
     const bool isKnown = id >= 0 && id < values->GetNumberOfValues();
-    text += separator + dumped(property) + ":" + dumped(isKnown ? values->GetValue(id) : "");
+    text += separator + asciiLine(property) + ":" + asciiLine(isKnown ? values->GetValue(id) : "");
     separator = ",";
   }
   return text + "}}";
@@ -170,13 +165,10 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   if (this->UseFieldDataLimit)
   {
     limit = 0.0;
-    fields::Require(
+    vtkAvianLidarWithin("the ",
       [&] { names::ReadFieldValue(input->GetFieldData(), names::LowerEnergyLimit, limit); });
   }
-  else if (std::isnan(limit))
-  {
-    throw FormatError("MinimumEnergy is not a number, expected an energy in J");
-  }
+  failIf(std::isnan(limit), "MinimumEnergy is not a number, expected an energy in J");
   const Places places(input);
 
   std::vector<formats::Field> numbers;
@@ -207,7 +199,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
              R"("description":"Echoes of a lidar; heights are metres above the WGS84 ellipsoid",)"
              "\n"
              R"("units":)" +
-    dumped(units) + ",\n" + R"("features":[)");
+    asciiLine(units) + ",\n" + R"("features":[)");
   const char* separator = "\n";
   const vtkIdType size = input->GetNumberOfPoints();
   for (vtkIdType i = 0; i < size; ++i)
@@ -217,7 +209,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
       file.write(separator + FeatureOf(places(i), numbers, texts, i));
       separator = ",\n";
     }
-    formats::goOn(keepGoing, i, size, 0.0, 1.0);
+    formats::goOn(keepGoing, i, size);
   }
   file.write("\n]}\n");
   file.commit();

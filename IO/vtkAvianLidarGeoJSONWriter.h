@@ -30,30 +30,18 @@ public:
   vtkTypeMacro(vtkAvianLidarGeoJSONWriter, vtkAvianLidarCloudWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
-  /**
-   * Whether the least `energy` of written echoes is the field data `lower_energy_limit`, J, or 0 J
-   * without these field data. Default: on.
-   */
-  vtkSetMacro(UseFieldDataLimit, bool);
-  vtkGetMacro(UseFieldDataLimit, bool);
-  vtkBooleanMacro(UseFieldDataLimit, bool);
-  ///@}
+  /// Whether the least `energy` of written echoes is the field data `lower_energy_limit`, J, or 0 J
+  /// without these field data. Default: on.
+  vtkAvianLidarSwitchMacro(UseFieldDataLimit, true);
 
-  ///@{
-  /** Least `energy` of written echoes if UseFieldDataLimit is off, J. Default 0. */
-  vtkSetMacro(MinimumEnergy, double);
-  vtkGetMacro(MinimumEnergy, double);
-  ///@}
+  /// Least `energy` of written echoes if UseFieldDataLimit is off, J. Default 0.
+  vtkAvianLidarPropertyMacro(MinimumEnergy, double, 0.0);
 
 protected:
   vtkAvianLidarGeoJSONWriter() = default;
   ~vtkAvianLidarGeoJSONWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
-
-  bool UseFieldDataLimit = true;
-  double MinimumEnergy = 0.0;
 
 private:
   vtkAvianLidarGeoJSONWriter(const vtkAvianLidarGeoJSONWriter&) = delete;

@@ -3,14 +3,12 @@
 
 #include "Private/KittiFormat.h"
 #include "Private/OutputFile.h"
-#include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
-#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,27 +19,22 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
-using formats::FormatError;
+using avianlidar::failIf;
 using formats::Point;
 
 namespace
 {
 /// Returns a point in the sensor's frame. Throws FormatError if single precision cannot hold it.
-Point PlaceOf(vtkPointSet* input, const formats::SensorPose& pose, vtkIdType i)
+Point PlaceOf(vtkPointSet* input, const fields::SensorPose& pose, vtkIdType i)
 {
   Point p;
   input->GetPoint(i, p.data());
-  if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-  {
-    throw FormatError("point " + std::to_string(i) + " has a coordinate that is not finite");
-  }
+  failIf(!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]), "point ", i,
+    " has a coordinate that is not finite");
   p = pose.toSensor(p);
-  if (std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
-    std::numeric_limits<float>::max())
-  {
-    throw FormatError("point " + std::to_string(i) +
-      " has a coordinate beyond the range of single precision, which KITTI uses");
-  }
+  failIf(std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >
+      std::numeric_limits<float>::max(),
+    "point ", i, " has a coordinate beyond the range of single precision, which KITTI uses");
   return p;
 }
 
@@ -53,12 +46,8 @@ public:
     : Objects(fields::Need(input, names::ObjectId.name))
     , Materials(byMaterial ? fields::Need(input, names::MaterialId.name) : nullptr)
     , ByMaterial(byMaterial)
+    , LabelOf(fields::LabelsOf(input))
   {
-    auto* classes = fields::FindTexts(input, names::ObjectClasses.name);
-    for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
-    {
-      this->Classes.push_back(formats::labelOfClass(classes->GetValue(i)).kitti);
-    }
   }
 
   std::uint32_t At(vtkIdType i) const
@@ -66,9 +55,7 @@ public:
     const int id = fields::IntegerOf(this->Objects, i, -1);
     const int label = this->ByMaterial
       ? formats::labelOfMaterial(fields::IntegerOf(this->Materials, i, -1))
-      : id >= 0 && id < static_cast<int>(this->Classes.size())
-      ? this->Classes[id]
-      : formats::labelWithoutObject(id).kitti;
+      : this->LabelOf(id).kitti;
     const auto instance =
       static_cast<std::uint32_t>(id >= 0 ? (std::int64_t{ id } + 1) % 65536 : 0);
     return static_cast<std::uint32_t>(label & 0xFFFF) | instance << 16;
@@ -77,7 +64,7 @@ public:
 private:
   vtkDataArray *Objects, *Materials;
   bool ByMaterial;
-  std::vector<int> Classes; ///< class of SemanticKITTI of each object_id
+  std::function<formats::SemanticLabel(int)> LabelOf;
 };
 }
 
@@ -86,7 +73,7 @@ vtkStandardNewMacro(vtkAvianLidarKITTIWriter);
 //------------------------------------------------------------------------------
 void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
 {
-  std::optional<formats::SensorPose> pose = fields::FindPose(input);
+  std::optional<fields::SensorPose> pose = fields::FindPose(input);
   if (!pose)
   {
     this->Warn(std::string(": the input has no field data '") + names::Position.name +
@@ -104,11 +91,9 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
     labelFile.emplace(std::filesystem::path(this->FileName).replace_extension(".label").string());
   }
   formats::OutputFile file(this->FileName);
-  if (labelFile && labelFile->isSameAs(file))
-  {
-    throw FormatError("FileName is the name of the labels beside it, expected another ending than "
-                      ".label, such as .bin");
-  }
+  failIf(labelFile && labelFile->isSameAs(file),
+    "FileName is the name of the labels beside it, expected another ending than .label, such as "
+    ".bin");
 
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
   const vtkIdType size = input->GetNumberOfPoints();
@@ -131,7 +116,7 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
       formats::store(labels->At(i), bytes);
       labelFile->write(bytes, sizeof(std::uint32_t));
     }
-    formats::goOn(keepGoing, i, size, 0.0, 1.0);
+    formats::goOn(keepGoing, i, size);
   }
   if (labels)
   {

@@ -39,17 +39,13 @@ public:
     LABEL_SOURCE_MATERIAL = 1
   };
 
-  ///@{
-  /** Whether the file of labels is written too. Default: on. */
-  vtkSetMacro(WriteLabels, bool);
-  vtkGetMacro(WriteLabels, bool);
-  vtkBooleanMacro(WriteLabels, bool);
-  ///@}
+  /// Whether the file of labels is written too. Default: on.
+  vtkAvianLidarSwitchMacro(WriteLabels, true);
 
   ///@{
   /** Source of the lower 16 bits of a label. Default LABEL_SOURCE_OBJECT_CLASS. */
-  vtkSetClampMacro(LabelSource, int, LABEL_SOURCE_OBJECT_CLASS, LABEL_SOURCE_MATERIAL);
-  vtkGetMacro(LabelSource, int);
+  vtkAvianLidarLimitedMacro(
+    LabelSource, LABEL_SOURCE_OBJECT_CLASS, LABEL_SOURCE_MATERIAL, LABEL_SOURCE_OBJECT_CLASS);
   void SetLabelSourceToObjectClass() { this->SetLabelSource(LABEL_SOURCE_OBJECT_CLASS); }
   void SetLabelSourceToMaterial() { this->SetLabelSource(LABEL_SOURCE_MATERIAL); }
   ///@}
@@ -59,9 +55,6 @@ protected:
   ~vtkAvianLidarKITTIWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
-
-  bool WriteLabels = true;
-  int LabelSource = LABEL_SOURCE_OBJECT_CLASS;
 
 private:
   vtkAvianLidarKITTIWriter(const vtkAvianLidarKITTIWriter&) = delete;

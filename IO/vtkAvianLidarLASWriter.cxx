@@ -5,7 +5,6 @@
 #include "Private/CoordinateSystem.h"
 #include "Private/LasFormat.h"
 #include "Private/ReadCloud.h"
-#include "Private/SemanticLabels.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
@@ -13,7 +12,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
@@ -25,9 +23,9 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
+using avianlidar::failIf;
 using avianlidar::Frame;
 using avianlidar::GeodeticFrame;
-using formats::FormatError;
 using formats::Point;
 
 namespace
@@ -91,19 +89,10 @@ void TakeCore(vtkPointSet* input, formats::LasOutput& output)
     otherwise[formats::LasScanAngleIndex] = [elevation](std::int64_t i)
     { return 90.0 + fields::ValueOf(elevation, i, 0.0); };
   }
-  std::vector<int> classes;
-  auto* texts = fields::FindTexts(input, names::ObjectClasses.name);
-  for (vtkIdType i = 0; texts && i < texts->GetNumberOfValues(); ++i)
-  {
-    classes.push_back(formats::labelOfClass(texts->GetValue(i)).las);
-  }
+  const auto labelOf = fields::LabelsOf(input);
   vtkDataArray* objects = fields::Find(input, names::ObjectId.name);
-  otherwise[formats::LasClassIndex] = [objects, classes](std::int64_t i)
-  {
-    const int object = fields::IntegerOf(objects, i, -1);
-    const bool known = object >= 0 && object < static_cast<int>(classes.size());
-    return known ? classes[object] : formats::labelWithoutObject(object).las;
-  };
+  otherwise[formats::LasClassIndex] = [objects, labelOf](std::int64_t i)
+  { return labelOf(fields::IntegerOf(objects, i, -1)).las; };
   for (int k = 0; k < formats::LasCoreSize; ++k)
   {
     const formats::LasCoreField& core = formats::LasCore[k];
@@ -244,11 +233,8 @@ Frame PlaceFile(vtkPointSet* input, int system, int zone,
 {
   const std::optional<Point> origin = fields::FindOrigin(input);
   output.crs = fields::FindText(input, CrsName);
-  if (!output.crs.empty() && !IsWkt(output.crs))
-  {
-    throw FormatError(std::string("the field data '") + CrsName +
-      "' is not WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
-  }
+  failIf(!output.crs.empty() && !IsWkt(output.crs), "the field data '", CrsName,
+    "' is not WKT, expected a word and a bracket at its beginning, as 'PROJCS['");
   if (system == vtkAvianLidarLASWriter::COORDINATE_SYSTEM_LOCAL || !output.crs.empty())
   {
     return Frame::ENU;

@@ -55,8 +55,8 @@ public:
    * Coordinate system of the file. Local is the system of the points. Default
    * COORDINATE_SYSTEM_UTM.
    */
-  vtkSetClampMacro(CoordinateSystem, int, COORDINATE_SYSTEM_UTM, COORDINATE_SYSTEM_LOCAL);
-  vtkGetMacro(CoordinateSystem, int);
+  vtkAvianLidarLimitedMacro(
+    CoordinateSystem, COORDINATE_SYSTEM_UTM, COORDINATE_SYSTEM_LOCAL, COORDINATE_SYSTEM_UTM);
   void SetCoordinateSystemToUTM() { this->SetCoordinateSystem(COORDINATE_SYSTEM_UTM); }
   void SetCoordinateSystemToGeocentric()
   {
@@ -65,30 +65,17 @@ public:
   void SetCoordinateSystemToLocal() { this->SetCoordinateSystem(COORDINATE_SYSTEM_LOCAL); }
   ///@}
 
-  ///@{
-  /**
-   * UTM zone, 1 to 60 in the north, -1 to -60 in the south. 0 is the zone of the origin. Default 0.
-   */
-  vtkSetClampMacro(UTMZone, int, -60, 60);
-  vtkGetMacro(UTMZone, int);
-  ///@}
+  /// UTM zone, 1 to 60 in the north, -1 to -60 in the south. 0 is the zone of the origin. Default
+  /// 0.
+  vtkAvianLidarLimitedMacro(UTMZone, -60, 60, 0);
 
-  ///@{
-  /** Source id of the file and of each point, 0 (no id) to 65535. Default 0. */
-  vtkSetClampMacro(SourceId, int, 0, 65535);
-  vtkGetMacro(SourceId, int);
-  ///@}
+  /// Source id of the file and of each point, 0 (no id) to 65535. Default 0.
+  vtkAvianLidarLimitedMacro(SourceId, 0, 65535, 0);
 
-  ///@{
-  /**
-   * Whether all numeric arrays are written, or only `energy`, `energy_received`, `return_energy`,
-   * `energy_std_error`, `object_id`, `material_id`, `secondary_share`, `incidence_angle`,
-   * `distance_m` and `laser_id`. Default: on.
-   */
-  vtkSetMacro(WriteAllArrays, bool);
-  vtkGetMacro(WriteAllArrays, bool);
-  vtkBooleanMacro(WriteAllArrays, bool);
-  ///@}
+  /// Whether all numeric arrays are written, or only `energy`, `energy_received`, `return_energy`,
+  /// `energy_std_error`, `object_id`, `material_id`, `secondary_share`, `incidence_angle`,
+  /// `distance_m` and `laser_id`. Default: on.
+  vtkAvianLidarSwitchMacro(WriteAllArrays, true);
 
   /// Largest rounding error of a coordinate in the last file, m, or 0 before the first file.
   vtkGetMacro(RoundingBound, double);
@@ -99,10 +86,6 @@ protected:
 
   void WriteCloud(vtkPointSet* input) override;
 
-  int CoordinateSystem = COORDINATE_SYSTEM_UTM;
-  int UTMZone = 0;
-  int SourceId = 0;
-  bool WriteAllArrays = true;
   double RoundingBound = 0.0;
 
 private:

@@ -20,8 +20,8 @@
 namespace fields = vtkAvianLidarCloudFields;
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
+using avianlidar::failIf;
 using formats::Field;
-using formats::FormatError;
 using formats::Scalar;
 
 namespace
@@ -85,11 +85,8 @@ std::int64_t BeamOf(vtkDataArray* beams, std::int64_t i)
 {
   const double beam = fields::ValueOf(beams, i, 0.0);
   constexpr double most = 9007199254740992.0; // 2^53, limit of exact integers
-  if (!(beam >= 0.0 && beam <= most && beam == std::floor(beam)))
-  {
-    throw FormatError("the point array 'beam_id' is not a whole number from 0 to 2^53, at point " +
-      std::to_string(i));
-  }
+  failIf(!(beam >= 0.0 && beam <= most && beam == std::floor(beam)),
+    "the point array 'beam_id' is not a whole number from 0 to 2^53, at point ", i);
   return static_cast<std::int64_t>(beam);
 }
 
@@ -207,10 +204,7 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
   {
     const bool asked = this->Organisation == ORGANISATION_ORGANISED;
     const std::string problem = Organise(input, cells);
-    if (asked && !problem.empty())
-    {
-      throw FormatError("it cannot be organised: " + problem);
-    }
+    failIf(asked && !problem.empty(), "it cannot be organised: ", problem);
     if (problem.empty() && (asked || !cells.several))
     {
       output.width = static_cast<std::uint64_t>(cells.width);

@@ -58,8 +58,7 @@ public:
 
   ///@{
   /** Type: binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
-  vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
-  vtkGetMacro(FileType, int);
+  vtkAvianLidarLimitedMacro(FileType, FILE_TYPE_BINARY, FILE_TYPE_ASCII, FILE_TYPE_BINARY);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }
   void SetFileTypeToASCII() { this->SetFileType(FILE_TYPE_ASCII); }
   ///@}
@@ -70,8 +69,8 @@ public:
    * Organised: always, with the echo of most `energy_received` in each cell, and an error if the
    * beams do not form a grid. List: never. Default ORGANISATION_AUTOMATIC.
    */
-  vtkSetClampMacro(Organisation, int, ORGANISATION_AUTOMATIC, ORGANISATION_LIST);
-  vtkGetMacro(Organisation, int);
+  vtkAvianLidarLimitedMacro(
+    Organisation, ORGANISATION_AUTOMATIC, ORGANISATION_LIST, ORGANISATION_AUTOMATIC);
   void SetOrganisationToAutomatic() { this->SetOrganisation(ORGANISATION_AUTOMATIC); }
   void SetOrganisationToOrganised() { this->SetOrganisation(ORGANISATION_ORGANISED); }
   void SetOrganisationToList() { this->SetOrganisation(ORGANISATION_LIST); }
@@ -79,8 +78,7 @@ public:
 
   ///@{
   /** Precision of x, y, z. PCL's point types hold only floats. Default PRECISION_SINGLE. */
-  vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
-  vtkGetMacro(Precision, int);
+  vtkAvianLidarLimitedMacro(Precision, PRECISION_SINGLE, PRECISION_DOUBLE, PRECISION_SINGLE);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }
   void SetPrecisionToDouble() { this->SetPrecision(PRECISION_DOUBLE); }
   ///@}
@@ -90,10 +88,6 @@ protected:
   ~vtkAvianLidarPCDWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
-
-  int FileType = FILE_TYPE_BINARY;
-  int Organisation = ORGANISATION_AUTOMATIC;
-  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarPCDWriter(const vtkAvianLidarPCDWriter&) = delete;

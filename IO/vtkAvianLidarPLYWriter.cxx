@@ -39,10 +39,8 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
   vtkNew<vtkIdList> ids;
   if (auto* mesh = vtkPolyData::SafeDownCast(input))
   {
-    if (mesh->GetNumberOfStrips() > 0)
-    {
-      throw formats::FormatError("it has triangle strips, expected polygons: triangulate them");
-    }
+    avianlidar::failIf(
+      mesh->GetNumberOfStrips() > 0, "it has triangle strips, expected polygons: triangulate them");
     faces.count = mesh->GetNumberOfPolys();
     faces.pointsOf = [mesh, &ids](std::int64_t i, std::vector<std::int64_t>& points)
     {

@@ -43,16 +43,14 @@ public:
 
   ///@{
   /** Type: binary, or text with the fewest digits that are exact. Default FILE_TYPE_BINARY. */
-  vtkSetClampMacro(FileType, int, FILE_TYPE_BINARY, FILE_TYPE_ASCII);
-  vtkGetMacro(FileType, int);
+  vtkAvianLidarLimitedMacro(FileType, FILE_TYPE_BINARY, FILE_TYPE_ASCII, FILE_TYPE_BINARY);
   void SetFileTypeToBinary() { this->SetFileType(FILE_TYPE_BINARY); }
   void SetFileTypeToASCII() { this->SetFileType(FILE_TYPE_ASCII); }
   ///@}
 
   ///@{
   /** Precision of x, y and z. Default PRECISION_SINGLE. */
-  vtkSetClampMacro(Precision, int, PRECISION_SINGLE, PRECISION_DOUBLE);
-  vtkGetMacro(Precision, int);
+  vtkAvianLidarLimitedMacro(Precision, PRECISION_SINGLE, PRECISION_DOUBLE, PRECISION_SINGLE);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }
   void SetPrecisionToDouble() { this->SetPrecision(PRECISION_DOUBLE); }
   ///@}
@@ -62,9 +60,6 @@ protected:
   ~vtkAvianLidarPLYWriter() override = default;
 
   void WriteCloud(vtkPointSet* input) override;
-
-  int FileType = FILE_TYPE_BINARY;
-  int Precision = PRECISION_SINGLE;
 
 private:
   vtkAvianLidarPLYWriter(const vtkAvianLidarPLYWriter&) = delete;

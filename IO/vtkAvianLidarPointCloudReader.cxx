@@ -13,7 +13,6 @@
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -52,10 +51,8 @@ bool MoveToOrigin(Cloud& cloud, int zone)
     return false;
   }
   const std::vector<double>& o = origin->numbers;
-  if (!GeodeticFrame::checkOrigin(o[0], o[1], o[2]).empty())
-  {
-    throw formats::FormatError("the origin in the file is not a place on the Earth");
-  }
+  avianlidar::failIf(!GeodeticFrame::checkOrigin(o[0], o[1], o[2]).empty(),
+    "the origin in the file is not a place on the Earth");
   const Frame from = geocentric ? Frame::ECEF : Frame::UTM;
   GeodeticFrame geodesy;
   geodesy.setOrigin(o[0], o[1], o[2]);
@@ -65,10 +62,7 @@ bool MoveToOrigin(Cloud& cloud, int zone)
     double* at = cloud.points.data() + 3 * i;
     const formats::Point p{ at[0], at[1], at[2] };
     const std::string wrong = GeodeticFrame::checkPoint(from, p);
-    if (!wrong.empty())
-    {
-      throw formats::FormatError("point " + std::to_string(i) + ": " + wrong);
-    }
+    avianlidar::failIf(!wrong.empty(), "point ", i, ": ", wrong);
     const formats::Point moved = geodesy.convert(from, Frame::ENU, p);
     std::copy(moved.begin(), moved.end(), at);
   }
@@ -91,9 +85,7 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* data)
   names::SetFieldStrings(data, names::CrsWkt, { cloud.crs });
   if (zone != 0)
   {
-    auto array = names::Make<vtkIntArray>(names::UTMZone, 1);
-    array->SetValue(0, zone);
-    data->AddArray(array);
+    names::SetFieldInteger(data, names::UTMZone, zone);
   }
 }
 }
@@ -109,10 +101,7 @@ vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
 
 //------------------------------------------------------------------------------
 vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
-  : FileName(nullptr)
-  , LocalCoordinates(true)
-  , SensorAddress(nullptr)
-  , Internals(new vtkInternals)
+  : Internals(new vtkInternals)
 {
   this->SetNumberOfInputPorts(0);
 }
@@ -154,13 +143,14 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
   if (format && format->hasTurns)
   {
     // RequestData() reports the error.
-    internals.Problem = fields::ErrorIn(this->FileName, NoMemory,
-      [&]
-      {
-        formats::FileSource source(this->FileName);
-        internals.Packets =
-          formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
-      });
+    const auto index = [&]
+    {
+      formats::FileSource source(this->FileName);
+      internals.Packets =
+        formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
+    };
+    internals.Problem =
+      vtkAvianLidarGuard::ProblemOf([&] { fields::Within(this->FileName, NoMemory, index); });
     if (!internals.Packets.warning.empty())
     {
       this->Warn(internals.Packets.warning);
@@ -184,16 +174,15 @@ int vtkAvianLidarPointCloudReader::RequestData(
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkPolyData* output = vtkPolyData::GetData(info);
       output->Initialize();
-      vtkAvianLidarRequire(this->FileName && *this->FileName
-          ? ""
-          : "FileName is not set, expected the name of a " + formats::knownEndings() + " file");
+      avianlidar::failIf(!this->FileName || !*this->FileName,
+        "FileName is not set, expected the name of a ", formats::knownEndings(), " file");
       if (fields::IsOtherPiece(info))
       {
         return;
       }
       vtkAvianLidarRequire(this->Internals->Problem);
       vtkAvianLidarAbort::StopIfWanted(this);
-      const std::string error = fields::ErrorIn(this->FileName, NoMemory,
+      fields::Within(this->FileName, NoMemory,
         [&]
         {
           const std::vector<double>& times = this->Internals->Times;
@@ -219,7 +208,6 @@ int vtkAvianLidarPointCloudReader::RequestData(
           output->GetPointData()->SetActiveScalars(
             simulated ? names::Energy.name : names::Intensity.name);
         });
-      vtkAvianLidarRequire(error);
     });
 }
 

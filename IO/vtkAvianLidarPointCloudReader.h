@@ -56,12 +56,8 @@ public:
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  ///@{
-  /** Whether points are metres east, north, up of the file's `geodetic_origin`. Default: on. */
-  vtkSetMacro(LocalCoordinates, bool);
-  vtkGetMacro(LocalCoordinates, bool);
-  vtkBooleanMacro(LocalCoordinates, bool);
-  ///@}
+  /// Whether points are metres east, north, up of the file's `geodetic_origin`. Default: on.
+  vtkAvianLidarSwitchMacro(LocalCoordinates, true);
 
   ///@{
   /**
@@ -86,9 +82,8 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  char* FileName;
-  bool LocalCoordinates;
-  char* SensorAddress;
+  char* FileName = nullptr;
+  char* SensorAddress = nullptr;
 
 private:
   void Warn(const std::string& what);

@@ -2,17 +2,16 @@
 #include "vtkAvianLidarSceneReader.h"
 
 #include "Private/SceneBuilder.h"
+#include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
-#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"
-#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
@@ -20,13 +19,13 @@
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
 #include <vtksys/SystemTools.hxx>
 
-#include <array>
 #include <new>
+
+namespace Arrays = vtkAvianLidarArrays;
 
 vtkStandardNewMacro(vtkAvianLidarSceneReader);
 
@@ -34,17 +33,9 @@ namespace
 {
 using namespace avianlidar::scene;
 
-void AddTriple(
-  vtkFieldData* fields, const vtkAvianLidarArrays::Name& name, const std::array<double, 3>& values)
-{
-  auto array = vtkAvianLidarArrays::Make<vtkDoubleArray>(name, 1, 3);
-  array->SetTuple(0, values.data());
-  fields->AddArray(array);
-}
-
 void AddGeometry(const Mesh& mesh, vtkPolyData* block)
 {
-  auto points = vtkAvianLidarArrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
+  auto points = Arrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
   {
     points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].data());
@@ -57,11 +48,8 @@ void AddCellArrays(
   const Mesh& mesh, int objectId, const std::vector<Material>& materials, vtkPolyData* block)
 {
   const auto n = static_cast<vtkIdType>(mesh.triangles.size());
-  auto object = vtkAvianLidarArrays::Make<vtkIntArray>(vtkAvianLidarArrays::ObjectId, n);
-  object->FillValue(objectId);
-  block->GetCellData()->AddArray(object);
-  block->GetCellData()->AddArray(
-    vtkAvianLidarArrays::MakeOf<vtkIntArray>(vtkAvianLidarArrays::MaterialId, mesh.materials));
+  block->GetCellData()->AddArray(Arrays::Constant(Arrays::ObjectId, n, objectId));
+  block->GetCellData()->AddArray(Arrays::MakeOf<vtkIntArray>(Arrays::MaterialId, mesh.materials));
   vtkAvianLidarMaterials::AddCoefficients(block->GetCellData(), n,
     [&](vtkIdType i) -> const avianlidar::Material&
     { return materials[mesh.materials[i]].coefficients; });
@@ -80,19 +68,20 @@ void AddFieldData(const BuiltScene& built, vtkFieldData* fields)
   {
     materials.push_back(material.name);
   }
-  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::ObjectNames, names);
-  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::ObjectClasses, classes);
-  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::MaterialNames, materials);
-  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::Attribution, scene.attribution);
-  vtkAvianLidarArrays::SetFieldStrings(fields, vtkAvianLidarArrays::SceneReport, built.report);
+  Arrays::SetFieldStrings(fields, Arrays::ObjectNames, names);
+  Arrays::SetFieldStrings(fields, Arrays::ObjectClasses, classes);
+  Arrays::SetFieldStrings(fields, Arrays::MaterialNames, materials);
+  Arrays::SetFieldStrings(fields, Arrays::Attribution, scene.attribution);
+  Arrays::SetFieldStrings(fields, Arrays::SceneReport, built.report);
   if (scene.origin)
   {
-    AddTriple(fields, vtkAvianLidarArrays::GeodeticOrigin,
-      { scene.origin->latitude, scene.origin->longitude, scene.origin->height });
+    const double origin[] = { scene.origin->latitude, scene.origin->longitude,
+      scene.origin->height };
+    Arrays::SetFieldVector(fields, Arrays::GeodeticOrigin, origin);
   }
   if (scene.lidar)
   {
-    AddTriple(fields, vtkAvianLidarArrays::LidarPosition, *scene.lidar);
+    Arrays::SetFieldVector(fields, Arrays::LidarPosition, scene.lidar->data());
   }
 }
 
@@ -101,7 +90,7 @@ void AddFieldData(const BuiltScene& built, vtkFieldData* fields)
 void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
 {
   vtkAbstractArray* materialNames =
-    output->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::MaterialNames.name);
+    output->GetFieldData()->GetAbstractArray(Arrays::MaterialNames.name);
   for (std::size_t i = 0; i < built.parts.size(); ++i)
   {
     Part& part = built.parts[i];
@@ -122,10 +111,8 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
         block = vtkAvianLidarMedia::Surface(
           vtkAvianLidarMedia::WithCrowns(named, block, part.crowns), block, drawn);
       }
-      vtkAvianLidarArrays::SetFieldStrings(
-        block->GetFieldData(), vtkAvianLidarArrays::ObjectNames, { part.name });
-      vtkAvianLidarArrays::SetFieldStrings(
-        block->GetFieldData(), vtkAvianLidarArrays::ObjectClasses, { part.objectClass });
+      Arrays::SetFieldStrings(block->GetFieldData(), Arrays::ObjectNames, { part.name });
+      Arrays::SetFieldStrings(block->GetFieldData(), Arrays::ObjectClasses, { part.objectClass });
       block->GetFieldData()->AddArray(materialNames);
     }
     output->SetBlock(index, block);
@@ -133,16 +120,6 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
       vtkCompositeDataSet::NAME(), vtkAvianLidarText(part.name).c_str());
     part.mesh = Mesh();
   }
-}
-
-std::string Joined(const std::vector<std::string>& lines)
-{
-  std::string text;
-  for (const std::string& line : lines)
-  {
-    text += "\n  " + line;
-  }
-  return text;
 }
 }
 
@@ -198,29 +175,31 @@ int vtkAvianLidarSceneReader::RequestData(
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkMultiBlockDataSet* output = vtkMultiBlockDataSet::GetData(info);
       output->Initialize();
-      vtkAvianLidarRequire(this->FileName && *this->FileName
-          ? ""
-          : "FileName is not set, expected the name of a .lidarscene.json file");
-      const int piece = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
-        ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER())
-        : 0;
+      avianlidar::failIf(!this->FileName || !*this->FileName,
+        "FileName is not set, expected the name of a .lidarscene.json file");
+      const bool isOther = vtkAvianLidarCloudFields::IsOtherPiece(info);
       vtkAvianLidarAbort::StopIfWanted(this);
       try
       {
         const auto progress = vtkAvianLidarAbort::KeepGoing(this);
-        BuiltScene built = piece == 0 ? BuildScene(this->FileName, progress, this->Text)
-                                      : OutlineScene(this->FileName, progress, this->Text);
-        if (!built.warnings.empty())
+        BuiltScene built = isOther ? OutlineScene(this->FileName, progress, this->Text)
+                                   : BuildScene(this->FileName, progress, this->Text);
+        std::string warnings;
+        for (const std::string& line : built.warnings)
         {
-          vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (":" + Joined(built.warnings))));
+          warnings += "\n  " + line;
+        }
+        if (!warnings.empty())
+        {
+          vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (":" + warnings)));
         }
         AddFieldData(built, output->GetFieldData());
-        AddBlocks(built, piece > 0, output);
+        AddBlocks(built, isOther, output);
         this->UpdateProgress(1.0);
       }
       catch (const std::bad_alloc&)
       {
-        vtkAvianLidarRequire(": there is not enough memory for it", this->FileName);
+        avianlidar::fail(this->FileName, ": there is not enough memory for it");
       }
     });
 }

@@ -7,7 +7,6 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
-#include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"
@@ -36,7 +35,7 @@
 namespace formats = avianlidar::formats;
 namespace fs = std::filesystem;
 namespace names = vtkAvianLidarArrays;
-using formats::FormatError;
+using avianlidar::failIf;
 using formats::Point;
 
 namespace
@@ -56,11 +55,8 @@ struct Line
   double NumberAt(std::size_t word) const
   {
     const double value = formats::numberOf<double>(this->words[word], this->where.c_str());
-    if (!std::isfinite(value))
-    {
-      throw FormatError(this->where + " has \"" + formats::shown(this->words[word]) +
-        "\", expected a finite number");
-    }
+    failIf(!std::isfinite(value), this->where, " has \"", formats::shown(this->words[word]),
+      "\", expected a finite number");
     return value;
   }
 };
@@ -94,26 +90,17 @@ std::vector<double> TimesOf(const std::string& file)
   for (const Line& line : LinesOf(file))
   {
     times.push_back(line.NumberAt(0));
-    if (times.size() > 1 && !(times.back() > times[times.size() - 2]))
-    {
-      throw FormatError(
-        "the time in " + line.where + " is not above the one before, expected seconds that rise");
-    }
+    failIf(times.size() > 1 && !(times.back() > times[times.size() - 2]), "the time in ",
+      line.where, " is not above the one before, expected seconds that rise");
   }
-  if (times.empty())
-  {
-    throw FormatError("there is no time in it, expected the time of a scan (s) in each line");
-  }
+  failIf(times.empty(), "there is no time in it, expected the time of a scan (s) in each line");
   return times;
 }
 
 Pose PoseOf(const Line& line, std::size_t first)
 {
-  if (line.words.size() != first + 12)
-  {
-    throw FormatError(line.where + " has " + std::to_string(line.words.size() - first) +
-      " numbers, expected the 12 of a pose");
-  }
+  failIf(line.words.size() != first + 12, line.where, " has ", line.words.size() - first,
+    " numbers, expected the 12 of a pose");
   Pose pose;
   for (std::size_t i = 0; i < 12; ++i)
   {
@@ -155,11 +142,8 @@ public:
       return;
     }
     const std::vector<Line> lines = LinesOf(poses);
-    if (scan >= lines.size())
-    {
-      throw FormatError(
-        "poses.txt has " + std::to_string(lines.size()) + " lines, expected a pose for each scan");
-    }
+    failIf(scan >= lines.size(), "poses.txt has ", lines.size(),
+      " lines, expected a pose for each scan");
     this->Of = PoseOf(lines[scan], 0);
     if (fs::exists(folder / "calib.txt"))
     {
@@ -195,21 +179,16 @@ void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* box
   auto ids = names::Make<vtkIntArray>(names::ObjectId);
   for (const Line& line : LinesOf(file))
   {
-    if (line.words.size() != 12)
-    {
-      throw FormatError(line.where + " has " + std::to_string(line.words.size()) +
-        " words, expected the 12 of a box");
-    }
+    failIf(line.words.size() != 12, line.where, " has ", line.words.size(),
+      " words, expected the 12 of a box");
     std::array<double, 12> v{};
     for (std::size_t i = 1; i < 12; ++i)
     {
       v[i] = line.NumberAt(i);
     }
-    if (v[10] != std::trunc(v[10]) || std::abs(v[10]) > std::numeric_limits<int>::max())
-    {
-      throw FormatError(line.where + " has \"" + formats::shown(line.words[10]) +
-        "\", expected a whole number of 32 bits: an id");
-    }
+    failIf(v[10] != std::trunc(v[10]) || std::abs(v[10]) > std::numeric_limits<int>::max(),
+      line.where, " has \"", formats::shown(line.words[10]),
+      "\", expected a whole number of 32 bits: an id");
     const vtkIdType first = points->GetNumberOfPoints();
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -257,14 +236,14 @@ void ReadScan(vtkAlgorithm* self, const fs::path& folder, std::size_t scan, vtkP
   try
   {
     cloud = formats::readCloud(file, vtkAvianLidarAbort::KeepGoing(self));
-    for (const std::string& warning : cloud.warnings)
-    {
-      vtkWarningWithObjectMacro(self, "" << vtkAvianLidarText(file + ": " + warning) << ".");
-    }
   }
-  catch (const FormatError& error)
+  catch (const formats::FormatError& error)
   {
-    throw FormatError(fs::path(file).filename().string() + ": " + error.what());
+    avianlidar::fail(fs::path(file).filename().string(), ": ", error.what());
+  }
+  for (const std::string& warning : cloud.warnings)
+  {
+    vtkWarningWithObjectMacro(self, "" << vtkAvianLidarText(file + ": " + warning) << ".");
   }
   const Placement place(folder, scan);
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -343,29 +322,26 @@ int vtkAvianLidarSequenceReader::RequestData(
     {
       const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
       vtkInformation* info = outputVector->GetInformationObject(port);
-      vtkAvianLidarRequire(this->FileName && *this->FileName
-          ? ""
-          : "FileName is not set, expected the times.txt of a sequence");
+      failIf(!this->FileName || !*this->FileName,
+        "FileName is not set, expected the times.txt of a sequence");
       if (vtkAvianLidarCloudFields::IsOtherPiece(info))
       {
         return;
       }
       vtkAvianLidarAbort::StopIfWanted(this);
-      const std::string error =
-        vtkAvianLidarCloudFields::ErrorIn(this->FileName, "there is not enough memory for a scan",
-          [&]
+      vtkAvianLidarCloudFields::Within(this->FileName, "there is not enough memory for a scan",
+        [&]
+        {
+          const std::vector<double> times = TimesOf(this->FileName);
+          const std::size_t scan = vtkAvianLidarCloudFields::StepOf(times, info);
+          vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
+          vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
+          ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
+          for (vtkPolyData* output : { points, boxes })
           {
-            const std::vector<double> times = TimesOf(this->FileName);
-            const std::size_t scan = vtkAvianLidarCloudFields::StepOf(times, info);
-            vtkPolyData* points = vtkPolyData::GetData(outputVector, 0);
-            vtkPolyData* boxes = vtkPolyData::GetData(outputVector, 1);
-            ReadScan(this, fs::absolute(this->FileName).parent_path(), scan, points, boxes);
-            for (vtkPolyData* output : { points, boxes })
-            {
-              output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
-            }
-          });
-      vtkAvianLidarRequire(error);
+            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[scan]);
+          }
+        });
     });
 }
 

@@ -31,8 +31,6 @@
 #include "vtkAvianLidarProperties.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <vector> // For the times
-
 class VTKAVIANLIDAR_EXPORT vtkAvianLidarSequenceReader : public vtkPolyDataAlgorithm
 {
 public:

@@ -1,32 +1,156 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Imports.h"
 
-#include "AssimpFiles.h"
 #include "FormatFacts.h"
 #include "MeshFormats.h"
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/metadata.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <minizip/unzip.h>
 
+#include "vtk_zlib.h"
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <new>
 #include <regex>
 #include <set>
+#include <vector>
 
 namespace avianlidar::scene
 {
 namespace
 {
+struct Held
+{
+  std::vector<char> bytes;
+};
+
+// Whole file in memory, because Assimp seeks and a compressed file does not allow seeking.
+class MemoryStream
+  : private Held
+  , public Assimp::MemoryIOStream
+{
+public:
+  explicit MemoryStream(std::vector<char> all)
+    : Held{ std::move(all) }
+    , MemoryIOStream(reinterpret_cast<const std::uint8_t*>(this->bytes.data()), this->bytes.size())
+  {
+  }
+
+  std::size_t Read(void* target, std::size_t size, std::size_t count) override
+  {
+    return size == 0 ? 0 : MemoryIOStream::Read(target, size, count);
+  }
+};
+
+/// Reads the bytes of a file, and unpacks the bytes if gzip packed them. Returns the reason if the
+/// file cannot be read, else an empty text.
+std::string ReadAll(const std::string& file, std::vector<char>& bytes)
+{
+  gzFile handle = gzopen(file.c_str(), "rb");
+  if (!handle)
+  {
+    return std::strerror(errno);
+  }
+  constexpr std::size_t chunk = 1u << 22;
+  int got = 0;
+  do
+  {
+    const std::size_t size = bytes.size();
+    bytes.resize(size + chunk);
+    got = gzread(handle, bytes.data() + size, chunk);
+    bytes.resize(size + static_cast<std::size_t>(std::max(got, 0)));
+  } while (got > 0);
+  int error = Z_OK;
+  const std::string reason = gzerror(handle, &error);
+  // Only gzclose() finds some damaged archives.
+  const int closed = gzclose(handle);
+  return error == Z_OK && closed == Z_OK ? ""
+    : !reason.empty()                    ? reason
+                                         : "the compressed file ends too early";
+}
+
+/**
+ * File system of Assimp that changes only the mesh. The mesh has a name without ".gz", because
+ * Assimp finds the format by the file extension. The bytes of the mesh are unpacked during reading.
+ */
+class AssimpFiles : public Assimp::IOSystem
+{
+public:
+  explicit AssimpFiles(const std::string& mesh)
+    : Mesh(mesh)
+    , MeshName(UncompressedName(mesh))
+  {
+  }
+
+  /// Returns the name under which Assimp opens the mesh.
+  const std::string& GetMeshName() const { return this->MeshName; }
+
+  /// Returns ": <reason>" if the last file could not be opened, or an empty text without a reason.
+  const std::string& GetReason() const { return this->Reason; }
+
+  /// Returns the vector to be added to the vertices, in the unit of the file (MoveObjToOrigin()).
+  const Vec3& GetOffset() const { return this->Offset; }
+
+  bool Exists(const char* file) const override
+  {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(this->MeshName == file ? this->Mesh : file, ignored);
+  }
+
+  char getOsSeparator() const override { return '/'; }
+
+  Assimp::IOStream* Open(const char* file, const char* mode) override
+  {
+    // Reading a pipe may never begin, and reading a device may never end.
+    if (!this->Exists(file) || std::strchr(mode, 'r') == nullptr)
+    {
+      return nullptr;
+    }
+    const bool isMesh = this->MeshName == file;
+    std::vector<char> bytes;
+    const std::string reason = ReadAll(isMesh ? this->Mesh : file, bytes);
+    if (!reason.empty())
+    {
+      this->Reason = ": " + reason;
+      return nullptr;
+    }
+    if (isMesh && EndingOf(file) == ".obj")
+    {
+      const char mark[] = { '\xEF', '\xBB', '\xBF' }; // byte-order mark of UTF-8
+      if (bytes.size() > sizeof mark && std::equal(std::begin(mark), std::end(mark), bytes.begin()))
+      {
+        bytes.erase(bytes.begin(), bytes.begin() + sizeof mark);
+      }
+      this->Offset = MoveObjToOrigin(bytes);
+    }
+    return new MemoryStream(std::move(bytes));
+  }
+
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+private:
+  std::string Mesh;
+  std::string MeshName;
+  std::string Reason;
+  Vec3 Offset{};
+};
+
 // 4 x 4 matrix of a node of the scene graph, rows one after the other. Assimp multiplies matrices
 // in single precision.
 using Transform = std::array<double, 16>;
@@ -104,18 +228,15 @@ void CheckFaces(const aiScene& scene)
       hasPolygon = hasPolygon || face.mNumIndices > 3;
       for (unsigned int k = 0; k < face.mNumIndices; ++k)
       {
-        if (face.mIndices[k] >= mesh.mNumVertices)
-        {
-          throw Error("is broken: a face has vertex " + std::to_string(face.mIndices[k]) + " of " +
-            std::to_string(mesh.mNumVertices));
-        }
+        failIf(face.mIndices[k] >= mesh.mNumVertices, "is broken: a face has vertex ",
+          face.mIndices[k], " of ", mesh.mNumVertices);
       }
     }
     if ((mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON) != 0 && !hasPolygon)
     {
       // Assimp takes a face without vertices for a polygon, and crashes unless the mesh has another
       // polygon.
-      throw Error("is broken: a face has no vertex");
+      fail("is broken: a face has no vertex");
     }
   }
 }
@@ -244,12 +365,13 @@ class LossLog : public Assimp::LogStream
 public:
   void write(const char* line) override
   {
-    static const std::regex loss("skip|ignor|unsupported|not supported|discard|dropp?ed|invalid|"
-                                 "out[- ]of[- ]range|fail|unable|unknown|missing|omitt|resolve",
+    static const std::regex loss(
+      "skip|ignor|unsupported|not supported|discard|dropp?ed|invalid|out[- ]of[- "
+      "]range|fail|unable|unknown|missing|omitt|resolve",
       std::regex::icase);
     static const std::regex harmless(
-      "material|texture|shad(?:er|ing)|\\buv|normal|tangent|bone|skin|"
-      "anim|camera|light|colou?r|comment|ambient|diffuse|image|Ignored file",
+      "material|texture|shad(?:er|ing)|\\buv|normal|tangent|bone|skin|anim|camera|light|colou?r|"
+      "comment|ambient|diffuse|image|Ignored file",
       std::regex::icase);
     // The line has the form "Warn,  T0: text\n".
     std::string text(line);
@@ -311,10 +433,8 @@ char TurnFbx(const aiScene& scene)
     front = FbxAxis(*scene.mMetaData, "Front");
     if (((1 << right.first) | (1 << up.first) | (1 << front.first)) != 7)
     {
-      if (up.first == 0)
-      {
-        throw Error("says that x points up, and not which axes point right and to the front");
-      }
+      failIf(
+        up.first == 0, "says that x points up, and not which axes point right and to the front");
       right = { 0, 1 };
       up.second = 1;
       front = up.first == zAxis ? std::pair(yAxis, -1) : std::pair(zAxis, 1);
@@ -377,7 +497,7 @@ Mesh ReadAssimpMesh(const std::string& file)
     {
       reason.pop_back();
     }
-    throw Error("Assimp cannot read it: " + reason + files->GetReason());
+    fail("Assimp cannot read it: ", reason, files->GetReason());
   }
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)
   {

@@ -67,12 +67,10 @@ void CheckPositions(const Json& document, const Json& primitive)
 {
   constexpr int single = 5126;
   const Json& position = ValueIn(ValueIn(primitive, "attributes"), "POSITION");
-  const Json& type = ValueIn(ValueIn(ListIn(document, "accessors"), position), "componentType");
-  if (type.is_number() && type.get<int>() != single)
-  {
-    throw Error("has positions of the component type " + std::to_string(type.get<int>()) +
-      ", expected 5126, numbers of single precision");
-  }
+  const Json& given = ValueIn(ValueIn(ListIn(document, "accessors"), position), "componentType");
+  const int type = given.is_number() ? given.get<int>() : single;
+  failIf(type != single, "has positions of the component type ", type,
+    ", expected 5126, numbers of single precision");
 }
 
 /// Returns whether the geometry of a file that requires the extension is read right.
@@ -225,7 +223,7 @@ double IfcUnit(const std::vector<Entity>& entities)
         return factor * metres;
       }
     }
-    throw Error("has a unit of length, " + id +
+    fail("has a unit of length, ", id,
       ", that cannot be read, expected an IFCCONVERSIONBASEDUNIT of metres");
   }
   return 1.0;
@@ -281,11 +279,9 @@ void CheckPrintExtensions(std::string_view attributes)
   for (std::string prefix; prefixes >> prefix;)
   {
     const auto space = ValueOf(attributes, "xmlns:" + prefix);
-    if (!space || space->find("/material/") == std::string_view::npos)
-    {
-      throw Error("requires the 3MF extension " + std::string(space.value_or(prefix)) +
-        ", which is not supported: export it without this extension");
-    }
+    failIf(!space || space->find("/material/") == std::string_view::npos,
+      "requires the 3MF extension ", space.value_or(prefix),
+      ", which is not supported: export it without this extension");
   }
 }
 
@@ -366,11 +362,9 @@ std::vector<std::string> CheckGltf(const std::string& text)
     for (const Json& one : ListIn(document, list))
     {
       const std::string name = one.is_string() ? one.get<std::string>() : std::string();
-      if (one.is_string() && (isRequired ? !IsKnown(name) : ChangesGeometry(name)))
-      {
-        throw Error((isRequired ? "requires" : "uses") + (" the glTF extension " + name) +
-          ", which is not supported: export it without this extension");
-      }
+      failIf(one.is_string() && (isRequired ? !IsKnown(name) : ChangesGeometry(name)),
+        isRequired ? "requires" : "uses", " the glTF extension ", name,
+        ", which is not supported: export it without this extension");
     }
   }
   for (const Json& mesh : ListIn(document, "meshes"))
@@ -442,10 +436,7 @@ double X3dUnit(const std::string& text)
       }
       return !isUnit && name != "Scene";
     });
-  if (!(metres > 0.0))
-  {
-    throw Error("has a unit of length without a positive conversionFactor");
-  }
+  failIf(!(metres > 0.0), "has a unit of length without a positive conversionFactor");
   return metres;
 }
 
@@ -463,7 +454,7 @@ double OpenGexUnit(const std::string& text, char& upAxis)
     }
     else if (metres = std::atof(value.c_str()); !(metres > 0.0))
     {
-      throw Error("has the distance '" + value + "' in its Metric, expected metres above 0");
+      fail("has the distance '", value, "' in its Metric, expected metres above 0");
     }
   }
   return metres;
@@ -482,14 +473,12 @@ void CheckPly(const std::string& text)
     if (at > 0 && before != std::string::npos && (text[before] == '\n' || text[before] == '\r'))
     {
       static const std::regex strips("[\n\r]element\\s+tristrips\\b");
-      if (std::regex_search(text.substr(0, at), strips))
-      {
-        throw Error("has triangle strips, which are not supported: export it with faces");
-      }
+      failIf(std::regex_search(text.substr(0, at), strips),
+        "has triangle strips, which are not supported: export it with faces");
       return;
     }
   }
-  throw Error("is broken: its header has no line end_header");
+  fail("is broken: its header has no line end_header");
 }
 
 std::vector<std::string> Check3mf(const std::string& text)
@@ -517,11 +506,8 @@ std::vector<std::string> Check3mf(const std::string& text)
     });
   for (const std::string_view name : named)
   {
-    if (held.count(name) == 0)
-    {
-      throw Error(
-        "is broken: it builds the object " + std::string(name) + ", which it does not hold");
-    }
+    failIf(
+      held.count(name) == 0, "is broken: it builds the object ", name, ", which it does not hold");
   }
   return painted == 0 ? std::vector<std::string>()
                       : std::vector<std::string>{ "materials of " + std::to_string(painted) +
@@ -556,19 +542,15 @@ double PrintUnit(const std::string& text)
       return known.length;
     }
   }
-  throw Error("has the unit '" + std::string(*unit) +
-    "', expected micron, millimeter, centimeter, inch, foot or meter");
+  fail("has the unit '", *unit, "', expected micron, millimeter, centimeter, inch, foot or meter");
 }
 
 void CheckAmf(const std::string& text)
 {
   for (const char* turn : { "<rx>", "<ry>", "<rz>" })
   {
-    if (text.find(turn) != std::string::npos)
-    {
-      throw Error(std::string("turns objects of a constellation (") + turn +
-        "), which is not supported: export it with the objects turned");
-    }
+    failIf(text.find(turn) != std::string::npos, "turns objects of a constellation (", turn,
+      "), which is not supported: export it with the objects turned");
   }
   const auto count = [&text](const char* element)
   {
@@ -580,11 +562,8 @@ void CheckAmf(const std::string& text)
     }
     return found;
   };
-  if (count("<volume") > count("<mesh"))
-  {
-    throw Error("has meshes of several volumes, which are not supported: export each volume as an "
-                "object");
-  }
+  failIf(count("<volume") > count("<mesh"),
+    "has meshes of several volumes, which are not supported: export each volume as an object");
 }
 
 Vec3 MoveObjToOrigin(std::vector<char>& bytes)

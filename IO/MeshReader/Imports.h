@@ -10,23 +10,12 @@
 
 #include <cmath>
 
-class vtkDataSet;
-
 namespace avianlidar::scene
 {
 /// Returns the mesh of a file, before points are merged. Throws Error or std::bad_alloc.
 Mesh ReadAssimpMesh(const std::string& file);
 Mesh ReadVtkMesh(const std::string& file);
 
-/**
- * Checks that the cells and the faces of polyhedra name only existing points, that each cell has
- * the number of points of its type, and that each grid has the number of points of its dimensions.
- * Refuses cells of variable order (Lagrange, Bezier, parametric). The time is linear in the number
- * of points of all cells.
- *
- * Throws Error, which names the fault.
- */
-void CheckCells(vtkDataSet* data);
 /// Returns the distance between a number in single precision and the next greater one.
 inline double SpacingAt(double number)
 {

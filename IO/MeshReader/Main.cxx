@@ -71,16 +71,11 @@ void MergePoints(Mesh& mesh)
 Mesh ReadMesh(const std::string& file)
 {
   Mesh mesh = IsVtkFile(file) ? ReadVtkMesh(file) : ReadAssimpMesh(file);
-  if (mesh.triangles.empty())
-  {
-    throw Error("holds no triangle");
-  }
+  failIf(mesh.triangles.empty(), "holds no triangle");
   for (const Vec3& p : mesh.points)
   {
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-    {
-      throw Error("has a vertex whose coordinates are not finite");
-    }
+    failIf(!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]),
+      "has a vertex whose coordinates are not finite");
   }
   MergePoints(mesh);
   return mesh;

@@ -12,18 +12,12 @@ namespace avianlidar::formats
 {
 namespace
 {
-[[noreturn]] void cutShort()
-{
-  throw FormatError("the file ends before its data do");
-}
+constexpr const char* CutShort = "the file ends before its data do";
 }
 
 std::vector<unsigned char> ByteSource::bytes(std::uint64_t offset, std::uint64_t count)
 {
-  if (!this->holds(offset, count))
-  {
-    cutShort();
-  }
+  failIf(!this->holds(offset, count), CutShort);
   std::vector<unsigned char> copy(count);
   this->read(offset, count, copy.data());
   return copy;
@@ -44,31 +38,19 @@ const unsigned char* ByteSource::at(std::uint64_t offset, std::uint64_t count)
 FileSource::FileSource(const std::string& name)
 {
   const std::string irregular = whyNotRegular(name);
-  if (!irregular.empty())
-  {
-    throw FormatError(irregular);
-  }
+  failIf(!irregular.empty(), irregular);
   errno = 0;
   this->Stream.open(name, std::ios::binary | std::ios::ate);
   const std::streamoff end = this->Stream ? std::streamoff(this->Stream.tellg()) : -1;
-  if (end < 0)
-  {
-    throw FormatError(errno ? std::strerror(errno) : "it cannot be opened");
-  }
+  failIf(end < 0, errno ? std::strerror(errno) : "it cannot be opened");
   this->Size = static_cast<std::uint64_t>(end);
 }
 
 void FileSource::read(std::uint64_t offset, std::uint64_t count, unsigned char* into)
 {
-  if (!this->holds(offset, count))
-  {
-    cutShort();
-  }
+  failIf(!this->holds(offset, count), CutShort);
   this->Stream.seekg(static_cast<std::streamoff>(offset));
   this->Stream.read(reinterpret_cast<char*>(into), static_cast<std::streamsize>(count));
-  if (!this->Stream)
-  {
-    throw FormatError("it cannot be read to its end");
-  }
+  failIf(!this->Stream, "it cannot be read to its end");
 }
 }

@@ -7,6 +7,7 @@
 #define AvianLidarCloudData_h
 
 #include "AvailableMemory.h"
+#include "FileError.h"
 #include "ParallelLoop.h"
 #include "Scalars.h"
 
@@ -14,7 +15,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
@@ -22,24 +22,28 @@
 namespace avianlidar::formats
 {
 /// Error about a file that is invalid, or that cannot be read or written.
-class FormatError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
+using FormatError = FileError;
 
 /// Number of points between two calls of KeepGoing.
 constexpr std::int64_t PointsPerBlock = 16384;
 
-/// Reports the progress at point `done` of `all`, as a share between `from` and `to`. Throws
-/// WorkStopped if KeepGoing returns false.
-inline void goOn(
-  const KeepGoing& keepGoing, std::int64_t done, std::int64_t all, double from, double to)
+/// Reports the progress, and throws WorkStopped if KeepGoing returns false.
+inline void goOn(const KeepGoing& keepGoing, double progress)
 {
-  if (done % PointsPerBlock == 0 && keepGoing &&
-    !keepGoing(from + (to - from) * static_cast<double>(done) / static_cast<double>(all)))
+  if (keepGoing && !keepGoing(progress))
   {
     throw WorkStopped();
+  }
+}
+
+/// Calls goOn() at the first point of each block, with point `done` of `all` as a share between
+/// `from` and `to`.
+template <class Index>
+void goOn(const KeepGoing& keepGoing, Index done, Index all, double from = 0.0, double to = 1.0)
+{
+  if (done % static_cast<Index>(PointsPerBlock) == 0)
+  {
+    goOn(keepGoing, from + (to - from) * static_cast<double>(done) / static_cast<double>(all));
   }
 }
 

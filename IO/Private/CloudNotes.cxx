@@ -13,11 +13,6 @@ using nlohmann::json;
 
 constexpr const char* Key = "avian_lidar";
 
-std::string dump(const json& value)
-{
-  return value.dump(-1, ' ', true, json::error_handler_t::replace);
-}
-
 json valueOf(const Note& note)
 {
   json entry = note.texts.empty() ? json(note.numbers) : json(note.texts);
@@ -77,15 +72,15 @@ std::string toText(const CloudNotes& notes, std::size_t longest, std::vector<std
     fields[note.name] = valueOf(note);
   }
   json whole = { { Key, { { "units", notes.units }, { "field_data", fields } } } };
-  std::string text = dump(whole);
+  std::string text = asciiLine(whole);
   while (text.size() > longest && !fields.empty())
   {
     const auto most = std::max_element(fields.begin(), fields.end(),
-      [](const json& a, const json& b) { return dump(a).size() < dump(b).size(); });
+      [](const json& a, const json& b) { return asciiLine(a).size() < asciiLine(b).size(); });
     left.push_back(most.key());
     fields.erase(most);
     whole[Key]["field_data"] = fields;
-    text = dump(whole);
+    text = asciiLine(whole);
   }
   return text;
 }

@@ -30,11 +30,7 @@ std::string wktOf(int code, bool ellipsoidalHeights)
     system.exportToWkt(&text, options) == OGRERR_NONE && text && *text;
   const std::string wkt = done ? text : "";
   CPLFree(text);
-  if (!done)
-  {
-    throw FormatError("GDAL does not know EPSG:" + std::to_string(code) +
-      " (is PROJ's database proj.db installed?)");
-  }
+  failIf(!done, "GDAL does not know EPSG:", code, " (is PROJ's database proj.db installed?)");
   return wkt;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace avianlidar::scene
 {
@@ -64,13 +63,8 @@ int BaysOf(double length, double bay)
 {
   constexpr int most = 100000;
   const double bays = std::round(length / bay);
-  if (!(bays <= most))
-  {
-    std::ostringstream text;
-    text << "a facade of " << length << " m has more than " << most << " bays of " << bay
-         << " m: a coordinate or 'bay' is wrong";
-    throw Error(text.str());
-  }
+  failIf(!(bays <= most), "a facade of ", length, " m has more than ", most, " bays of ", bay,
+    " m: a coordinate or 'bay' is wrong");
   return std::max(1, static_cast<int>(bays));
 }
 

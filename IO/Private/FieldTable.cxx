@@ -80,11 +80,8 @@ void FieldTable::checkLength(ByteSource& source, bool ascii) const
       least += 2 * field.count;
     }
   }
-  if (this->points > room / least)
-  {
-    throw FormatError("it is cut short: it says that it has " + std::to_string(this->points) +
-      " points, and has room for " + std::to_string(room / least));
-  }
+  failIf(this->points > room / least, "it is cut short: it says that it has ", this->points,
+    " points, and has room for ", room / least);
 }
 
 TableTargets targetsOf(const FieldTable& table, Cloud& to)
@@ -121,10 +118,7 @@ TableTargets targetsOf(const FieldTable& table, Cloud& to)
         });
     }
   }
-  if (found != 7)
-  {
-    throw FormatError("it has no fields x, y and z");
-  }
+  failIf(found != 7, "it has no fields x, y and z");
   return targets;
 }
 
@@ -138,11 +132,8 @@ std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
   {
     do
     {
-      if (!lines.get(line))
-      {
-        throw FormatError("it is cut short: it says that it has " + std::to_string(table.points) +
-          " points, and has " + std::to_string(i));
-      }
+      failIf(!lines.get(line), "it is cut short: it says that it has ", table.points,
+        " points, and has ", i);
     } while (line.find_first_not_of(" \t") == std::string::npos);
     std::istringstream words(line);
     std::string word;
@@ -150,19 +141,13 @@ std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
     {
       for (std::uint64_t c = 0; c < table.fields[f].count; ++c)
       {
-        if (!(words >> word))
-        {
-          throw FormatError("point " + std::to_string(i) + " has too few values");
-        }
+        failIf(!(words >> word), "point ", i, " has too few values");
         wordToBytes(word, table.fields[f].type, bytes);
         targets[f](i * table.fields[f].count + c, bytes);
       }
     }
-    if (words >> word)
-    {
-      throw FormatError("point " + std::to_string(i) + " has too many values");
-    }
-    goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(table.points), 0, 1);
+    failIf(bool(words >> word), "point ", i, " has too many values");
+    goOn(keepGoing, i, table.points);
   }
   return lines.position();
 }
@@ -187,7 +172,7 @@ void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTarg
           bytes += size;
         }
       }
-      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(table.points), 0, 1);
+      goOn(keepGoing, i, table.points);
     });
 }
 
@@ -254,7 +239,7 @@ void writeRows(
       file.write(block);
       block.clear();
     }
-    goOn(keepGoing, index, static_cast<std::int64_t>(rows), 0.0, 1.0);
+    goOn(keepGoing, cell, rows);
   }
   file.write(block);
 }

@@ -12,10 +12,10 @@
 #include <ogrsf_frmts.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 namespace avianlidar::scene
 {
@@ -55,34 +55,34 @@ struct Region
 
 // Finds a value in the list "key"=>"value","key"=>"value" that GDAL's OSM driver gives for tags
 // without a column.
-bool FindOtherTag(const std::string& tags, const std::string& key, std::string& value)
+std::optional<std::string> FindOtherTag(const std::string& tags, const std::string& key)
 {
   const std::string start = "\"" + key + "\"=>\"";
   std::size_t at = tags.find(start);
   if (at == std::string::npos)
   {
-    return false;
+    return {};
   }
-  value.clear();
+  std::string value;
   for (at += start.size(); at < tags.size() && tags[at] != '"'; ++at)
   {
     at += tags[at] == '\\';
     value += at < tags.size() ? std::string(1, tags[at]) : std::string();
   }
-  return true;
+  return value;
 }
 
-bool FindAttribute(const OGRFeature& feature, const std::string& name, std::string& value)
+std::optional<std::string> FindAttribute(const OGRFeature& feature, const std::string& name)
 {
   const int field = feature.GetFieldIndex(name.c_str());
   if (field >= 0 && feature.IsFieldSetAndNotNull(field))
   {
-    value = feature.GetFieldAsString(field);
-    return true;
+    return feature.GetFieldAsString(field);
   }
   const int other = feature.GetFieldIndex("other_tags");
-  return other >= 0 && feature.IsFieldSetAndNotNull(other) &&
-    FindOtherTag(feature.GetFieldAsString(other), name, value);
+  return other >= 0 && feature.IsFieldSetAndNotNull(other)
+    ? FindOtherTag(feature.GetFieldAsString(other), name)
+    : std::nullopt;
 }
 
 // Reads lengths such as "12", "12.5" and "12 m". Texts with other units, such as feet or floors,
@@ -90,11 +90,7 @@ bool FindAttribute(const OGRFeature& feature, const std::string& name, std::stri
 std::optional<double> FindLength(
   const OGRFeature& feature, const std::string& name, double unit = 1)
 {
-  std::string text;
-  if (name.empty() || !FindAttribute(feature, name, text))
-  {
-    return {};
-  }
+  const std::string text = name.empty() ? std::string() : FindAttribute(feature, name).value_or("");
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const std::string given(end);
@@ -152,15 +148,12 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
 
 bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filters)
 {
-  for (const AttributeFilter& filter : filters)
-  {
-    std::string value;
-    if (!FindAttribute(feature, filter.attribute, value) || !MatchesPattern(filter.pattern, value))
+  return std::all_of(filters.begin(), filters.end(),
+    [&](const AttributeFilter& filter)
     {
-      return false;
-    }
-  }
-  return true;
+      const auto value = FindAttribute(feature, filter.attribute);
+      return value && MatchesPattern(filter.pattern, *value);
+    });
 }
 
 // Drivers of GDAL that are allowed. Other drivers open further files or servers that a file names.
@@ -172,10 +165,8 @@ void RequireRegularNeighbour(const std::filesystem::path& neighbour)
 {
   std::error_code ignored;
   const std::string irregular = whyNotRegular(neighbour.string());
-  if (!irregular.empty() && !std::filesystem::is_directory(neighbour, ignored))
-  {
-    throw Error("belongs together with " + neighbour.filename().string() + ", and " + irregular);
-  }
+  failIf(!irregular.empty() && !std::filesystem::is_directory(neighbour, ignored),
+    "belongs together with ", neighbour.filename().string(), ", and ", irregular);
 }
 
 // Checks files of the same name, such as .dbf and .prj for .shp, because GDAL opens them too.
@@ -219,22 +210,16 @@ OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
   if (!wanted.empty())
   {
     OGRLayer* layer = data.GetLayerByName(wanted.c_str());
-    if (!layer)
-    {
-      throw Error("has no layer \"" + wanted + "\"");
-    }
+    failIf(!layer, "has no layer \"", wanted, "\"");
     return *layer;
   }
-  if (data.GetLayerCount() != 1)
+  std::string names;
+  for (OGRLayer* layer : data.GetLayers())
   {
-    std::string names;
-    for (OGRLayer* layer : data.GetLayers())
-    {
-      names += (names.empty() ? "" : ", ") + std::string(layer->GetName());
-    }
-    throw Error("has not one layer but " + std::to_string(data.GetLayerCount()) + " (" + names +
-      "); name one as layer");
+    names += (names.empty() ? "" : ", ") + std::string(layer->GetName());
   }
+  failIf(data.GetLayerCount() != 1, "has not one layer but ", data.GetLayerCount(), " (", names,
+    "); name one as layer");
   return *data.GetLayer(0);
 }
 
@@ -272,7 +257,7 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
       continue;
     }
     Feature feature;
-    FindAttribute(*source, options.nameAttribute, feature.name);
+    feature.name = FindAttribute(*source, options.nameAttribute).value_or("");
     feature.height = FindLength(*source, options.heightAttribute, unit);
     feature.minHeight = FindLength(*source, options.minHeightAttribute);
     feature.width = FindLength(*source, options.widthAttribute);
@@ -307,19 +292,11 @@ void ToLocal(
     return;
   }
   const OGRSpatialReference* own = const_cast<OGRLayer&>(layer).GetSpatialRef();
-  if (object.crs.empty() && !own)
-  {
-    throw Error("does not say its coordinate reference system; give crs, or \"local\" for metres "
-                "east and north");
-  }
-  if (!scene.origin)
-  {
-    throw Error("is georeferenced, so the scene needs an origin");
-  }
-  if (object.placement.geodetic)
-  {
-    throw Error("is georeferenced, so geodetic cannot place it");
-  }
+  failIf(object.crs.empty() && !own,
+    "does not say its coordinate reference system; give crs, or \"local\" for metres east and "
+    "north");
+  failIf(!scene.origin, "is georeferenced, so the scene needs an origin");
+  failIf(object.placement.geodetic.has_value(), "is georeferenced, so geodetic cannot place it");
   const GeoreferencedPoints frame = object.crs.empty()
     ? GeoreferencedPoints(*scene.origin, *own)
     : GeoreferencedPoints(*scene.origin, object.crs);
@@ -352,11 +329,8 @@ double GetHeight(const Feature& feature, const Object& object, std::size_t numbe
   {
     return *feature.height;
   }
-  if (!options.height)
-  {
-    throw Error("feature \"" + Label(feature, object, number) + "\" has no usable " +
-      options.heightAttribute + ", and there is no height to assume");
-  }
+  failIf(!options.height, "feature \"", Label(feature, object, number), "\" has no usable ",
+    options.heightAttribute, ", and there is no height to assume");
   counts.assumedHeights += !options.heightAttribute.empty();
   return *options.height;
 }
@@ -420,13 +394,8 @@ void AddAlong(const Ring& line, double width, Ring& points)
   {
     const Vec2 way{ line[i + 1][0] - line[i][0], line[i + 1][1] - line[i][1] };
     const double length = std::hypot(way[0], way[1]);
-    if (!(static_cast<double>(points.size()) + length / width <= most))
-    {
-      std::ostringstream text;
-      text << "a line has more than " << most << " crowns of " << width
-           << " m: a coordinate or 'width' is wrong";
-      throw Error(text.str());
-    }
+    failIf(!(static_cast<double>(points.size()) + length / width <= most), "a line has more than ",
+      most, " crowns of ", width, " m: a coordinate or 'width' is wrong");
     for (; next <= length; next += width)
     {
       points.push_back(
@@ -544,14 +513,6 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
   }
   return parts;
 }
-
-void Note(std::vector<std::string>& notes, const Object& object, int count, const char* what)
-{
-  if (count > 0)
-  {
-    notes.push_back(object.name + ": " + std::to_string(count) + " " + what);
-  }
-}
 }
 
 std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const Terrain* terrain,
@@ -568,59 +529,49 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   const bool isTable = ending == ".csv";
   const GDALDatasetUniquePtr data(GDALDataset::Open(VirtualName(object.file).c_str(),
     GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers, isTable ? columns : nullptr));
-  if (!data && IsCityJson(object.file))
-  {
-    throw Error("is CityJSON, which is not read: convert it to a mesh or to footprints in GeoJSON");
-  }
-  if (!data)
-  {
-    throw Error("GDAL cannot read it" + quiet.Reason());
-  }
+  failIf(!data && IsCityJson(object.file),
+    "is CityJSON, which is not read: convert it to a mesh or to footprints in GeoJSON");
+  failIf(!data, "GDAL cannot read it", quiet.Reason());
   OGRLayer& layer = OpenLayer(*data, object.footprints.layer);
   Counts counts;
   std::vector<Feature> features = ReadFeatures(layer, object.footprints, counts, keepGoing);
-  if (quiet.Failed())
-  {
-    throw Error("GDAL cannot read all of it" + quiet.Reason());
-  }
-  if (features.empty() && counts.placeless > 0)
-  {
-    throw Error("none of its " + std::to_string(counts.placeless) + " features" +
-      (object.footprints.filters.empty() ? "" : " that fit the filter") + " has a geometry" +
-      (isTable ? ": a table needs the columns x and y, or longitude and latitude, with numbers"
-               : ""));
-  }
-  if (features.empty())
-  {
-    throw Error(counts.filtered == 0
-        ? "holds no features"
-        : "none of its " + std::to_string(counts.filtered) + " features fits the filter");
-  }
+  failIf(quiet.Failed(), "GDAL cannot read all of it", quiet.Reason());
+  failIf(features.empty() && counts.placeless > 0, "none of its ", counts.placeless, " features",
+    (object.footprints.filters.empty() ? "" : " that fit the filter"), " has a geometry",
+    (isTable ? ": a table needs the columns x and y, or longitude and latitude, with numbers"
+             : ""));
+  failIf(features.empty(),
+    counts.filtered == 0
+      ? "holds no features"
+      : "none of its " + std::to_string(counts.filtered) + " features fits the filter");
   ToLocal(features, layer, object, scene);
   std::vector<Part> parts = Raise(features, object, terrain, counts, keepGoing);
-  if (parts.empty() && counts.surfaces > 0)
+  failIf(parts.empty() && counts.surfaces > 0,
+    "its features are surfaces in space, expected areas, lines or points in plan: give it as a "
+    "mesh");
+  failIf(parts.empty(), "its features have no area (points, or lines without width)",
+    std::string(terrain ? ", or lie beyond " + object.footprints.on : ""));
+  const std::string beyond = "areas and points beyond " + object.footprints.on + " were left out";
+  const std::pair<int, const char*> all[] = {
+    { counts.repaired, "footprints with crossing or overlapping rings were repaired" },
+    { counts.empty, "features without an area were left out" },
+    { counts.thinLines, "lines without a width were left out" },
+    { counts.points, "points were left out" },
+    { counts.placeless, "features without a geometry were left out" },
+    { counts.surfaces, "surfaces in space were left out" },
+    { counts.beyond, beyond.c_str() },
+    { counts.assumedHeights,
+      "features have no usable height attribute and got the default height" },
+    { counts.minHeights,
+      "features have a least height that is not below their height, and stand on the ground" },
+  };
+  for (const auto& [count, what] : all)
   {
-    throw Error("its features are surfaces in space, expected areas, lines or points in plan: give "
-                "it as a mesh");
+    if (count > 0)
+    {
+      notes.push_back(joined(object.name, ": ", count, " ", what));
+    }
   }
-  if (parts.empty())
-  {
-    throw Error("its features have no area (points, or lines without width)" +
-      std::string(terrain ? ", or lie beyond " + object.footprints.on : ""));
-  }
-  Note(
-    notes, object, counts.repaired, "footprints with crossing or overlapping rings were repaired");
-  Note(notes, object, counts.empty, "features without an area were left out");
-  Note(notes, object, counts.thinLines, "lines without a width were left out");
-  Note(notes, object, counts.points, "points were left out");
-  Note(notes, object, counts.placeless, "features without a geometry were left out");
-  Note(notes, object, counts.surfaces, "surfaces in space were left out");
-  Note(notes, object, counts.beyond,
-    ("areas and points beyond " + object.footprints.on + " were left out").c_str());
-  Note(notes, object, counts.assumedHeights,
-    "features have no usable height attribute and got the default height");
-  Note(notes, object, counts.minHeights,
-    "features have a least height that is not below their height, and stand on the ground");
   return parts;
 }
 }

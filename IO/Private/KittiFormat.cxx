@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace avianlidar::formats
 {
@@ -56,11 +55,8 @@ void checkStride(ByteSource& points)
   const float ofFour = medianChange(4);
   for (const std::uint64_t stride : { 3, 5, 6, 7 })
   {
-    if (4.0f * medianChange(stride) < ofFour)
-    {
-      throw FormatError("it seems to have " + std::to_string(stride) +
-        " float32 a point: this is not a scan of KITTI, which has x, y, z and reflectance");
-    }
+    failIf(4.0f * medianChange(stride) < ofFour, "it seems to have ", stride,
+      " float32 a point: this is not a scan of KITTI, which has x, y, z and reflectance");
   }
 }
 
@@ -69,18 +65,10 @@ void checkStride(ByteSource& points)
 void checkReflectance(double least, double greatest, ByteSource& points)
 {
   const bool fits = least >= 0.0 && greatest <= KittiGreatestIntensity;
-  if ((!fits || greatest > 1.0) && mayHaveFive(points))
-  {
-    throw FormatError(std::string("it has ") + LongPoints);
-  }
-  if (!fits)
-  {
-    std::ostringstream text;
-    text << "the fourth numbers of its points go from " << least << " to " << greatest
-         << ", expected reflectances (0 to 1) or intensities (0 to 255): this is not a scan of "
-            "KITTI, which has x, y, z and reflectance as float32";
-    throw FormatError(text.str());
-  }
+  failIf((!fits || greatest > 1.0) && mayHaveFive(points), "it has ", LongPoints);
+  failIf(!fits, "the fourth numbers of its points go from ", least, " to ", greatest,
+    ", expected reflectances (0 to 1) or intensities (0 to 255): this is not a scan of KITTI, "
+    "which has x, y, z and reflectance as float32");
 }
 }
 
@@ -88,16 +76,13 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
 {
   if (points.size() % PointSize != 0)
   {
-    throw FormatError("its length is " + std::to_string(points.size()) +
-      " bytes, expected a multiple of 16: four float32 a point" +
-      (points.size() > 0 && mayHaveFive(points) ? std::string("; it has ") + LongPoints : ""));
+    fail("its length is ", points.size(), " bytes, expected a multiple of 16: four float32 a point",
+      mayHaveFive(points) ? "; it has " : "", mayHaveFive(points) ? LongPoints : "");
   }
   const std::uint64_t n = points.size() / PointSize;
-  if (labels && labels->size() != n * LabelSize)
-  {
-    throw FormatError("the labels beside it have " + std::to_string(labels->size()) +
-      " bytes, expected four for each of its " + std::to_string(n) + " points");
-  }
+  const std::uint64_t labelBytes = labels ? labels->size() : n * LabelSize;
+  failIf(labelBytes != n * LabelSize, "the labels beside it have ", labelBytes,
+    " bytes, expected four for each of its ", n, " points");
   requireMemoryFor(n, PointSize);
   Cloud cloud;
   cloud.points.resize(3 * n);
@@ -119,16 +104,14 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
           greatest = intensity[i];
         }
       }
-      goOn(keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(n), 0.0, 1.0);
+      goOn(keepGoing, i, n);
     });
   checkReflectance(least, greatest, points);
   checkStride(points);
   if (greatest > 1.0)
   {
-    std::ostringstream text;
-    text << "the fourth numbers of its points reach " << greatest
-         << ": they are taken for intensities of 0 to 255, not for reflectances of 0 to 1";
-    cloud.warnings.push_back(text.str());
+    cloud.warnings.push_back(joined("the fourth numbers of its points reach ", greatest,
+      ": they are taken for intensities of 0 to 255, not for reflectances of 0 to 1"));
   }
   else
   {

@@ -58,10 +58,8 @@ void readAxes(const Bytes& h, Header& header)
   {
     header.axes[axis].scale = load<double>(h.data() + 131 + 8 * axis);
     header.axes[axis].offset = load<double>(h.data() + 155 + 8 * axis);
-    if (!std::isfinite(header.axes[axis].scale) || !std::isfinite(header.axes[axis].offset))
-    {
-      throw FormatError("a scale or an offset of its coordinates is not finite");
-    }
+    failIf(!std::isfinite(header.axes[axis].scale) || !std::isfinite(header.axes[axis].offset),
+      "a scale or an offset of its coordinates is not finite");
   }
 }
 
@@ -69,18 +67,13 @@ Header readHeader(ByteSource& source)
 {
   const Bytes h = source.bytes(
     0, std::min<std::uint64_t>(source.size(), static_cast<std::uint64_t>(LasHeaderSize)));
-  if (h.size() < ShortestHeader || textOf(h.data(), 4) != "LASF")
-  {
-    throw FormatError("this is not a LAS file: it does not begin with LASF and a header");
-  }
+  failIf(h.size() < ShortestHeader || textOf(h.data(), 4) != "LASF",
+    "this is not a LAS file: it does not begin with LASF and a header");
   Header header;
   header.minor = h[25];
   header.hasWkt = (h[6] & WktFlag) != 0;
-  if (h[24] != 1 || header.minor > 4)
-  {
-    throw FormatError("its version is " + std::to_string(h[24]) + "." + std::to_string(h[25]) +
-      ", expected 1.0 to 1.4");
-  }
+  failIf(h[24] != 1 || header.minor > 4, "its version is ", std::to_string(h[24]), ".",
+    std::to_string(h[25]), ", expected 1.0 to 1.4");
   header.size = load<std::uint16_t>(h.data() + 94);
   header.data = load<std::uint32_t>(h.data() + 96);
   header.vlrs = load<std::uint32_t>(h.data() + 100);
@@ -98,22 +91,16 @@ Header readHeader(ByteSource& source)
   }
   for (const LasAxis& axis : header.axes)
   {
-    if (header.points > 0 && axis.scale == 0.0)
-    {
-      throw FormatError("a scale of its coordinates is 0");
-    }
+    failIf(header.points > 0 && axis.scale == 0.0, "a scale of its coordinates is 0");
   }
   if (header.compressed)
   {
     return header;
   }
   const std::uint64_t room = header.data <= source.size() ? source.size() - header.data : 0;
-  if (header.points > room / header.layout.length)
-  {
-    throw FormatError("it is cut short: it says that it has " + std::to_string(header.points) +
-      " points of " + std::to_string(header.layout.length) + " bytes, and has room for " +
-      std::to_string(room / header.layout.length));
-  }
+  failIf(header.points > room / header.layout.length, "it is cut short: it says that it has ",
+    header.points, " points of ", header.layout.length, " bytes, and has room for ",
+    room / header.layout.length);
   header.room = room;
   return header;
 }
@@ -236,10 +223,8 @@ Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
     const Bytes h = source.bytes(at, size);
     const std::uint64_t length =
       isLong ? load<std::uint64_t>(h.data() + 20) : load<std::uint16_t>(h.data() + 20);
-    if (length > source.size() && isLong)
-    {
-      throw FormatError("an extended variable-length record is longer than the file");
-    }
+    failIf(length > source.size() && isLong,
+      "an extended variable-length record is longer than the file");
     // Long records, such as waveforms, are not needed.
     takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
       source.bytes(at + size, length <= LongestText ? length : 0), header.layout, cloud, records);
@@ -419,19 +404,13 @@ LasLayout layoutOf(int format, std::size_t length)
     { 26, -1, 20, -1, false }, { 34, 20, 28, -1, false }, { 57, 20, -1, -1, true },
     { 63, 20, 28, -1, true }, { 30, 22, -1, -1, false }, { 36, 22, 30, -1, false },
     { 38, 22, 30, 36, false }, { 59, 22, -1, -1, true }, { 67, 22, 30, 36, true } };
-  if (format < 0 || format > 10)
-  {
-    throw FormatError(
-      "its point data record format is " + std::to_string(format) + ", expected 0 to 10");
-  }
+  failIf(
+    format < 0 || format > 10, "its point data record format is ", format, ", expected 0 to 10");
   const Place& place = places[format];
   const LasLayout layout = { format, format >= 6, place.core, length, place.time, place.rgb,
     place.nir, place.waveforms };
-  if (length < layout.core)
-  {
-    throw FormatError("its points have " + std::to_string(length) + " bytes, expected at least " +
-      std::to_string(layout.core) + " for the point data record format " + std::to_string(format));
-  }
+  failIf(length < layout.core, "its points have ", length, " bytes, expected at least ",
+    layout.core, " for the point data record format ", format);
   return layout;
 }
 
@@ -443,11 +422,8 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   findSystem(header, records, cloud);
   if (header.layout.waveforms)
   {
-    if (header.compressed)
-    {
-      throw FormatError("its points have waveforms (point data record format " +
-        std::to_string(header.layout.format) + "), which are read from LAS, not from LAZ");
-    }
+    failIf(header.compressed, "its points have waveforms (point data record format ",
+      header.layout.format, "), which are read from LAS, not from LAZ");
     cloud.warnings.emplace_back("its waveforms are left out");
   }
   const std::uint64_t length = header.layout.length;
@@ -467,8 +443,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
     columns.take(i, bytes);
-    goOn(
-      keepGoing, static_cast<std::int64_t>(i), static_cast<std::int64_t>(header.points), 0.0, 1.0);
+    goOn(keepGoing, i, header.points);
   };
   if (header.compressed)
   {

@@ -50,10 +50,7 @@ void append(Bytes& to, const Bytes& more)
 /// Returns a variable-length record, with header and contents.
 Bytes makeVlr(int record, const char* user, const char* description, const Bytes& content)
 {
-  if (content.size() > LasLongestVlr)
-  {
-    throw FormatError(std::string(description) + " needs more than 65535 bytes");
-  }
+  failIf(content.size() > LasLongestVlr, description, " needs more than 65535 bytes");
   Bytes vlr(LasVlrHeaderSize);
   putText(vlr, 2, 16, user);
   put(vlr, 18, static_cast<std::uint16_t>(record));
@@ -240,11 +237,8 @@ LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing)
     measure.returns[std::max(static_cast<int>(number), 1) - 1] += 1;
     for (int axis = 0; axis < 3; ++axis)
     {
-      if (!(std::abs(p[axis]) <= LasGreatestCoordinate))
-      {
-        throw FormatError(
-          "point " + std::to_string(i) + " has a coordinate that is not finite or beyond 1e15 m");
-      }
+      failIf(!(std::abs(p[axis]) <= LasGreatestCoordinate), "point ", i,
+        " has a coordinate that is not finite or beyond 1e15 m");
       low[axis] = std::min(low[axis], p[axis]);
       high[axis] = std::max(high[axis], p[axis]);
     }

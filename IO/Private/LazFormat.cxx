@@ -11,7 +11,6 @@
 #include <new>
 #include <ostream>
 #include <streambuf>
-#include <utility>
 
 #include <laszip/laszip_api.h>
 #endif
@@ -30,17 +29,9 @@ constexpr std::size_t CoreLayers = 9; // number of layers of the core in formats
 constexpr std::uint64_t BytesPerRead = 1 << 16;
 constexpr std::uint32_t AnySize = 0xFFFFFFFF;
 
-[[noreturn]] void damaged()
-{
-  throw FormatError("its compressed points are damaged or cut short");
-}
-
 void require(bool sound)
 {
-  if (!sound)
-  {
-    damaged();
-  }
+  failIf(!sound, "its compressed points are damaged or cut short");
 }
 
 /// Reader or writer of LASzip.
@@ -85,7 +76,7 @@ public:
     {
       laszip_CHAR* why = nullptr;
       laszip_get_error(this->Handle, &why);
-      throw FormatError(std::string("LASzip says: ") + (why ? why : "no reason"));
+      fail("LASzip says: ", why ? why : "no reason");
     }
   }
 
@@ -241,11 +232,9 @@ public:
     this->checkDecoder(this->End + 8);
     if (this->Size == AnySize || this->Size == 0)
     {
-      if (!points.layout.extended)
-      {
-        throw FormatError("its compressed points are in chunks of several sizes, which are read "
-                          "only in the point data record formats 6 to 8");
-      }
+      failIf(!points.layout.extended,
+        "its compressed points are in chunks of several sizes, which are read only in the point "
+        "data record formats 6 to 8");
       this->Size = AnySize;
     }
     else
@@ -507,8 +496,8 @@ namespace
 {
 [[noreturn]] void missing()
 {
-  throw FormatError("LAZ needs LASzip, which this build is without: install liblaszip-dev (Debian "
-                    "13) and build again, or use LAS");
+  fail("LAZ needs LASzip, which this build is without: install liblaszip-dev (Debian 13) and build "
+       "again, or use LAS");
 }
 }
 

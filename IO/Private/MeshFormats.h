@@ -8,6 +8,8 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
+#include <initializer_list>
 #include <string>
 
 namespace avianlidar::scene
@@ -24,18 +26,16 @@ inline std::string UncompressedName(const std::string& file)
   return EndingOf(file) == ".gz" ? file.substr(0, file.size() - 3) : file;
 }
 
+/// Returns whether a file has one of some file extensions.
+inline bool EndsWithAny(const std::string& file, std::initializer_list<const char*> endings)
+{
+  return std::find(endings.begin(), endings.end(), EndingOf(file)) != endings.end();
+}
+
 /// Returns whether VTK reads the file. Assimp reads all other files.
 inline bool IsVtkFile(const std::string& file)
 {
-  const std::string ending = EndingOf(file);
-  for (const char* known : { ".vtp", ".vtu", ".vts", ".vtr", ".vti", ".vtm", ".vtmb", ".vtk" })
-  {
-    if (ending == known)
-    {
-      return true;
-    }
-  }
-  return false;
+  return EndsWithAny(file, { ".vtp", ".vtu", ".vts", ".vtr", ".vti", ".vtm", ".vtmb", ".vtk" });
 }
 }
 

@@ -4,7 +4,6 @@
 #include "AvailableMemory.h"
 #include "MeshFormats.h"
 #include "MeshStream.h"
-#include "SceneTypes.h"
 
 #include <cerrno>
 #include <chrono>
@@ -52,11 +51,8 @@ double Limit(const char* variable, double otherwise)
   }
   char* end = nullptr;
   const double number = std::strtod(text, &end);
-  if (end == text || *end != '\0' || !(number > 0.0))
-  {
-    throw Error(std::string("the environment variable ") + variable + " is '" + text +
-      "', expected a number above 0");
-  }
+  failIf(end == text || *end != '\0' || !(number > 0.0), "the environment variable ", variable,
+    " is '", text, "', expected a number above 0");
   return number;
 }
 
@@ -127,8 +123,9 @@ public:
       {
         close(this->Pipe);
       }
-      throw Error("the program that reads meshes, " + words.front() + ", cannot be started: " +
-        std::strerror(error) + "; expected it there, or where AVIANLIDAR_MESH_READER says");
+      fail("the program that reads meshes, ", words.front(),
+        ", cannot be started: ", std::strerror(error),
+        "; expected it there, or where AVIANLIDAR_MESH_READER says");
     }
   }
 
@@ -159,7 +156,7 @@ public:
       }
       else if (count == 0 || (errno != EINTR && errno != EAGAIN))
       {
-        throw Error(this->Library + " cannot read it: " + this->HowItEnded());
+        fail(this->Library, " cannot read it: ", this->HowItEnded());
       }
     }
   }
@@ -177,12 +174,9 @@ private:
         throw WorkStopped();
       }
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Begin;
-      if (passed.count() > this->Seconds)
-      {
-        throw Error(this->Library + " cannot read it in " +
-          std::to_string(std::llround(this->Seconds)) +
-          " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
-      }
+      failIf(passed.count() > this->Seconds, this->Library, " cannot read it in ",
+        std::llround(this->Seconds),
+        " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
     }
   }
 
@@ -221,16 +215,10 @@ private:
 // taken, as is usual in surveying.
 char UpAxis(const std::string& file)
 {
-  const std::string ending = EndingOf(UncompressedName(file));
-  for (const char* y : { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb",
-         ".ac", ".acc", ".ac3d", ".fbx", ".x3d" })
-  {
-    if (ending == y)
-    {
-      return 'y';
-    }
-  }
-  return 'z';
+  const bool isY = EndsWithAny(UncompressedName(file),
+    { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb", ".ac", ".acc",
+      ".ac3d", ".fbx", ".x3d" });
+  return isY ? 'y' : 'z';
 }
 }
 

@@ -119,7 +119,7 @@ Mesh ReceiveMesh(const ReadBytes& read)
   {
     std::string reason;
     receive(reason);
-    throw Error(reason);
+    fail(reason);
   }
   if (kind == IsNoMemory)
   {

@@ -21,6 +21,7 @@ namespace
 /// Greatest number of writers of one file at the same time. The writer that ends last gives the
 /// contents.
 constexpr int MostParts = 16;
+constexpr const char* Unwritten = "cannot be written to its end";
 
 /// Opens and locks a part. Returns the descriptor, or -1 on failure or if another writer holds the
 /// part.
@@ -52,9 +53,10 @@ bool exchangeNames(const std::string& one, const std::string& two)
   return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, two.c_str(), RENAME_EXCHANGE) == 0;
 }
 
-[[noreturn]] void fail(const std::string& what)
+/// Throws FormatError with the reason of the system if a call failed.
+void requireDone(bool isDone, const char* problem)
 {
-  throw FormatError(what + ": " + std::strerror(errno));
+  failIf(!isDone, problem, ": ", std::strerror(errno));
 }
 }
 
@@ -70,10 +72,8 @@ OutputFile::OutputFile(const std::string& name)
     this->Name = (fs::path(this->Name).parent_path() / target).string();
   }
   struct stat old = {};
-  if (stat(this->Name.c_str(), &old) == 0 && !S_ISREG(old.st_mode))
-  {
-    throw FormatError("it exists and is not a regular file");
-  }
+  failIf(stat(this->Name.c_str(), &old) == 0 && !S_ISREG(old.st_mode),
+    "it exists and is not a regular file");
   this->Mode = old.st_mode;
   for (int i = 0; i < MostParts; ++i)
   {
@@ -92,10 +92,7 @@ OutputFile::OutputFile(const std::string& name)
       this->Part = part;
     }
   }
-  if (!this->File)
-  {
-    fail("cannot be opened for writing");
-  }
+  requireDone(this->File, "cannot be opened for writing");
 }
 
 OutputFile::~OutputFile()
@@ -109,18 +106,12 @@ OutputFile::~OutputFile()
 
 void OutputFile::write(const void* bytes, std::size_t count)
 {
-  if (count > 0 && std::fwrite(bytes, 1, count, this->File) != count)
-  {
-    fail("cannot be written to its end");
-  }
+  requireDone(count == 0 || std::fwrite(bytes, 1, count, this->File) == count, Unwritten);
 }
 
 void OutputFile::seek(std::uint64_t at)
 {
-  if (fseeko(this->File, static_cast<off_t>(at), SEEK_SET) != 0)
-  {
-    fail("cannot be written to its end");
-  }
+  requireDone(fseeko(this->File, static_cast<off_t>(at), SEEK_SET) == 0, Unwritten);
 }
 
 bool OutputFile::isSameAs(const OutputFile& other) const
@@ -157,17 +148,14 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
     {
       throw;
     }
-    throw FormatError(error.what() + ("; the old " + first.Name + " is replaced already"));
+    fail(error.what(), "; the old ", first.Name, " is replaced already");
   }
 }
 
 void OutputFile::finish()
 {
   // Writing of buffered bytes may fail here or, on some file systems, when a descriptor is closed.
-  if (std::fflush(this->File) != 0 || close(dup(fileno(this->File))) != 0)
-  {
-    fail("cannot be written to its end");
-  }
+  requireDone(std::fflush(this->File) == 0 && close(dup(fileno(this->File))) == 0, Unwritten);
   if (this->Mode)
   {
     fchmod(fileno(this->File), this->Mode & ALLPERMS);
@@ -176,10 +164,7 @@ void OutputFile::finish()
 
 void OutputFile::takeName()
 {
-  if (std::rename(this->Part.c_str(), this->Name.c_str()) != 0)
-  {
-    fail("cannot be given its name");
-  }
+  requireDone(std::rename(this->Part.c_str(), this->Name.c_str()) == 0, "cannot be given its name");
   std::fclose(this->File);
   this->File = nullptr;
 }

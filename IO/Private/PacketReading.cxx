@@ -149,12 +149,8 @@ void forEachPacket(ByteSource& source, F packet)
 {
   const auto need = [&](std::uint64_t at, std::uint64_t count)
   {
-    if (!source.holds(at, count))
-    {
-      throw FormatError("it is cut short: a packet that begins at byte " + std::to_string(at) +
-        " goes beyond its end, and the last " + std::to_string(source.size() - at) +
-        " bytes are left out");
-    }
+    failIf(!source.holds(at, count), "it is cut short: a packet that begins at byte ", at,
+      " goes beyond its end, and the last ", source.size() - at, " bytes are left out");
     return source.at(at, std::min(count, MostBeforePayload));
   };
   const std::uint32_t first = magicOf(source);
@@ -171,10 +167,7 @@ void forEachPacket(ByteSource& source, F packet)
     }
     return;
   }
-  if (first != SectionBlock)
-  {
-    throw FormatError("this is not a pcap or pcapng file");
-  }
+  failIf(first != SectionBlock, "this is not a pcap or pcapng file");
   bool turned = false;
   std::vector<std::uint32_t> links;
   for (std::uint64_t at = 0; at < source.size();)
@@ -191,12 +184,9 @@ void forEachPacket(ByteSource& source, F packet)
     // blocks.
     const bool isEnhanced = kind == 6 || kind == 2;
     const std::uint64_t least = isEnhanced ? 32 : kind == 1 || kind == 3 ? 16 : 12;
-    if (size < least || size % 4 != 0)
-    {
-      throw FormatError("the block at byte " + std::to_string(at) + " has the length " +
-        std::to_string(size) + ", expected at least " + std::to_string(least) +
-        " and a multiple of 4: this block and the rest of the file are left out");
-    }
+    failIf(size < least || size % 4 != 0, "the block at byte ", at, " has the length ", size,
+      ", expected at least ", least,
+      " and a multiple of 4: this block and the rest of the file are left out");
     const unsigned char* block = need(at, size);
     const std::uint32_t number = kind == 6 ? load32(block + 8, turned)
       : kind == 2                          ? load16(block + 8, turned)
@@ -382,8 +372,7 @@ Recording scanPackets(ByteSource& source, const KeepGoing& keepGoing)
   {
     if (number++ % PacketsPerCall == 0)
     {
-      goOn(
-        keepGoing, 0, 1, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()), 1.0);
+      goOn(keepGoing, 0.5 * static_cast<double>(at) / static_cast<double>(source.size()));
     }
     const std::uint64_t looked = std::min(size, MostBeforePayload);
     const Datagram datagram = datagramOf(link, source.at(at, looked), looked);
@@ -432,22 +421,13 @@ Sender& choose(std::map<std::string, Sender>& senders, const std::string& wanted
     all += (all.empty() ? "" : ", ") + name + " (" +
       std::to_string(sender.packets.size() + sender.damaged) + " packets)";
   }
-  if (senders.empty())
-  {
-    throw FormatError("it has no packet of a VLP-16: UDP with 1206 bytes");
-  }
-  if (fitting.empty())
-  {
-    throw FormatError("it has no packets of the sensor " + shown(wanted) +
-      ", expected the SensorAddress (--sensor-address) of one of these: " + all);
-  }
-  if (fitting.size() > 1)
-  {
-    throw FormatError(
-      "it has packets of several sensors, expected the SensorAddress (--sensor-address) "
-      "of one of these: " +
-      all);
-  }
+  failIf(senders.empty(), "it has no packet of a VLP-16: UDP with 1206 bytes");
+  failIf(fitting.empty(), "it has no packets of the sensor ", shown(wanted),
+    ", expected the SensorAddress (--sensor-address) of one of these: ", all);
+  failIf(fitting.size() > 1,
+    "it has packets of several sensors, expected the SensorAddress (--sensor-address) of one of "
+    "these: ",
+    all);
   return *fitting.front();
 }
 
@@ -484,13 +464,10 @@ void checkOneSensor(ByteSource& source, const std::vector<std::uint64_t>& packet
     backwards += back > LargestGap && back < FullTurn / 2 ? 1 : 0;
     before = azimuth;
   }
-  if (4 * backwards > packets.size())
-  {
-    throw FormatError("its packets come from more than one sensor with the same address: the "
-                      "azimuth goes back " +
-      std::to_string(backwards) + " times in " + std::to_string(packets.size()) +
-      " packets. Expected another address or port for each sensor");
-  }
+  failIf(4 * backwards > packets.size(),
+    "its packets come from more than one sensor with the same address: the azimuth goes back ",
+    backwards, " times in ", packets.size(),
+    " packets. Expected another address or port for each sensor");
 }
 
 /// Returns the starts of the revolutions.
@@ -517,7 +494,7 @@ std::vector<PacketIndex::Turn> turnsOf(
     }
     if (number % PacketsPerCall == 0)
     {
-      goOn(keepGoing, 0, 1, 0.5, 1.0);
+      goOn(keepGoing, 0.5);
     }
   }
   return turns;
@@ -534,10 +511,7 @@ PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const Ke
 {
   Recording recording = scanPackets(source, keepGoing);
   Sender& sender = choose(recording.senders, sensor);
-  if (sender.packets.empty())
-  {
-    throw FormatError(sender.problem);
-  }
+  failIf(sender.packets.empty(), sender.problem);
   // Networks may change the order of packets.
   std::stable_sort(sender.packets.begin(), sender.packets.end(),
     [](const SentPacket& a, const SentPacket& b)
@@ -585,10 +559,8 @@ Cloud readTurn(
   {
     std::copy_n(source.at(index.packets[p], PayloadSize), PayloadSize, payload);
     const std::string problem = problemOf(payload);
-    if (!problem.empty()) // the file has changed since indexPackets()
-    {
-      throw FormatError("packet " + std::to_string(p) + " of the lidar " + problem);
-    }
+    // The file may have changed since indexPackets().
+    failIf(!problem.empty(), "packet ", p, " of the lidar ", problem);
     const int behind = p + 1 < index.packets.size()
       ? azimuthOf(source.at(index.packets[p + 1], PayloadSize), 0)
       : -1;
@@ -611,7 +583,7 @@ Cloud readTurn(
     if (p % PacketsPerCall == 0)
     {
       const auto done = static_cast<double>(p - from.packet);
-      goOn(keepGoing, 0, 1, 0.5 + 0.5 * done / static_cast<double>(packets), 1.0);
+      goOn(keepGoing, 0.5 + 0.5 * done / static_cast<double>(packets));
     }
   }
   Cloud& cloud = points.cloud;

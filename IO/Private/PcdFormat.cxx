@@ -29,10 +29,7 @@ char upper(unsigned char c)
 
 std::uint64_t oneOf(Words& words, const char* key, std::uint64_t otherwise)
 {
-  if (words[key].size() > 1)
-  {
-    throw FormatError(std::string(key) + " has more than one value");
-  }
+  failIf(words[key].size() > 1, key, " has more than one value");
   return words[key].empty() ? otherwise : numberOf<std::uint64_t>(words[key][0], key);
 }
 
@@ -40,30 +37,24 @@ void understandFields(Words& words, PcdHeader& header)
 {
   const auto &sizes = words["SIZE"], &types = words["TYPE"], &counts = words["COUNT"];
   const std::size_t n = words["FIELDS"].size();
-  if (n == 0 || n > MostFields || sizes.size() != n || types.size() != n ||
-    (!counts.empty() && counts.size() != n))
-  {
-    throw FormatError("FIELDS, SIZE, TYPE and COUNT do not have as many values, or more than 4096");
-  }
+  failIf(n == 0 || n > MostFields || sizes.size() != n || types.size() != n ||
+      (!counts.empty() && counts.size() != n),
+    "FIELDS, SIZE, TYPE and COUNT do not have as many values, or more than 4096");
   for (std::size_t i = 0; i < n; ++i)
   {
     TableField field;
     field.name = words["FIELDS"][i];
     const auto size = numberOf<std::uint64_t>(sizes[i], "SIZE");
     const std::string& type = types[i];
-    if (type.size() != 1 || !scalarOf(upper(type[0]), size, field.type))
-    {
-      throw FormatError("the field " + shown(field.name) + " has TYPE " + shown(types[i]) +
-        " and SIZE " + shown(sizes[i]) + ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
-    }
+    const auto scalar = type.size() == 1 ? scalarOf(upper(type[0]), size) : std::nullopt;
+    failIf(!scalar, "the field ", shown(field.name), " has TYPE ", shown(types[i]), " and SIZE ",
+      shown(sizes[i]), ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
+    field.type = *scalar;
     field.count = counts.empty() ? 1 : numberOf<std::uint64_t>(counts[i], "COUNT");
     // Old converters of ROS write 0 for a single value. The Point Cloud Library accepts 0 too.
     field.count += field.count == 0;
-    if (field.count > GreatestCount)
-    {
-      throw FormatError("the field " + shown(field.name) + " has COUNT " +
-        std::to_string(field.count) + ", expected 1 to 65536");
-    }
+    failIf(field.count > GreatestCount, "the field ", shown(field.name), " has COUNT ", field.count,
+      ", expected 1 to 65536");
     header.fields.push_back(field);
   }
 }
@@ -73,28 +64,17 @@ void understandSize(Words& words, PcdHeader& header)
   header.width = oneOf(words, "WIDTH", 0);
   header.height = oneOf(words, "HEIGHT", 1);
   const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  if (header.width > most || header.height > most)
-  {
-    throw FormatError("WIDTH or HEIGHT is above 4294967295");
-  }
+  failIf(header.width > most || header.height > most, "WIDTH or HEIGHT is above 4294967295");
   header.points = oneOf(words, "POINTS", header.width * header.height);
-  if (!words["WIDTH"].empty() && header.points != header.width * header.height)
-  {
-    throw FormatError("POINTS is " + std::to_string(header.points) +
-      ", expected WIDTH times HEIGHT, " + std::to_string(header.width * header.height));
-  }
+  failIf(!words["WIDTH"].empty() && header.points != header.width * header.height, "POINTS is ",
+    header.points, ", expected WIDTH times HEIGHT, ", header.width * header.height);
   const std::vector<std::string>& viewpoint = words["VIEWPOINT"];
-  if (!viewpoint.empty() && viewpoint.size() != header.viewpoint.size())
-  {
-    throw FormatError("VIEWPOINT does not have seven values");
-  }
+  failIf(!viewpoint.empty() && viewpoint.size() != header.viewpoint.size(),
+    "VIEWPOINT does not have seven values");
   for (std::size_t i = 0; i < viewpoint.size(); ++i)
   {
     header.viewpoint[i] = numberOf<double>(viewpoint[i], "VIEWPOINT");
-    if (!std::isfinite(header.viewpoint[i]))
-    {
-      throw FormatError("VIEWPOINT has a value that is not finite");
-    }
+    failIf(!std::isfinite(header.viewpoint[i]), "VIEWPOINT has a value that is not finite");
   }
 }
 
@@ -114,7 +94,7 @@ PcdData understandData(std::string kind)
   {
     return PcdData::Compressed;
   }
-  throw FormatError("DATA is " + shown(kind) + ", expected ascii, binary or binary_compressed");
+  fail("DATA is ", shown(kind), ", expected ascii, binary or binary_compressed");
 }
 
 using Bytes = std::vector<unsigned char>;
@@ -125,24 +105,20 @@ Bytes decompress(ByteSource& source, const PcdHeader& header)
   const Bytes sizes = source.bytes(header.begin, 8);
   const std::uint64_t packed = load<std::uint32_t>(sizes.data());
   const std::uint64_t plain = load<std::uint32_t>(sizes.data() + 4);
-  if (plain / header.length() != header.points || plain % header.length() != 0)
-  {
-    throw FormatError("its compressed data have " + std::to_string(plain) + " bytes, expected " +
-      std::to_string(header.points) + " points of " + std::to_string(header.length()));
-  }
+  failIf(plain / header.length() != header.points || plain % header.length() != 0,
+    "its compressed data have ", plain, " bytes, expected ", header.points, " points of ",
+    header.length());
   // LZF packs at most 264 bytes into three bytes.
   constexpr std::uint64_t greatestRatio = 88;
   const Bytes from = source.bytes(header.begin + 8, packed);
   const bool fits = plain <= greatestRatio * packed;
   requireMemoryFor(fits ? header.points : 0, header.length());
   Bytes to(fits ? plain : 0);
-  if (to.size() != plain ||
-    (plain > 0 &&
-      lzf_decompress(from.data(), static_cast<unsigned int>(packed), to.data(),
-        static_cast<unsigned int>(plain)) != plain))
-  {
-    throw FormatError("its compressed data are damaged");
-  }
+  failIf(to.size() != plain ||
+      (plain > 0 &&
+        lzf_decompress(from.data(), static_cast<unsigned int>(packed), to.data(),
+          static_cast<unsigned int>(plain)) != plain),
+    "its compressed data are damaged");
   return to;
 }
 
@@ -160,10 +136,7 @@ void takeCompressed(const Bytes& data, const PcdHeader& header, const TableTarge
         bytes += sizeOf(header.fields[f].type);
       }
     }
-    if (keepGoing && !keepGoing(static_cast<double>(f + 1) / header.fields.size()))
-    {
-      throw WorkStopped();
-    }
+    goOn(keepGoing, static_cast<double>(f + 1) / header.fields.size());
   }
 }
 
@@ -218,10 +191,7 @@ PcdHeader readPcdHeader(ByteSource& source)
   std::string line;
   while (words["DATA"].empty())
   {
-    if (!lines.get(line))
-    {
-      throw FormatError("this is not a PCD file: it has no line DATA");
-    }
+    failIf(!lines.get(line), "this is not a PCD file: it has no line DATA");
     std::istringstream text(line);
     std::string key, word;
     text >> key;
@@ -232,10 +202,8 @@ PcdHeader readPcdHeader(ByteSource& source)
       continue;
     }
     key = key == "COLUMNS" ? "FIELDS" : key; // key of version 0.5
-    if (known.count(key) == 0)
-    {
-      throw FormatError("this is not a PCD file: its header has the line \"" + shown(line) + "\"");
-    }
+    failIf(known.count(key) == 0, "this is not a PCD file: its header has the line \"", shown(line),
+      "\"");
     while (text >> word)
     {
       words[key].push_back(word);

@@ -39,15 +39,11 @@ constexpr TypeName TypeNames[] = { { "char", "int8", Scalar::Int8 },
 
 Scalar typeOf(const std::string& word)
 {
-  for (const TypeName& known : TypeNames)
-  {
-    if (word == known.name || word == known.later)
-    {
-      return known.type;
-    }
-  }
-  throw FormatError("a property has the type \"" + shown(word) +
+  const auto* found = std::find_if(std::begin(TypeNames), std::end(TypeNames),
+    [&](const TypeName& known) { return word == known.name || word == known.later; });
+  failIf(found == std::end(TypeNames), "a property has the type \"", shown(word),
     "\", expected char, uchar, short, ushort, int, uint, float or double");
+  return found->type;
 }
 
 Property propertyOf(std::istringstream& text)
@@ -61,16 +57,11 @@ Property propertyOf(std::istringstream& text)
     text >> count >> type;
     property.isList = true;
     property.countType = typeOf(count);
-    if (isFloat(property.countType))
-    {
-      throw FormatError("a list has a count of type " + shown(count) + ", expected whole numbers");
-    }
+    failIf(isFloat(property.countType), "a list has a count of type ", shown(count),
+      ", expected whole numbers");
   }
   property.field.type = typeOf(type);
-  if (!(text >> property.field.name))
-  {
-    throw FormatError("a property has no name");
-  }
+  failIf(!(text >> property.field.name), "a property has no name");
   return property;
 }
 
@@ -82,16 +73,11 @@ std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
   TextLines lines(source, 0);
   std::string line, format;
   std::uint64_t properties = 0;
-  if (!lines.get(line) || line != "ply")
-  {
-    throw FormatError("this is not a PLY file: it does not begin with a line \"ply\"");
-  }
+  failIf(!lines.get(line) || line != "ply",
+    "this is not a PLY file: it does not begin with a line \"ply\"");
   for (;;)
   {
-    if (!lines.get(line))
-    {
-      throw FormatError("this is not a PLY file: it has no line end_header");
-    }
+    failIf(!lines.get(line), "this is not a PLY file: it has no line end_header");
     std::istringstream text(line);
     std::string key, word;
     text >> key;
@@ -128,27 +114,24 @@ std::vector<Element> readLines(ByteSource& source, PlyHeader& header)
     }
     else
     {
-      throw FormatError(
-        "this is not a PLY file of up to 4096 properties: its header has the line \"" +
-        shown(line) + "\"");
+      fail("this is not a PLY file of up to 4096 properties: its header has the line \"",
+        shown(line), "\"");
     }
   }
   header.begin = lines.position();
   header.ascii = format == "ascii";
   header.bigEndian = format == "binary_big_endian";
-  if (!header.ascii && !header.bigEndian && format != "binary_little_endian")
-  {
-    throw FormatError("format is \"" + shown(format) +
-      "\", expected ascii, binary_little_endian or binary_big_endian");
-  }
+  failIf(!header.ascii && !header.bigEndian && format != "binary_little_endian", "format is \"",
+    shown(format), "\", expected ascii, binary_little_endian or binary_big_endian");
   return elements;
 }
 
 /// Returns the offset of the end of a binary element, bytes.
 std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t begin, bool bigEndian)
 {
-  const auto fail = [&]()
-  { throw FormatError("it is cut short: its element " + shown(element.name) + " has no end"); };
+  const std::string name = shown(element.name);
+  const auto require = [&](bool holds)
+  { failIf(!holds, "it is cut short: its element ", name, " has no end"); };
   std::uint64_t length = 0;
   bool lists = false;
   for (const Property& property : element.properties)
@@ -158,10 +141,7 @@ std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t be
   }
   if (!lists)
   {
-    if (length > 0 && element.count > (source.size() - begin) / length)
-    {
-      fail();
-    }
+    require(length == 0 || element.count <= (source.size() - begin) / length);
     return begin + element.count * length;
   }
   for (std::uint64_t row = 0; row < element.count; ++row)
@@ -172,10 +152,7 @@ std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t be
       if (property.isList)
       {
         const std::size_t size = sizeOf(property.countType);
-        if (!source.holds(begin, size))
-        {
-          fail();
-        }
+        require(source.holds(begin, size));
         std::vector<unsigned char> bytes = source.bytes(begin, size);
         if (bigEndian)
         {
@@ -186,10 +163,7 @@ std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t be
         begin += size;
       }
       const std::uint64_t count = values * sizeOf(property.field.type); // at most 2^35 bytes
-      if (!source.holds(begin, count))
-      {
-        fail();
-      }
+      require(source.holds(begin, count));
       begin += count;
     }
   }
@@ -200,13 +174,11 @@ std::uint64_t endOf(ByteSource& source, const Element& element, std::uint64_t be
 std::uint64_t endOfLines(ByteSource& source, const Element& element, std::uint64_t begin)
 {
   TextLines lines(source, begin);
+  const std::string name = shown(element.name);
   std::string line;
   for (std::uint64_t row = 0; row < element.count; ++row)
   {
-    if (!lines.get(line))
-    {
-      throw FormatError("it is cut short: its element " + shown(element.name) + " has no end");
-    }
+    failIf(!lines.get(line), "it is cut short: its element ", name, " has no end");
   }
   return lines.position();
 }
@@ -227,12 +199,9 @@ void writeFace(
 {
   const auto most = std::numeric_limits<std::int32_t>::max();
   const bool beyond = std::any_of(points.begin(), points.end(), [=](auto p) { return p > most; });
-  if (points.size() > 255 || beyond)
-  {
-    throw FormatError("polygon " + std::to_string(face) + " has " +
-      (beyond ? "a point beyond the 2^31 - 1 that PLY numbers"
-              : std::to_string(points.size()) + " points, expected at most 255"));
-  }
+  failIf(points.size() > 255 || beyond, "polygon ", face, " has ",
+    beyond ? "a point beyond the 2^31 - 1 that PLY numbers"
+           : std::to_string(points.size()) + " points, expected at most 255");
   std::string line =
     ascii ? std::to_string(points.size()) : std::string(1, static_cast<char>(points.size()));
   for (const std::int64_t point : points)
@@ -251,21 +220,16 @@ PlyHeader readPlyHeader(ByteSource& source)
   const std::vector<Element> elements = readLines(source, header);
   const auto vertex = std::find_if(elements.begin(), elements.end(),
     [](const Element& element) { return element.name == "vertex"; });
-  if (vertex == elements.end() || vertex->properties.empty())
-  {
-    throw FormatError("it has no element vertex with properties");
-  }
+  failIf(vertex == elements.end() || vertex->properties.empty(),
+    "it has no element vertex with properties");
   for (const Element& element : elements)
   {
     header.hasFaces = header.hasFaces || (element.name == "face" && element.count > 0);
   }
   for (const Property& property : vertex->properties)
   {
-    if (property.isList)
-    {
-      throw FormatError("its vertices have the list " + shown(property.field.name) +
-        ", expected one number for each property of a vertex");
-    }
+    failIf(property.isList, "its vertices have the list ", shown(property.field.name),
+      ", expected one number for each property of a vertex");
     header.fields.push_back(property.field);
   }
   header.points = vertex->count;

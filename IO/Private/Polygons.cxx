@@ -168,10 +168,8 @@ Sheet Triangulate(const Polygon& polygon)
   // rounding is as large.
   const double rounding =
     4 * std::numeric_limits<double>::epsilon() * std::pow(Perimeter(polygon), 2);
-  if (!(std::abs(covered - area) <= AreaTolerance * area + rounding))
-  {
-    throw Error("a polygon of " + std::to_string(area) + " m2 cannot be triangulated");
-  }
+  failIf(!(std::abs(covered - area) <= AreaTolerance * area + rounding), "a polygon of ",
+    std::to_string(area), " m2 cannot be triangulated");
   return sheet;
 }
 }

@@ -52,10 +52,7 @@ public:
 
   Geometry Own(GEOSGeometry* geometry) const
   {
-    if (!geometry)
-    {
-      throw Error("the polygon library GEOS cannot handle this geometry");
-    }
+    failIf(!geometry, "the polygon library GEOS cannot handle this geometry");
     return Geometry(geometry, [this](GEOSGeometry* g) { GEOSGeom_destroy_r(this->Get(), g); });
   }
 

@@ -254,10 +254,7 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing, const P
 {
   FileSource source(fileName);
   const CloudFormat* const format = formatOf(fileName);
-  if (!format)
-  {
-    throw FormatError("its name does not end with " + knownEndings());
-  }
+  failIf(!format, "its name does not end with ", knownEndings());
   const std::string labels = format->hasLabels ? labelFileOf(fileName) : std::string();
   std::optional<FileSource> beside;
   if (!labels.empty())

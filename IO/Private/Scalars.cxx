@@ -21,7 +21,7 @@ bool isSigned(Scalar type)
   return withType(type, [](auto value) { return std::is_signed_v<decltype(value)>; });
 }
 
-bool scalarOf(char kind, std::size_t size, Scalar& type)
+std::optional<Scalar> scalarOf(char kind, std::size_t size)
 {
   for (int i = 0; i <= static_cast<int>(Scalar::Float64); ++i)
   {
@@ -29,11 +29,10 @@ bool scalarOf(char kind, std::size_t size, Scalar& type)
     const char its = isFloat(candidate) ? 'F' : isSigned(candidate) ? 'I' : 'U';
     if (its == kind && sizeOf(candidate) == size)
     {
-      type = candidate;
-      return true;
+      return candidate;
     }
   }
-  return false;
+  return {};
 }
 
 namespace

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 namespace avianlidar::formats
@@ -33,9 +34,8 @@ std::size_t sizeOf(Scalar type);
 bool isFloat(Scalar type);
 bool isSigned(Scalar type);
 
-/// Finds the type of a kind ('I', 'U' or 'F') and a size, bytes. Returns false if the type does not
-/// exist.
-bool scalarOf(char kind, std::size_t size, Scalar& type);
+/// Returns the type of a kind ('I', 'U' or 'F') and a size, bytes, or no value if there is none.
+std::optional<Scalar> scalarOf(char kind, std::size_t size);
 
 /// Calls f with a value of the C++ type of the scalar type.
 template <class F>
@@ -66,37 +66,17 @@ decltype(auto) withType(Scalar type, F f)
   }
 }
 
-namespace detail
-{
+/// Unsigned integer of `Size` bytes.
 template <std::size_t Size>
-struct Bits;
-template <>
-struct Bits<1>
-{
-  using Type = std::uint8_t;
-};
-template <>
-struct Bits<2>
-{
-  using Type = std::uint16_t;
-};
-template <>
-struct Bits<4>
-{
-  using Type = std::uint32_t;
-};
-template <>
-struct Bits<8>
-{
-  using Type = std::uint64_t;
-};
-}
+using BitsOf = std::conditional_t<Size == 1, std::uint8_t,
+  std::conditional_t<Size == 2, std::uint16_t,
+    std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>>>;
 
 /// Returns the value whose little-endian bytes begin at `bytes`. No alignment is needed.
 template <class T>
 T load(const unsigned char* bytes)
 {
-  using Bits = typename detail::Bits<sizeof(T)>::Type;
+  using Bits = BitsOf<sizeof(T)>;
   Bits bits = 0;
   for (std::size_t i = 0; i < sizeof(T); ++i)
   {
@@ -111,7 +91,7 @@ T load(const unsigned char* bytes)
 template <class T>
 void store(T value, unsigned char* bytes)
 {
-  typename detail::Bits<sizeof(T)>::Type bits;
+  BitsOf<sizeof(T)> bits;
   std::memcpy(&bits, &value, sizeof value);
   for (std::size_t i = 0; i < sizeof(T); ++i)
   {

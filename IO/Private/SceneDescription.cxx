@@ -119,10 +119,7 @@ avianlidar::Material ParseCoefficients(const JsonNode& node)
     }
   }
   const std::string problem = checkMaterial(material);
-  if (!problem.empty())
-  {
-    node.Fail(problem);
-  }
+  node.FailIf(!problem.empty(), problem);
   return material;
 }
 
@@ -139,16 +136,11 @@ void ParseMaterials(const JsonNode& root, Scene& scene)
   }
   for (const auto& [name, node] : root.Get("materials").Members())
   {
-    if (name.empty())
-    {
-      node.Fail("a material must have a name");
-    }
+    node.FailIf(name.empty(), "a material must have a name");
     Material material{ name, ParseCoefficients(node) };
     const int known = FindMaterial(scene, name);
-    if (known >= NumberOfStandardMaterials)
-    {
-      node.Fail("this material is already in the scene (case is ignored)");
-    }
+    node.FailIf(known >= NumberOfStandardMaterials,
+      "this material is already in the scene (case is ignored)");
     if (known >= 0)
     {
       material.name = scene.materials[known].name;
@@ -183,18 +175,13 @@ Mat3 ParseMatrix(const JsonNode& node)
     {
       const double dot =
         m[3 * i] * m[3 * j] + m[3 * i + 1] * m[3 * j + 1] + m[3 * i + 2] * m[3 * j + 2];
-      if (std::abs(dot - (i == j)) > OrthonormalTolerance)
-      {
-        node.Fail("must be a rotation: rows of length 1 at right angles (sizes belong in scale)");
-      }
+      node.FailIf(std::abs(dot - (i == j)) > OrthonormalTolerance,
+        "must be a rotation: rows of length 1 at right angles (sizes belong in scale)");
     }
   }
   const double determinant = m[0] * (m[4] * m[8] - m[5] * m[7]) -
     m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
-  if (determinant < 0)
-  {
-    node.Fail("must be a rotation, not a reflection: its determinant is -1");
-  }
+  node.FailIf(determinant < 0, "must be a rotation, not a reflection: its determinant is -1");
   return m;
 }
 
@@ -219,20 +206,16 @@ Mat3 ParseRotation(const JsonNode& node)
     const double yaw = node.Number() * DegreesToRadians;
     return { std::cos(yaw), std::sin(yaw), 0, -std::sin(yaw), std::cos(yaw), 0, 0, 0, 1 };
   }
-  if (!node.IsArray())
-  {
-    node.Fail("must be a yaw in degrees, a direction [x, y, z] or a matrix [[...], [...], [...]]");
-  }
+  node.FailIf(!node.IsArray(),
+    "must be a yaw in degrees, a direction [x, y, z] or a matrix [[...], [...], [...]]");
   const auto items = node.Items(3);
   if (items[0].IsArray())
   {
     return ParseMatrix(node);
   }
   const Vec3 direction = node.Vector();
-  if (!(std::hypot(direction[0], direction[1]) > 1e-9 * std::abs(direction[2])))
-  {
-    node.Fail("must be a direction that is neither zero nor vertical");
-  }
+  node.FailIf(!(std::hypot(direction[0], direction[1]) > 1e-9 * std::abs(direction[2])),
+    "must be a direction that is neither zero nor vertical");
   return RotationToDirection(direction);
 }
 
@@ -252,10 +235,7 @@ void ParsePlacement(const JsonNode& node, const Scene& scene, Object& object)
     {
       geodetic.Fail("stands beside position or crs; an object is placed in one way");
     }
-    if (!scene.origin)
-    {
-      geodetic.Fail("needs the scene's origin");
-    }
+    geodetic.FailIf(!scene.origin, "needs the scene's origin");
     object.placement.geodetic = ParseGeodetic(geodetic);
   }
   object.placement.rotation = node.Find("rotation", ParseRotation).value_or(Placement().rotation);
@@ -285,15 +265,9 @@ std::string AbsoluteFile(const JsonNode& node, const Scene& scene)
   const std::string folder =
     vtksys::SystemTools::GetFilenamePath(vtksys::SystemTools::CollapseFullPath(scene.file));
   const std::string file = vtksys::SystemTools::CollapseFullPath(node.Name(), folder);
-  if (!vtksys::SystemTools::FileExists(file, true))
-  {
-    node.Fail("there is no file " + file);
-  }
+  node.FailIf(!vtksys::SystemTools::FileExists(file, true), "there is no file ", file);
   const std::string irregular = whyNotRegular(file);
-  if (!irregular.empty())
-  {
-    node.Fail(file + " cannot be read: " + irregular);
-  }
+  node.FailIf(!irregular.empty(), file, " cannot be read: ", irregular);
   return file;
 }
 
@@ -330,10 +304,8 @@ void ParseShape(const JsonNode& node, FootprintOptions& options)
   options.height = node.Find("height", &JsonNode::PositiveNumber);
   options.heightAttribute = node.Find("height_attribute", &JsonNode::Name).value_or("");
   options.minHeightAttribute = node.Find("min_height_attribute", &JsonNode::Name).value_or("");
-  if (!options.flat && !options.height && options.heightAttribute.empty())
-  {
-    node.Fail("footprints need height or height_attribute, or flat");
-  }
+  node.FailIf(!options.flat && !options.height && options.heightAttribute.empty(),
+    "footprints need height or height_attribute, or flat");
   options.width = node.Find("width", &JsonNode::PositiveNumber);
   options.widthAttribute = node.Find("width_attribute", &JsonNode::Name).value_or("");
 }
@@ -404,10 +376,8 @@ void ParseGround(const JsonNode& node, Object& object)
 std::string ParseMedium(const JsonNode& node, bool hasSurface)
 {
   Json text = node.Content();
-  if (!text.is_object())
-  {
-    node.Fail("must be an object with kind, a quantity of the medium, and a shape");
-  }
+  node.FailIf(
+    !text.is_object(), "must be an object with kind, a quantity of the medium, and a shape");
   if (text.contains("name"))
   {
     node.Get("name").Fail("stands in the medium, expected beside it");
@@ -439,10 +409,8 @@ Object ParseObject(const JsonNode& node, Scene& scene)
   Object object;
   object.key = node.GetPath();
   const int kinds = node.Has("file") + node.Has("footprints") + node.Has("ground");
-  if (kinds > 1 || (kinds == 0 && !node.Has("medium")))
-  {
-    node.Fail("must have one of file, footprints, ground, and only one, or a medium");
-  }
+  node.FailIf(kinds > 1 || (kinds == 0 && !node.Has("medium")),
+    "must have one of file, footprints, ground, and only one, or a medium");
   if (node.Has("medium"))
   {
     object.medium = ParseMedium(node.Get("medium"), kinds == 1);
@@ -518,10 +486,7 @@ Scene ReadDescription(const std::string& file, const std::string& text)
   root.RequireKeys({ "version", "comment", "attribution", "origin", "lidar", "materials",
     "material_map", "objects" });
   const JsonNode version = root.Get("version");
-  if (version.Number() != 1)
-  {
-    version.Fail("must be 1, the only version");
-  }
+  version.FailIf(version.Number() != 1, "must be 1, the only version");
   scene.attribution = root.Find("attribution", &JsonNode::Strings).value_or(scene.attribution);
   scene.origin = root.Find("origin", ParseGeodetic);
   if (root.Has("lidar"))

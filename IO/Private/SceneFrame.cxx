@@ -27,11 +27,9 @@ void RequireGridsOfProj(const std::string& text)
 {
   static const std::regex gridInFolder(
     R"re((grids=|PARAMETERFILE\["[^"]*",")[^ "]*/)re", std::regex::icase);
-  if (std::regex_search(text, gridInFolder))
-  {
-    throw Error("its coordinate reference system names a grid file with a folder, expected the "
-                "name of a grid that PROJ has");
-  }
+  failIf(std::regex_search(text, gridInFolder),
+    "its coordinate reference system names a grid file with a folder, expected the name of a grid "
+    "that PROJ has");
 }
 
 std::string TextOf(const OGRSpatialReference& crs)
@@ -48,11 +46,9 @@ OGRSpatialReference FromText(const std::string& crs)
 {
   RequireGridsOfProj(crs); // before PROJ reads the text
   OGRSpatialReference reference;
-  if (reference.SetFromUserInput(
-        crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
-  {
-    throw Error("unknown coordinate reference system \"" + crs + "\"");
-  }
+  failIf(reference.SetFromUserInput(
+           crs.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE,
+    "unknown coordinate reference system \"", crs, "\"");
   return reference;
 }
 }
@@ -71,10 +67,7 @@ GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatia
   if (!source.IsSame(&plane) && !source.IsSame(&space))
   {
     this->ToWgs84.reset(OGRCreateCoordinateTransformation(&source, &space));
-    if (!this->ToWgs84)
-    {
-      throw Error("its coordinate reference system cannot be transformed to WGS84");
-    }
+    failIf(!this->ToWgs84, "its coordinate reference system cannot be transformed to WGS84");
   }
 }
 
@@ -95,10 +88,8 @@ void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
       y[i] = points[i][1];
       z[i] = points[i][2];
     }
-    if (n > 0 && !this->ToWgs84->Transform(static_cast<int>(n), x.data(), y.data(), z.data()))
-    {
-      throw Error("coordinates lie outside their coordinate reference system");
-    }
+    failIf(n > 0 && !this->ToWgs84->Transform(static_cast<int>(n), x.data(), y.data(), z.data()),
+      "coordinates lie outside their coordinate reference system");
     for (std::size_t i = 0; i < n; ++i)
     {
       points[i] = { x[i], y[i], z[i] };
@@ -106,10 +97,8 @@ void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
   }
   for (Vec3& p : points)
   {
-    if (!GeodeticFrame::checkPoint(avianlidar::Frame::Geodetic, p).empty())
-    {
-      throw Error("coordinates lie outside their coordinate reference system");
-    }
+    failIf(!GeodeticFrame::checkPoint(avianlidar::Frame::Geodetic, p).empty(),
+      "coordinates lie outside their coordinate reference system");
     p = this->Frame.convert(avianlidar::Frame::Geodetic, avianlidar::Frame::ENU, p);
   }
 }

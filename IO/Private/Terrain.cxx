@@ -45,12 +45,9 @@ Terrain::Terrain(const std::string& name, const Mesh& mesh)
     }
     this->Faces.push_back({ { { ring } }, ring[0], plane });
   }
-  if (up && down)
-  {
-    throw Error(name +
-      " has triangles that face up and others that face down, expected a surface "
-      "that covers each place in plan once at most");
-  }
+  failIf(up && down, name,
+    " has triangles that face up and others that face down, expected a surface that covers each "
+    "place in plan once at most");
   constexpr std::size_t boxesPerNode = 10;
   GEOSContextHandle_t context = this->Context.Get();
   this->Tree = { GEOSSTRtree_create_r(context, boxesPerNode),

@@ -27,10 +27,7 @@ bool TextLines::get(std::string& line)
     const auto end = std::find(from, this->Block.end(), '\n');
     line.append(from, end);
     this->At += static_cast<std::size_t>(end - from);
-    if (line.size() > longest)
-    {
-      throw FormatError("a line is longer than 16 MiB");
-    }
+    failIf(line.size() > longest, "a line is longer than 16 MiB");
     if (end != this->Block.end())
     {
       ++this->At;

@@ -54,7 +54,7 @@ T numberOf(const std::string& word, const char* key)
   const auto [stop, problem] = std::from_chars(word.data() + hasPlus, end, value);
   if (problem != std::errc() || stop != end)
   {
-    throw FormatError(std::string(key) + " has \"" + shown(word) + "\", expected a number");
+    fail(key, " has \"", shown(word), "\", expected a number");
   }
   return value;
 }

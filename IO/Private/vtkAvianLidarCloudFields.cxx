@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudFields.h"
 
+#include "ScanPattern.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarRequire.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDoubleArray.h"
@@ -17,14 +19,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 
 namespace vtkAvianLidarCloudFields
 {
 namespace formats = avianlidar::formats;
 namespace names = vtkAvianLidarArrays;
-using formats::FormatError;
+using avianlidar::fail;
+using avianlidar::failIf;
 using formats::Scalar;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
@@ -33,12 +35,13 @@ namespace
 Scalar ScalarOf(vtkDataArray* array)
 {
   const int type = array->GetDataType();
-  const std::size_t size = array->GetDataTypeSize();
   const bool real = type == VTK_FLOAT || type == VTK_DOUBLE;
   const bool withSign = real || array->GetDataTypeMin() < 0.0;
-  Scalar scalar = Scalar::Float64;
-  formats::scalarOf(real ? 'F' : withSign ? 'I' : 'U', size, scalar);
-  return scalar;
+  return formats::scalarOf(real ? 'F'
+      : withSign                ? 'I'
+                                : 'U',
+    array->GetDataTypeSize())
+    .value_or(Scalar::Float64);
 }
 
 std::string UnitOf(vtkAbstractArray* array)
@@ -51,27 +54,22 @@ std::string UnitOf(vtkAbstractArray* array)
 /// Returns three numbers of the field data, or no value if the array is missing.
 std::optional<Point> FindTriple(vtkPointSet* input, const names::Name& name)
 {
-  Require([&] { names::RequireNumeric(input->GetFieldData(), name, "field data"); });
+  vtkAvianLidarWithin(
+    "the ", [&] { names::RequireNumeric(input->GetFieldData(), name, "field data"); });
   vtkDataArray* array = input->GetFieldData()->GetArray(name.name);
   if (!array)
   {
     return std::nullopt;
   }
-  if (array->GetNumberOfValues() != 3)
-  {
-    throw FormatError(std::string("the field data '") + name.name + "' has " +
-      std::to_string(array->GetNumberOfValues()) + " values, expected three");
-  }
+  failIf(array->GetNumberOfValues() != 3, "the field data '", name.name, "' has ",
+    array->GetNumberOfValues(), " values, expected three");
   Point values;
   for (int i = 0; i < 3; ++i)
   {
     values[i] =
       array->GetComponent(i / array->GetNumberOfComponents(), i % array->GetNumberOfComponents());
-    if (!std::isfinite(values[i]))
-    {
-      throw FormatError(
-        std::string("the field data '") + name.name + "' has a value that is not finite");
-    }
+    failIf(
+      !std::isfinite(values[i]), "the field data '", name.name, "' has a value that is not finite");
   }
   return values;
 }
@@ -82,11 +80,9 @@ Field CoordinateField(vtkPointSet* input, int axis, bool single)
     [input, axis, single](std::int64_t i)
     {
       const double value = input->GetPoint(i)[axis];
-      if (single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max())
-      {
-        throw FormatError("point " + std::to_string(i) +
-          " has a coordinate beyond the range of single precision: set Precision to Double");
-      }
+      failIf(single && std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max(),
+        "point ", i,
+        " has a coordinate beyond the range of single precision: set Precision to Double");
       return value;
     } };
 }
@@ -135,7 +131,7 @@ void AddNote(const formats::Note& note, vtkFieldData* fields)
   if (!note.texts.empty())
   {
     // All comments of a file are in one array.
-    if (auto* there = vtkStringArray::SafeDownCast(fields->GetAbstractArray(note.name.c_str())))
+    if (auto* there = names::FindTexts(fields, { note.name.c_str(), "" }))
     {
       for (const std::string& text : note.texts)
       {
@@ -174,14 +170,17 @@ bool IsTooLongForDouble(vtkDataArray* array)
 //------------------------------------------------------------------------------
 void RequireShape(vtkDataArray* array, int components, vtkPointSet* input)
 {
-  Require(
+  vtkAvianLidarWithin("the ",
     [&] { names::RequireShape(array, "point array", components, input->GetNumberOfPoints()); });
 }
 
 //------------------------------------------------------------------------------
 vtkDataArray* Find(vtkPointSet* input, const char* name)
 {
-  Require([&] { names::RequireNumeric(input->GetPointData(), { name, "" }, "point array"); });
+  vtkAvianLidarWithin("the ",
+    [&] {
+      names::RequireNumeric(input->GetPointData(), { name, "" }, "point array");
+    });
   vtkDataArray* array = input->GetPointData()->GetArray(name);
   RequireShape(array, 1, input);
   return array;
@@ -191,10 +190,8 @@ vtkDataArray* Find(vtkPointSet* input, const char* name)
 vtkDataArray* Need(vtkPointSet* input, const char* name)
 {
   vtkDataArray* array = Find(input, name);
-  if (!array && input->GetNumberOfPoints() > 0)
-  {
-    throw FormatError(std::string("the input has no numeric point array '") + name + "'");
-  }
+  failIf(
+    !array && input->GetNumberOfPoints() > 0, "the input has no numeric point array '", name, "'");
   return array;
 }
 
@@ -244,10 +241,8 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
   const double rounding = single ? RoundingOf(input) : 0.0;
   if (rounding > noticeable)
   {
-    std::ostringstream text;
-    text << ": single precision moves coordinates by up to " << rounding
-         << " m so far from the origin: set Precision to Double.";
-    warn(text.str());
+    warn(avianlidar::joined(": single precision moves coordinates by up to ", rounding,
+      " m so far from the origin: set Precision to Double."));
   }
   formats::TableOutput output;
   std::vector<Field>& all = output.fields;
@@ -314,8 +309,7 @@ double ValueOf(vtkDataArray* array, std::int64_t i, double otherwise)
   const double value = array ? array->GetComponent(i, 0) : otherwise;
   if (!std::isfinite(value))
   {
-    throw FormatError(std::string("the point array '") + array->GetName() +
-      "' is not finite, at point " + std::to_string(i));
+    fail("the point array '", array->GetName(), "' is not finite, at point ", i);
   }
   return value;
 }
@@ -326,8 +320,7 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
   const double value = array ? array->GetComponent(i, 0) : otherwise;
   if (!names::IsInt(value))
   {
-    throw FormatError(std::string("the point array '") + array->GetName() +
-      "' is not a whole number of 32 bits, at point " + std::to_string(i));
+    fail("the point array '", array->GetName(), "' is not a whole number of 32 bits, at point ", i);
   }
   return static_cast<int>(value);
 }
@@ -336,17 +329,15 @@ int IntegerOf(vtkDataArray* array, std::int64_t i, int otherwise)
 vtkDataArray* FindColours(vtkPointSet* input)
 {
   vtkDataArray* array = input->GetPointData()->GetArray(names::Rgb.name);
-  Require([&] { names::RequireNumeric(input->GetPointData(), names::Rgb, "point array"); });
+  vtkAvianLidarWithin(
+    "the ", [&] { names::RequireNumeric(input->GetPointData(), names::Rgb, "point array"); });
   if (!array || array->GetNumberOfComponents() == 1)
   {
     return nullptr;
   }
   RequireShape(array, 3, input);
-  if (array->GetDataType() != VTK_UNSIGNED_CHAR)
-  {
-    throw FormatError(std::string("the point array '") + names::Rgb.name + "' has values of type " +
-      array->GetDataTypeAsString() + ", expected unsigned char");
-  }
+  failIf(array->GetDataType() != VTK_UNSIGNED_CHAR, "the point array '", names::Rgb.name,
+    "' has values of type ", array->GetDataTypeAsString(), ", expected unsigned char");
   return array;
 }
 
@@ -399,25 +390,91 @@ std::optional<Point> FindOrigin(vtkPointSet* input)
   const std::string bad = origin
     ? avianlidar::GeodeticFrame::checkOrigin((*origin)[0], (*origin)[1], (*origin)[2])
     : std::string();
-  if (!bad.empty())
-  {
-    throw FormatError(std::string("the field data '") + names::GeodeticOrigin.name + "': " + bad);
-  }
+  failIf(!bad.empty(), "the field data '", names::GeodeticOrigin.name, "': ", bad);
   return origin;
 }
 
 //------------------------------------------------------------------------------
 vtkStringArray* FindTexts(vtkPointSet* input, const char* name)
 {
-  Require([&] { names::RequireText(input->GetFieldData(), { name, "" }); });
-  return vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
+  vtkAvianLidarWithin("the ", [&] { names::RequireText(input->GetFieldData(), { name, "" }); });
+  return names::FindTexts(input->GetFieldData(), { name, "" });
 }
 
 //------------------------------------------------------------------------------
 std::string FindText(vtkPointSet* input, const char* name)
 {
-  auto* array = FindTexts(input, name);
-  return array && array->GetNumberOfValues() > 0 ? array->GetValue(0) : std::string();
+  FindTexts(input, name); // checks the type
+  return names::TextAt(input->GetFieldData(), { name, "" }, 0);
+}
+
+//------------------------------------------------------------------------------
+std::function<formats::SemanticLabel(int)> LabelsOf(vtkPointSet* input)
+{
+  std::vector<formats::SemanticLabel> labels;
+  auto* classes = FindTexts(input, names::ObjectClasses.name);
+  for (vtkIdType i = 0; classes && i < classes->GetNumberOfValues(); ++i)
+  {
+    labels.push_back(formats::labelOfClass(classes->GetValue(i)));
+  }
+  return [labels](int object)
+  {
+    const bool isKnown = object >= 0 && object < static_cast<int>(labels.size());
+    return isKnown ? labels[object] : formats::labelWithoutObject(object);
+  };
+}
+
+//------------------------------------------------------------------------------
+SensorPose::SensorPose(const Point& position, const Point& orientation)
+  : Position(position)
+{
+  // The axes are the beams forward (azimuth 0), right (azimuth 90) and up (elevation 90 deg).
+  avianlidar::ScanPattern pattern;
+  pattern.yaw = orientation[0];
+  pattern.pitch = orientation[1];
+  pattern.roll = orientation[2];
+  pattern.elevations = { 0.0, 90.0 };
+  pattern.azimuthStep = 90.0;
+  const avianlidar::ScanGenerator beams(pattern);
+  this->Axes = { beams.beam(2).direction, beams.beam(0).direction, beams.beam(1).direction };
+}
+
+//------------------------------------------------------------------------------
+Point SensorPose::toSensor(const Point& point) const
+{
+  const Point d{ point[0] - this->Position[0], point[1] - this->Position[1],
+    point[2] - this->Position[2] };
+  Point local;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    local[axis] =
+      this->Axes[axis][0] * d[0] + this->Axes[axis][1] * d[1] + this->Axes[axis][2] * d[2];
+  }
+  return local;
+}
+
+//------------------------------------------------------------------------------
+std::array<double, 7> SensorPose::viewpoint() const
+{
+  // The columns of the rotation matrix R are the axes. Shepperd (1978) takes the largest of the
+  // four squares, so that the square root is far from zero.
+  const auto r = [this](int row, int column) { return this->Axes[column][row]; };
+  std::array<double, 4> squares{ 1.0 + r(0, 0) + r(1, 1) + r(2, 2),
+    1.0 + r(0, 0) - r(1, 1) - r(2, 2), 1.0 - r(0, 0) + r(1, 1) - r(2, 2),
+    1.0 - r(0, 0) - r(1, 1) + r(2, 2) };
+  const auto largest =
+    static_cast<int>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+  const double sums[4][4] = {
+    { squares[0], r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1) },
+    { r(2, 1) - r(1, 2), squares[1], r(0, 1) + r(1, 0), r(0, 2) + r(2, 0) },
+    { r(0, 2) - r(2, 0), r(0, 1) + r(1, 0), squares[2], r(1, 2) + r(2, 1) },
+    { r(1, 0) - r(0, 1), r(0, 2) + r(2, 0), r(1, 2) + r(2, 1), squares[3] },
+  };
+  const double scale = 0.5 / std::sqrt(squares[largest]);
+  const double sign = sums[largest][0] < 0.0 ? -scale : scale;
+  // Adding 0 turns -0 into 0.
+  return { this->Position[0], this->Position[1], this->Position[2], sign * sums[largest][0] + 0.0,
+    sign * sums[largest][1] + 0.0, sign * sums[largest][2] + 0.0, sign * sums[largest][3] + 0.0 };
 }
 
 //------------------------------------------------------------------------------
@@ -438,10 +495,7 @@ Point Carry(const avianlidar::GeodeticFrame& geodesy, avianlidar::Frame from, av
   std::string wrong = GeodeticFrame::checkPoint(from, point);
   const Point carried = wrong.empty() && from != to ? geodesy.convert(from, to, point) : point;
   wrong = wrong.empty() ? GeodeticFrame::checkPoint(to, carried) : wrong;
-  if (!wrong.empty())
-  {
-    throw FormatError("point " + std::to_string(i) + ": " + wrong);
-  }
+  failIf(!wrong.empty(), "point ", i, ": ", wrong);
   return carried;
 }
 

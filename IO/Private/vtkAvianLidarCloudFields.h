@@ -3,7 +3,7 @@
  * @file vtkAvianLidarCloudFields.h
  * @brief Converts between VTK's arrays and the clouds of the file formats. Not installed.
  *
- * The functions throw FormatError, which names the array, for bad input.
+ * The functions throw std::runtime_error, which names the array, for bad input.
  */
 #ifndef vtkAvianLidarCloudFields_h
 #define vtkAvianLidarCloudFields_h
@@ -12,13 +12,13 @@
 #include "CloudNotes.h"
 #include "FieldTable.h"
 #include "GeodeticFrame.h"
-#include "SensorPose.h"
+#include "SemanticLabels.h"
+#include "Vector.h"
 
 #include "vtkSmartPointer.h"
 
 #include <new>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -37,19 +37,30 @@ using avianlidar::formats::CloudNotes;
 using avianlidar::formats::Field;
 using avianlidar::formats::FormatError;
 using avianlidar::formats::Point;
-using avianlidar::formats::SensorPose;
 
-/// Runs a check of vtkAvianLidarArrays. Throws FormatError with the fault that the check finds.
-template <class Check>
-void Require(const Check& check)
-try
+/// Position and orientation of a sensor.
+class SensorPose
 {
-  check();
-}
-catch (const std::runtime_error& error)
-{
-  throw FormatError(std::string("the ") + error.what());
-}
+public:
+  /// Makes a pose at the origin, without rotation.
+  SensorPose() = default;
+
+  /// Makes a pose from a position, m, and yaw, pitch and roll, deg, as in ScanPattern.h.
+  SensorPose(const Point& position, const Point& orientation);
+
+  /// Transforms a point from the scene's frame to the sensor's frame: x right, y forward, z up.
+  Point toSensor(const Point& point) const;
+
+  /// Returns the position, m, and the unit quaternion (w x y z, w >= 0) of the rotation from the
+  /// sensor's frame to the scene's frame.
+  std::array<double, 7> viewpoint() const;
+
+private:
+  Point Position{};
+  /// Axes of the sensor in the scene's frame, unit vectors.
+  std::array<avianlidar::Vec3, 3> Axes{ { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 },
+    { 0.0, 0.0, 1.0 } } };
+};
 
 /// Returns the numeric point array of a name, or null. Throws if the array has several components.
 vtkDataArray* Find(vtkPointSet* input, const char* name);
@@ -106,6 +117,10 @@ vtkStringArray* FindTexts(vtkPointSet* input, const char* name);
 /// Returns the first text of a name in the field data, or an empty text.
 std::string FindText(vtkPointSet* input, const char* name);
 
+/// Returns a function that gives the labels of an object by its id, from the classes in the field
+/// data. Throws as FindTexts() does.
+std::function<avianlidar::formats::SemanticLabel(int)> LabelsOf(vtkPointSet* input);
+
 /// Returns the pose that the field data `position` and `orientation` give, or no value without
 /// `position`.
 std::optional<SensorPose> FindPose(vtkPointSet* input);
@@ -124,28 +139,24 @@ std::size_t StepOf(const std::vector<double>& times, vtkInformation* output);
 /// Returns whether a piece other than piece 0 is requested.
 bool IsOtherPiece(vtkInformation* output);
 
-/// Runs a step of reading. Returns the name of the file and the error of the step, or an empty
-/// text.
+/// Runs a step of reading, and puts the name of the file in front of its error.
 template <class Step>
-std::string ErrorIn(const std::string& fileName, const char* noMemory, Step step)
+void Within(const std::string& fileName, const char* noMemory, const Step& step)
+try
 {
-  try
-  {
-    step();
-    return {};
-  }
-  catch (const avianlidar::WorkStopped&)
-  {
-    throw;
-  }
-  catch (const std::bad_alloc&)
-  {
-    return fileName + ": " + noMemory;
-  }
-  catch (const std::exception& error)
-  {
-    return fileName + ": " + error.what();
-  }
+  step();
+}
+catch (const avianlidar::WorkStopped&)
+{
+  throw;
+}
+catch (const std::bad_alloc&)
+{
+  avianlidar::fail(fileName, ": ", noMemory);
+}
+catch (const std::exception& error)
+{
+  avianlidar::fail(fileName, ": ", error.what());
 }
 
 /// Converts a cloud to vtkPolyData with a vertex for each point. Frees the values of the cloud as

@@ -81,7 +81,7 @@ FAULTS = [Fault(*fault) for fault in (
      "vtkSmartPointer<vtkPointSet> converted(leaf->NewInstance());"),
     # Readers and writers.
     ("not_initialised", "a member without a value", "Python-TestKITTIWriter$|Plugin-TestProxies$",
-     "IO/vtkAvianLidarKITTIWriter.h", "bool WriteLabels = true;", "bool WriteLabels;"),
+     "IO/vtkAvianLidarKITTIWriter.h", "Macro(WriteLabels, true)", "Macro(WriteLabels, WriteLabels)"),
     ("las_seconds", "a wrong unit", "Python-Test(LASWriter|PointCloudReader)$",
      "IO/Private/LasReading.cxx", "1e6 * load<double>(at + place)", "load<double>(at + place)"),
     ("las_colour_index", "a swapped index", "Python-Test(LASWriter|Laz|PointCloudReader)$",
@@ -91,7 +91,7 @@ FAULTS = [Fault(*fault) for fault in (
     ("pcd_warning", "a lost warning", "Python-Test(PCD|InputFiles)$",
      "IO/Private/PcdFormat.cxx", "      hasMore = hasOneMoreRow(source, header);", "      hasMore = false;"),
     ("ply_of_255", "an off-by-one at a border", "Python-Test(PLY|MeshFiles)$",
-     "IO/Private/PlyFormat.cxx", "if (points.size() > 255 || beyond)", "if (points.size() > 256 || beyond)"),
+     "IO/Private/PlyFormat.cxx", "failIf(points.size() > 255 || beyond", "failIf(points.size() > 256 || beyond"),
     ("kitti_left", "a sign", "Python-Test(KITTIWriter|PointCloudReader)$",
      "IO/vtkAvianLidarKITTIWriter.cxx", "storeAs(formats::Scalar::Float32, -p[0], bytes + 4);",
      "storeAs(formats::Scalar::Float32, p[0], bytes + 4);"),

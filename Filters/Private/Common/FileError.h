@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FileError.h
- * @brief Declares the error of a bad file of a scene or a sensor.
+ * @brief Declares the error of a bad file of a scene, a sensor or a point cloud.
  */
 #ifndef AvianLidarFileError_h
 #define AvianLidarFileError_h
 
+#include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace avianlidar
 {
@@ -16,6 +18,32 @@ class FileError : public std::runtime_error
 public:
   using std::runtime_error::runtime_error;
 };
+
+/// Returns a message from its parts: texts and numbers.
+template <class... Parts>
+std::string joined(const Parts&... parts)
+{
+  std::ostringstream message;
+  (message << ... << parts);
+  return message.str();
+}
+
+/// Throws FileError with the joined parts.
+template <class... Parts>
+[[noreturn]] void fail(const Parts&... parts)
+{
+  throw FileError(joined(parts...));
+}
+
+/// Throws FileError if `isBad` is true. The parts are joined only then.
+template <class... Parts>
+void failIf(bool isBad, const Parts&... parts)
+{
+  if (isBad)
+  {
+    fail(parts...);
+  }
+}
 }
 
 #endif

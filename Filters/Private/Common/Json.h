@@ -18,10 +18,18 @@
 #include <nlohmann/json.hpp>
 #endif
 
+#include <string>
+
 namespace avianlidar
 {
 /// Objects keep the order of the file: if two patterns fit a name, the first pattern counts.
 using Json = nlohmann::ordered_json;
+
+/// Returns one line of ASCII, with replacements for invalid UTF-8.
+inline std::string asciiLine(const nlohmann::json& value)
+{
+  return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
 }
 
 #endif

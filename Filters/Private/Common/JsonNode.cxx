@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "JsonNode.h"
 
-#include "FileError.h"
 #include "RegularFile.h"
 
 #include <fstream>
 #include <set>
-#include <sstream>
 
 namespace avianlidar
 {
 namespace
 {
-std::string Format(double value)
-{
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 // Largest depth of nested values, far more than any key needs. The limit protects the stack,
 // because values are copied and destroyed recursively.
 constexpr int DeepestNesting = 100;
@@ -30,10 +21,7 @@ class Strictness
 public:
   bool operator()(int depth, Json::parse_event_t event, Json& parsed)
   {
-    if (depth >= DeepestNesting)
-    {
-      throw FileError("it is nested more than " + std::to_string(DeepestNesting) + " deep");
-    }
+    failIf(depth >= DeepestNesting, "it is nested more than ", DeepestNesting, " deep");
     if (event == Json::parse_event_t::object_start)
     {
       this->Open.emplace_back();
@@ -73,15 +61,9 @@ catch (const FileError& e)
 Json ReadJson(const std::string& file)
 {
   const std::string irregular = whyNotRegular(file);
-  if (!irregular.empty())
-  {
-    throw FileError(file + ": " + irregular);
-  }
+  failIf(!irregular.empty(), file, ": ", irregular);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-  {
-    throw FileError(file + ": cannot be opened");
-  }
+  failIf(!stream, file, ": cannot be opened");
   return Parse(stream, file);
 }
 
@@ -92,8 +74,7 @@ Json ParseJson(const std::string& text, const std::string& file)
 
 void JsonNode::Fail(const std::string& message) const
 {
-  throw FileError(
-    this->File + ": " + (this->Path.empty() ? "the whole" : this->Path) + ": " + message);
+  fail(this->File, ": ", this->Path.empty() ? "the whole" : this->Path, ": ", message);
 }
 
 bool JsonNode::Has(const char* key) const
@@ -104,15 +85,9 @@ bool JsonNode::Has(const char* key) const
 JsonNode JsonNode::Get(const std::string& key) const
 {
   const std::string path = this->Path.empty() ? key : this->Path + "." + key;
-  if (!this->Value.is_object())
-  {
-    this->Fail("must be an object {...}");
-  }
+  this->FailIf(!this->Value.is_object(), "must be an object {...}");
   const auto found = this->Value.find(key);
-  if (found == this->Value.end())
-  {
-    throw FileError(this->File + ": " + path + ": is missing");
-  }
+  failIf(found == this->Value.end(), this->File, ": ", path, ": is missing");
   return JsonNode(*found, path, this->File);
 }
 
@@ -136,10 +111,7 @@ void JsonNode::RequireKeys(const std::vector<std::string>& known) const
 
 std::vector<std::pair<std::string, JsonNode>> JsonNode::Members() const
 {
-  if (!this->Value.is_object())
-  {
-    this->Fail("must be an object {...}");
-  }
+  this->FailIf(!this->Value.is_object(), "must be an object {...}");
   std::vector<std::pair<std::string, JsonNode>> members;
   for (const auto& item : this->Value.items())
   {
@@ -151,10 +123,8 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::Members() const
 
 std::vector<JsonNode> JsonNode::Items(std::size_t size) const
 {
-  if (!this->Value.is_array() || (size && this->Value.size() != size))
-  {
-    this->Fail("must be an array [...]" + (size ? " of " + std::to_string(size) : std::string()));
-  }
+  this->FailIf(!this->Value.is_array() || (size && this->Value.size() != size),
+    "must be an array [...]", size ? " of " + std::to_string(size) : std::string());
   std::vector<JsonNode> items;
   for (std::size_t i = 0; i < this->Value.size(); ++i)
   {
@@ -165,57 +135,40 @@ std::vector<JsonNode> JsonNode::Items(std::size_t size) const
 
 double JsonNode::Number() const
 {
-  if (!this->Value.is_number())
-  {
-    this->Fail("must be a number");
-  }
+  this->FailIf(!this->Value.is_number(), "must be a number");
   return this->Value.get<double>(); // JSON has no infinity
 }
 
 double JsonNode::NumberIn(double lowest, double highest) const
 {
   const double value = this->Number();
-  if (value < lowest || value > highest)
-  {
-    this->Fail(
-      "must be from " + Format(lowest) + " to " + Format(highest) + ", is " + Format(value));
-  }
+  this->FailIf(
+    value < lowest || value > highest, "must be from ", lowest, " to ", highest, ", is ", value);
   return value;
 }
 
 double JsonNode::PositiveNumber() const
 {
   const double value = this->Number();
-  if (!(value > 0))
-  {
-    this->Fail("must be greater than 0, is " + Format(value));
-  }
+  this->FailIf(!(value > 0), "must be greater than 0, is ", value);
   return value;
 }
 
 bool JsonNode::Bool() const
 {
-  if (!this->Value.is_boolean())
-  {
-    this->Fail("must be true or false");
-  }
+  this->FailIf(!this->Value.is_boolean(), "must be true or false");
   return this->Value.get<bool>();
 }
 
 void JsonNode::RequireNoNul(const std::string& text) const
 {
-  if (text.find('\0') != std::string::npos)
-  {
-    this->Fail("must hold no NUL character, where names of files and blocks would end");
-  }
+  this->FailIf(text.find('\0') != std::string::npos,
+    "must hold no NUL character, where names of files and blocks would end");
 }
 
 std::string JsonNode::String() const
 {
-  if (!this->Value.is_string())
-  {
-    this->Fail("must be a string");
-  }
+  this->FailIf(!this->Value.is_string(), "must be a string");
   const std::string text = this->Value.get<std::string>();
   this->RequireNoNul(text);
   return text;
@@ -224,10 +177,7 @@ std::string JsonNode::String() const
 std::string JsonNode::Name() const
 {
   const std::string name = this->String();
-  if (name.empty())
-  {
-    this->Fail("must not be empty");
-  }
+  this->FailIf(name.empty(), "must not be empty");
   return name;
 }
 

@@ -7,6 +7,7 @@
 #ifndef AvianLidarJsonNode_h
 #define AvianLidarJsonNode_h
 
+#include "FileError.h"
 #include "Json.h"
 
 #include <array>
@@ -43,6 +44,15 @@ public:
   }
 
   [[noreturn]] void Fail(const std::string& message) const;
+  /// Fails with the joined parts if `isBad` is true.
+  template <class... Parts>
+  void FailIf(bool isBad, const Parts&... parts) const
+  {
+    if (isBad)
+    {
+      this->Fail(joined(parts...));
+    }
+  }
 
   const std::string& GetPath() const { return this->Path; }
   const Json& Content() const { return this->Value; }

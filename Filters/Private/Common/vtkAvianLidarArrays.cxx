@@ -101,12 +101,23 @@ void RequireNumeric(vtkFieldData* arrays, const Name& name, const char* kind)
 
 void RequireText(vtkFieldData* fields, const Name& name)
 {
-  vtkAbstractArray* array = fields->GetAbstractArray(name.name);
-  if (array && !vtkStringArray::SafeDownCast(array))
+  if (fields->GetAbstractArray(name.name) && !FindTexts(fields, name))
   {
     throw std::runtime_error(
       std::string("field data '") + name.name + "' holds no text, expected text");
   }
+}
+
+vtkStringArray* FindTexts(vtkFieldData* fields, const Name& name)
+{
+  return fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(name.name)) : nullptr;
+}
+
+std::string TextAt(vtkFieldData* fields, const Name& name, vtkIdType index)
+{
+  vtkStringArray* texts = FindTexts(fields, name);
+  return texts && index >= 0 && index < texts->GetNumberOfValues() ? texts->GetValue(index)
+                                                                   : std::string();
 }
 
 bool IsInt(double value)

@@ -98,6 +98,12 @@ void RequireNumeric(vtkFieldData* arrays, const Name& name, const char* kind);
 /// Throws unless the field data are missing or hold text.
 void RequireText(vtkFieldData* fields, const Name& name);
 
+/// Texts of the name, or null; `fields` may be null.
+vtkStringArray* FindTexts(vtkFieldData* fields, const Name& name);
+
+/// Text `index` of the name, or an empty text.
+std::string TextAt(vtkFieldData* fields, const Name& name, vtkIdType index);
+
 /// True for the whole numbers that an int holds.
 bool IsInt(double value);
 

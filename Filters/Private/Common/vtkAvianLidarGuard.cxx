@@ -10,7 +10,6 @@
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkInformationVector.h"
-#include "vtkStringArray.h"
 
 namespace
 {
@@ -26,27 +25,21 @@ bool IsEmpty(vtkDataObject* data)
     0;
 }
 
-std::string ErrorIn(vtkFieldData* fields)
-{
-  auto* error =
-    fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(Arrays::Error.name)) : nullptr;
-  return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
-}
-
 /// The error text in the field data of `data` or of a block of `data`; empty without an error.
 std::string ErrorOf(vtkDataObject* data)
 {
   // Outputs of a failed filter are empty, except images. A field `error` of other data is the
   // user's.
   const bool may = data && (IsEmpty(data) || data->IsA("vtkImageData"));
-  std::string error = may ? ErrorIn(data->GetFieldData()) : std::string();
+  std::string error = may ? Arrays::TextAt(data->GetFieldData(), Arrays::Error, 0) : std::string();
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
   {
     auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
     for (each->InitTraversal(); error.empty() && !each->IsDoneWithTraversal(); each->GoToNextItem())
     {
       vtkDataObject* block = each->GetCurrentDataObject();
-      error = IsEmpty(block) ? ErrorIn(block->GetFieldData()) : std::string();
+      error =
+        IsEmpty(block) ? Arrays::TextAt(block->GetFieldData(), Arrays::Error, 0) : std::string();
     }
   }
   return error;

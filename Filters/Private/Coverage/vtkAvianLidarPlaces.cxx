@@ -264,8 +264,7 @@ void vtkAvianLidarPlaces::ReadRegions()
   {
     return;
   }
-  auto* texts = vtkStringArray::SafeDownCast(
-    this->Points->GetFieldData()->GetAbstractArray(Arrays::RegionNames.name));
+  auto* texts = Arrays::FindTexts(this->Points->GetFieldData(), Arrays::RegionNames);
   std::map<int, std::size_t> numbers;
   for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
   {

@@ -277,8 +277,7 @@ std::vector<Leaf> TakeLeaves(
     vtkFieldData* const fields = leaf.data->GetFieldData();
     if (named && fields->HasArray(BlockName.name))
     {
-      auto* name = vtkStringArray::SafeDownCast(fields->GetAbstractArray(BlockName.name));
-      leaf.name = name->GetValue(0);
+      leaf.name = Arrays::TextAt(fields, BlockName, 0);
     }
     triangulated.push_back(leaf.Triangulated());
     leaf.data = triangulated.back();

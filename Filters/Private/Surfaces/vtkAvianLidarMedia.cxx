@@ -455,8 +455,7 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
 //------------------------------------------------------------------------------
 bool vtkAvianLidarMedia::IsMedium(vtkPolyData* leaf)
 {
-  auto* texts = vtkStringArray::SafeDownCast(
-    leaf->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Medium.name));
+  auto* texts = vtkAvianLidarArrays::FindTexts(leaf->GetFieldData(), vtkAvianLidarArrays::Medium);
   return texts && texts->GetNumberOfValues() == 1;
 }
 
@@ -467,8 +466,7 @@ std::string vtkAvianLidarMedia::TextOf(vtkPolyData* leaf, const std::string& nam
   {
     return {};
   }
-  auto* texts = vtkStringArray::SafeDownCast(
-    leaf->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Medium.name));
+  auto* texts = vtkAvianLidarArrays::FindTexts(leaf->GetFieldData(), vtkAvianLidarArrays::Medium);
   const std::string file = "medium '" + name + "'";
   Json json = avianlidar::ParseJson(texts->GetValue(0), file);
   json.erase("object_id"); // the scene gives ids

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceIds.h"
 
+#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
-#include "vtkAvianLidarNames.h"
 
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
@@ -15,26 +15,21 @@
 
 namespace
 {
+namespace Arrays = vtkAvianLidarArrays;
 using Leaf = vtkAvianLidarSurfaceLeaf;
 using Column = vtkAvianLidarColumn;
 
 using vtkAvianLidarMaterials::NamedMaterials;
 
-std::string StringOfField(vtkFieldData* fields, const char* array, vtkIdType index)
-{
-  auto* names = fields ? vtkStringArray::SafeDownCast(fields->GetAbstractArray(array)) : nullptr;
-  return names && index >= 0 && index < names->GetNumberOfValues() ? names->GetValue(index)
-                                                                   : std::string();
-}
-
 /// Text of an object of a leaf. A single text belongs to the first object. Several texts are
 /// indexed by the id in the leaf.
 /// @param rank index of the object among the objects of the leaf
-std::string TextOfObject(vtkFieldData* fields, const char* array, int local, std::size_t rank)
+std::string TextOfObject(
+  vtkFieldData* fields, const Arrays::Name& name, int local, std::size_t rank)
 {
-  auto* own = vtkStringArray::SafeDownCast(fields->GetAbstractArray(array));
+  auto* own = Arrays::FindTexts(fields, name);
   const bool one = own && own->GetNumberOfValues() == 1 && rank == 0;
-  return StringOfField(fields, array, one ? 0 : local);
+  return Arrays::TextAt(fields, name, one ? 0 : local);
 }
 
 /// True if object ids are kept.
@@ -44,7 +39,7 @@ bool IdsAreUsable(const std::vector<Leaf>& leaves)
   vtkIdType cells = 0;
   for (const Leaf& leaf : leaves)
   {
-    vtkDataArray* ids = leaf.data->GetCellData()->GetArray(vtkAvianLidarArrays::ObjectId.name);
+    vtkDataArray* ids = leaf.data->GetCellData()->GetArray(Arrays::ObjectId.name);
     if (leaf.data->GetNumberOfCells() == 0 || vtkAvianLidarMedia::IsMedium(leaf.data))
     {
       continue;
@@ -80,11 +75,7 @@ void vtkAvianLidarSurfaceIds::Begin(vtkFieldData* sceneFields, const std::vector
   this->SceneFields = sceneFields;
   this->KeepObjectIds = IdsAreUsable(leaves);
   const auto haveClasses = [](vtkFieldData* fields)
-  {
-    return fields &&
-      vtkStringArray::SafeDownCast(
-        fields->GetAbstractArray(vtkAvianLidarArrays::ObjectClasses.name)) != nullptr;
-  };
+  { return Arrays::FindTexts(fields, Arrays::ObjectClasses) != nullptr; };
   this->LeavesHaveClasses = std::any_of(leaves.begin(), leaves.end(),
     [&](const Leaf& leaf) { return haveClasses(leaf.data->GetFieldData()); });
   this->SceneHasClasses = haveClasses(sceneFields);
@@ -99,8 +90,8 @@ void vtkAvianLidarSurfaceIds::AddEmptyLeaf(const Leaf& leaf)
   if (!this->KeepObjectIds && !leaf.name.empty())
   {
     this->ObjectNames.push_back(leaf.name);
-    this->SetClass(this->NextObject++,
-      TextOfObject(leaf.data->GetFieldData(), vtkAvianLidarArrays::ObjectClasses.name, 0, 0));
+    this->SetClass(
+      this->NextObject++, TextOfObject(leaf.data->GetFieldData(), Arrays::ObjectClasses, 0, 0));
   }
 }
 
@@ -113,8 +104,7 @@ int vtkAvianLidarSurfaceIds::AddObject(
     this->ObjectNames.resize(global + 1);
   }
   this->ObjectNames[global] = this->ObjectName(leaf, poly, local, rank, global);
-  this->SetClass(global,
-    TextOfObject(poly->GetFieldData(), vtkAvianLidarArrays::ObjectClasses.name, local, rank));
+  this->SetClass(global, TextOfObject(poly->GetFieldData(), Arrays::ObjectClasses, local, rank));
   return global;
 }
 
@@ -138,8 +128,7 @@ void vtkAvianLidarSurfaceIds::AddUnusedNames(const std::vector<Leaf>& leaves)
   for (const Leaf& leaf : leaves)
   {
     vtkFieldData* fields = leaf.data->GetFieldData();
-    auto* names =
-      vtkStringArray::SafeDownCast(fields->GetAbstractArray(vtkAvianLidarArrays::ObjectNames.name));
+    auto* names = Arrays::FindTexts(fields, Arrays::ObjectNames);
     const vtkIdType count = names && this->KeepObjectIds ? names->GetNumberOfValues() : 0;
     // A single name belongs to the object of the leaf, whatever id the object has.
     for (vtkIdType id = 0; count > 1 && id < count; ++id)
@@ -149,8 +138,7 @@ void vtkAvianLidarSurfaceIds::AddUnusedNames(const std::vector<Leaf>& leaves)
       if (this->ObjectNames[id].empty() && !names->GetValue(id).empty())
       {
         this->ObjectNames[id] = names->GetValue(id);
-        this->SetClass(
-          static_cast<int>(id), StringOfField(fields, vtkAvianLidarArrays::ObjectClasses.name, id));
+        this->SetClass(static_cast<int>(id), Arrays::TextAt(fields, Arrays::ObjectClasses, id));
       }
     }
   }
@@ -163,17 +151,16 @@ void vtkAvianLidarSurfaceIds::SetClass(int global, const std::string& objectClas
     this->ObjectClasses.resize(this->ObjectNames.size());
     this->ObjectClasses[global] = this->LeavesHaveClasses
       ? objectClass
-      : StringOfField(this->SceneFields, vtkAvianLidarArrays::ObjectClasses.name, global);
+      : Arrays::TextAt(this->SceneFields, Arrays::ObjectClasses, global);
   }
 }
 
 int vtkAvianLidarSurfaceIds::MaterialOf(vtkPolyData* poly, int local)
 {
-  std::string name =
-    StringOfField(poly->GetFieldData(), vtkAvianLidarArrays::MaterialNames.name, local);
+  std::string name = Arrays::TextAt(poly->GetFieldData(), Arrays::MaterialNames, local);
   if (name.empty())
   {
-    name = StringOfField(this->SceneFields, vtkAvianLidarArrays::MaterialNames.name, local);
+    name = Arrays::TextAt(this->SceneFields, Arrays::MaterialNames, local);
   }
   if (name.empty())
   {
@@ -195,15 +182,14 @@ int vtkAvianLidarSurfaceIds::MaterialOf(vtkPolyData* poly, int local)
 std::string vtkAvianLidarSurfaceIds::ObjectName(
   const Leaf& leaf, vtkPolyData* poly, int local, std::size_t rank, int global) const
 {
-  const char* array = vtkAvianLidarArrays::ObjectNames.name;
-  std::string name = TextOfObject(poly->GetFieldData(), array, local, rank);
+  std::string name = TextOfObject(poly->GetFieldData(), Arrays::ObjectNames, local, rank);
   if (name.empty())
   {
     name = leaf.name;
   }
   if (name.empty())
   {
-    name = StringOfField(this->SceneFields, array, local);
+    name = Arrays::TextAt(this->SceneFields, Arrays::ObjectNames, local);
   }
   return name.empty() ? "object " + std::to_string(global) : name;
 }

@@ -5,6 +5,7 @@
 #include "Hash.h"
 #include "ParallelLoop.h"
 #include "TriangleOrder.h"
+#include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarMaterials.h"
@@ -148,15 +149,15 @@ private:
         const std::string own = vtkAvianLidarMedia::TextOf(leaf.data, leaf.name);
         if (!own.empty())
         {
-          auto* names = vtkStringArray::SafeDownCast(
-            leaf.data->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::ObjectNames.name));
+          auto* names = vtkAvianLidarArrays::FindTexts(
+            leaf.data->GetFieldData(), vtkAvianLidarArrays::ObjectNames);
           const bool isNamed =
             names && names->GetNumberOfValues() == 1 && !names->GetValue(0).empty();
           this->AddMedium(vtkAvianLidarMedia::WithObject(
             own, isNamed ? std::string(names->GetValue(0)) : leaf.name, -1));
         }
-        auto* others = vtkStringArray::SafeDownCast(
-          leaf.data->GetFieldData()->GetAbstractArray(vtkAvianLidarArrays::Media.name));
+        auto* others =
+          vtkAvianLidarArrays::FindTexts(leaf.data->GetFieldData(), vtkAvianLidarArrays::Media);
         for (vtkIdType i = 0; others && i < others->GetNumberOfValues(); ++i)
         {
           this->AddMedium(others->GetValue(i));
