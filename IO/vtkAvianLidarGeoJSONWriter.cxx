@@ -171,26 +171,28 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   failIf(std::isnan(limit), "MinimumEnergy is not a number, expected an energy in J");
   const Places places(input);
 
+  const std::vector<TextField> texts = TextsOf(input);
   std::vector<formats::Field> numbers;
-  json units = json::object();
+  std::vector<std::string> left;
   for (vtkDataArray* array : fields::NumericArrays(input))
   {
-    for (const formats::Field& field : fields::ToFields(array))
+    const std::string name = array->GetName();
+    const bool isPlace = places.FromArrays() &&
+      (name == names::Longitude.name || name == names::Latitude.name || name == names::Height.name);
+    if (!isPlace)
     {
-      const bool isPlace = places.FromArrays() &&
-        (field.name == names::Longitude.name || field.name == names::Latitude.name ||
-          field.name == names::Height.name);
-      if (!isPlace)
-      {
-        numbers.push_back(field);
-      }
-      if (!isPlace && !field.unit.empty())
-      {
-        units[field.name] = field.unit;
-      }
+      fields::Append(name, fields::ToFields(array), numbers, left);
     }
   }
-  const std::vector<TextField> texts = TextsOf(input);
+  fields::WarnOfTaken(left, [this](const std::string& text) { this->Warn(text); });
+  json units = json::object();
+  for (const formats::Field& field : numbers)
+  {
+    if (!field.unit.empty())
+    {
+      units[field.name] = field.unit;
+    }
+  }
 
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
   formats::OutputFile file(this->FileName);

@@ -10,8 +10,9 @@
  * Each echo becomes a point feature, with 9 decimals for degrees and 4 decimals for metres. The
  * properties of a feature are all numeric point arrays, and the texts `object`, `object_class` and
  * `material` from the field data. An array of several components becomes the properties `name_0`,
- * `name_1`, ... The member `units` of the collection gives the units of the properties. Without
- * echoes the collection has no features.
+ * `name_1`, ... An array is left out with a warning if another property already has its name. The
+ * member `units` of the collection gives the units of the properties. Without echoes the collection
+ * has no features.
  *
  * Example: `writer->SetFileName("echoes.geojson"); writer->Write();` Documentation:
  * reference/formats.md.

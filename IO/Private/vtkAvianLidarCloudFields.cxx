@@ -233,6 +233,38 @@ std::vector<Field> ToFields(vtkDataArray* array)
 }
 
 //------------------------------------------------------------------------------
+void Append(const std::string& array, const std::vector<Field>& fields, std::vector<Field>& all,
+  std::vector<std::string>& left)
+{
+  const auto isTaken = [&](const Field& field)
+  {
+    return std::any_of(
+      all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; });
+  };
+  if (std::any_of(fields.begin(), fields.end(), isTaken))
+  {
+    left.push_back(array);
+    return;
+  }
+  all.insert(all.end(), fields.begin(), fields.end());
+}
+
+//------------------------------------------------------------------------------
+void WarnOfTaken(
+  const std::vector<std::string>& left, const std::function<void(const std::string&)>& warn)
+{
+  std::string names;
+  for (const std::string& array : left)
+  {
+    names += (names.empty() ? "'" : ", '") + array + "'";
+  }
+  if (!left.empty())
+  {
+    warn(" is without the point arrays " + names + ": another field of the file has the name.");
+  }
+}
+
+//------------------------------------------------------------------------------
 formats::TableOutput ToTable(vtkPointSet* input, bool single,
   const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
   const std::function<void(const std::string&)>& warn)
@@ -255,7 +287,7 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
     all.push_back(ToField(intensity));
     all.back().type = Scalar::Float32;
   }
-  std::string left;
+  std::vector<std::string> left;
   const vtkDataArray* colours = FindColours(input);
   for (vtkDataArray* array : NumericArrays(input))
   {
@@ -265,7 +297,6 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
       continue;
     }
     std::vector<Field> fields = array == colours ? toColours(array) : ToFields(array);
-    bool taken = false;
     for (Field& field : fields)
     {
       std::replace_if(
@@ -273,22 +304,14 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
       // PCD and PLY do not have 64-bit integers.
       const bool isLong = field.type == Scalar::Int64 || field.type == Scalar::UInt64;
       field.type = isLong ? Scalar::Float64 : field.type;
-      taken = taken ||
-        std::any_of(
-          all.begin(), all.end(), [&](const Field& other) { return other.name == field.name; });
     }
-    if (taken)
-    {
-      left += (left.empty() ? "'" : ", '") + name + "'";
-    }
-    else
-    {
-      all.insert(all.end(), fields.begin(), fields.end());
-    }
+    Append(name, fields, all, left);
   }
-  if (!left.empty())
+  WarnOfTaken(left, warn);
+  if (all.size() > formats::MostFields)
   {
-    warn(" is without the point arrays " + left + ": another field of the file has the name.");
+    throw FormatError(avianlidar::joined("the file would have ", all.size(),
+      " fields, expected at most ", formats::MostFields, ": take away point arrays"));
   }
   std::vector<std::string> cut; // not used, because a comment may have any length
   CloudNotes notes = ToNotes(input);

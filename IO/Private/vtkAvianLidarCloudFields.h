@@ -84,6 +84,15 @@ std::vector<vtkDataArray*> NumericArrays(vtkPointSet* input);
 /// `name_1`, ...
 std::vector<Field> ToFields(vtkDataArray* array);
 
+/// Adds the fields of an array to `all`, unless one of their names is taken: then adds the name of
+/// the array to `left`.
+void Append(const std::string& array, const std::vector<Field>& fields, std::vector<Field>& all,
+  std::vector<std::string>& left);
+
+/// Gives a warning that names the arrays that Append() left out, if any.
+void WarnOfTaken(
+  const std::vector<std::string>& left, const std::function<void(const std::string&)>& warn);
+
 /// Returns x, y, z (as floats if `single`), intensity as float, the fields of all other numeric
 /// arrays (`toColours` makes the fields of `rgb`), and the notes as comment. Blanks in names become
 /// `_`, and 64-bit integers become doubles. A warning names arrays that are left out because

@@ -67,6 +67,13 @@ class TestGeoJSONWriter(InFolder):
         self.assertNotIn("crs", whole)  # RFC 7946: it is always WGS84
         self.assertEqual([whole["units"].get(name) for name in ("energy", "distance_m", "object_id")], ["J", "m", None])
 
+    def test_names_that_collide(self):
+        add_array(self.data, "pair_0", np.zeros(self.data.GetNumberOfPoints()))
+        add_array(self.data, "pair", np.ones((self.data.GetNumberOfPoints(), 2)))
+        (said,) = write(self.writer, self.data, FILE)
+        self.assertIn("is without the point arrays 'pair'", said)
+        self.assertEqual({float(one["pair_0"]) for one in features()}, {0.0})
+
     def test_places_from_the_arrays_of_the_geodetic_transform(self):
         transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=self.data, MovePoints=True)
         transform.SetTargetFrameToUTM()

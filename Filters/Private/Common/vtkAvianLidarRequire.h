@@ -19,7 +19,8 @@ inline void vtkAvianLidarRequire(const std::string& problem, const std::string& 
   }
 }
 
-/// Call `step`, and put `before` in front of the text of its std::runtime_error.
+/// Call `step`, and put `before` in front of the text of its std::runtime_error, which loses its
+/// derived type: no caller tells FileError or MemoryError apart after this call.
 template <class Step>
 auto vtkAvianLidarWithin(const std::string& before, const Step& step)
 try
