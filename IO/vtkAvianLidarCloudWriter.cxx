@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudWriter.h"
 
+#include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
@@ -10,8 +11,6 @@
 #include "vtkPointSet.h"
 
 #include <cstring>
-#include <exception>
-#include <new>
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudWriter::~vtkAvianLidarCloudWriter()
@@ -39,32 +38,29 @@ void vtkAvianLidarCloudWriter::WriteData()
 {
   auto* input = vtkPointSet::SafeDownCast(this->GetInput());
   this->SetErrorCode(vtkErrorCode::UserError);
-  try
+  if (!this->FileName || !*this->FileName)
   {
-    if (!this->FileName || !*this->FileName)
-    {
-      this->SetErrorCode(vtkErrorCode::NoFileNameError);
-      vtkErrorMacro("FileName is not set, expected the name of the file to write.");
-      return;
-    }
+    this->SetErrorCode(vtkErrorCode::NoFileNameError);
+    vtkErrorMacro("FileName is not set, expected the name of the file to write.");
+    return;
+  }
+  const auto write = [&]
+  {
     vtkAvianLidarGuard::RequireInputs(this);
     vtkAvianLidarAbort::StopIfWanted(this);
     this->WriteCloud(input);
     this->SetErrorCode(vtkErrorCode::NoError);
     this->UpdateProgress(1.0);
-  }
-  catch (const avianlidar::WorkStopped&)
+  };
+  const std::string problem = vtkAvianLidarGuard::ProblemOf(
+    [&]
+    {
+      vtkAvianLidarCloudFields::Within(
+        this->FileName, "there is not enough memory to write the file", write);
+    });
+  if (!problem.empty())
   {
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro(
-      "" << vtkAvianLidarText(this->FileName) << ": there is not enough memory to write the file.");
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(
-      "" << vtkAvianLidarText(this->FileName + (": " + std::string(error.what()))) << ".");
+    vtkErrorMacro("" << vtkAvianLidarText(problem) << ".");
   }
 }
 

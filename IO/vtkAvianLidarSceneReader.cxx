@@ -36,9 +36,9 @@ using namespace avianlidar::scene;
 void AddGeometry(const Mesh& mesh, vtkPolyData* block)
 {
   auto points = Arrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
-  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
-    points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].data());
+    points->SetPoint(i, mesh.points[i].data());
   }
   block->SetPoints(points);
   block->SetPolys(vtkAvianLidarMakeTriangles(mesh.triangles, [](std::size_t i) { return i; }));

@@ -26,7 +26,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -298,14 +297,8 @@ int vtkAvianLidarSequenceReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   std::vector<double> times;
-  try
-  {
-    times = TimesOf(this->FileName ? this->FileName : "");
-  }
-  catch (const std::exception&)
-  {
-    times.clear(); // RequestData() finds and reports the error
-  }
+  // RequestData() finds and reports an error.
+  vtkAvianLidarGuard::ProblemOf([&] { times = TimesOf(this->FileName ? this->FileName : ""); });
   for (int port = 0; port < 2; ++port)
   {
     vtkAvianLidarCloudFields::SetTimes(times, outputVector->GetInformationObject(port));

@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace avianlidar::scene
 {
@@ -170,19 +171,16 @@ double SiLength(const Entity& unit)
   {
     return 0.0;
   }
-  static const struct
+  static const std::pair<const char*, double> prefixes[] = { { ".EXA.", 1e18 }, { ".PETA.", 1e15 },
+    { ".TERA.", 1e12 }, { ".GIGA.", 1e9 }, { ".MEGA.", 1e6 }, { ".KILO.", 1e3 }, { ".HECTO.", 1e2 },
+    { ".DECA.", 1e1 }, { ".DECI.", 1e-1 }, { ".CENTI.", 1e-2 }, { ".MILLI.", 1e-3 },
+    { ".MICRO.", 1e-6 }, { ".NANO.", 1e-9 }, { ".PICO.", 1e-12 }, { ".FEMTO.", 1e-15 },
+    { ".ATTO.", 1e-18 } };
+  for (const auto& [name, factor] : prefixes)
   {
-    const char* name;
-    double factor;
-  } prefixes[] = { { ".EXA.", 1e18 }, { ".PETA.", 1e15 }, { ".TERA.", 1e12 }, { ".GIGA.", 1e9 },
-    { ".MEGA.", 1e6 }, { ".KILO.", 1e3 }, { ".HECTO.", 1e2 }, { ".DECA.", 1e1 }, { ".DECI.", 1e-1 },
-    { ".CENTI.", 1e-2 }, { ".MILLI.", 1e-3 }, { ".MICRO.", 1e-6 }, { ".NANO.", 1e-9 },
-    { ".PICO.", 1e-12 }, { ".FEMTO.", 1e-15 }, { ".ATTO.", 1e-18 } };
-  for (const auto& prefix : prefixes)
-  {
-    if (unit.arguments.find(prefix.name) != std::string_view::npos)
+    if (unit.arguments.find(name) != std::string_view::npos)
     {
-      return prefix.factor;
+      return factor;
     }
   }
   return 1.0;
@@ -516,13 +514,9 @@ std::vector<std::string> Check3mf(const std::string& text)
 
 double PrintUnit(const std::string& text)
 {
-  static const struct
-  {
-    const char* name;
-    double length;
-  } units[] = { { "micron", 1e-6 }, { "micrometer", 1e-6 }, { "millimeter", 1e-3 },
-    { "centimeter", 1e-2 }, { "inch", 0.0254 }, { "foot", 0.3048 }, { "feet", 0.3048 },
-    { "meter", 1.0 } };
+  static const std::pair<const char*, double> units[] = { { "micron", 1e-6 },
+    { "micrometer", 1e-6 }, { "millimeter", 1e-3 }, { "centimeter", 1e-2 }, { "inch", 0.0254 },
+    { "foot", 0.3048 }, { "feet", 0.3048 }, { "meter", 1.0 } };
   std::optional<std::string_view> unit;
   ForEachTag(text,
     [&unit](std::string_view name, std::string_view attributes)
@@ -535,11 +529,11 @@ double PrintUnit(const std::string& text)
       }
       return !isRoot;
     });
-  for (const auto& known : units)
+  for (const auto& [name, length] : units)
   {
-    if (unit.value_or("millimeter") == known.name)
+    if (unit.value_or("millimeter") == name)
     {
-      return known.length;
+      return length;
     }
   }
   fail("has the unit '", *unit, "', expected micron, millimeter, centimeter, inch, foot or meter");

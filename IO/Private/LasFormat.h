@@ -45,14 +45,14 @@ constexpr const char* LasPointSource = "point_source_id";
 /// Offsets of the fields in a point record.
 struct LasLayout
 {
-  int format = 0;
-  bool extended = false;  ///< true for the formats 6 to 10
   std::size_t core = 0;   ///< length of the fields of the format, bytes
-  std::size_t length = 0; ///< length of a record, bytes
   int time = -1;          ///< offset of the time in a record, bytes; -1 without time
   int rgb = -1;           ///< offset of the colours, bytes; -1 without colours
   int nir = -1;           ///< offset of the near infrared, bytes; -1 without this field
   bool waveforms = false; ///< whether the core ends with a waveform packet
+  int format = 0;
+  bool extended = false;  ///< true for the formats 6 to 10
+  std::size_t length = 0; ///< length of a record, bytes
 };
 
 /// Throws FormatError if the format is not 0 to 10 or if the records are too short for the format.

@@ -393,22 +393,16 @@ private:
 
 LasLayout layoutOf(int format, std::size_t length)
 {
-  // Size of the core, and offsets of time, colours and near infrared, bytes.
-  struct Place
-  {
-    std::size_t core;
-    int time, rgb, nir;
-    bool waveforms;
-  };
-  constexpr Place places[] = { { 20, -1, -1, -1, false }, { 28, 20, -1, -1, false },
+  constexpr LasLayout layouts[] = { { 20, -1, -1, -1, false }, { 28, 20, -1, -1, false },
     { 26, -1, 20, -1, false }, { 34, 20, 28, -1, false }, { 57, 20, -1, -1, true },
     { 63, 20, 28, -1, true }, { 30, 22, -1, -1, false }, { 36, 22, 30, -1, false },
     { 38, 22, 30, 36, false }, { 59, 22, -1, -1, true }, { 67, 22, 30, 36, true } };
   failIf(
     format < 0 || format > 10, "its point data record format is ", format, ", expected 0 to 10");
-  const Place& place = places[format];
-  const LasLayout layout = { format, format >= 6, place.core, length, place.time, place.rgb,
-    place.nir, place.waveforms };
+  LasLayout layout = layouts[format];
+  layout.format = format;
+  layout.extended = format >= 6;
+  layout.length = length;
   failIf(length < layout.core, "its points have ", length, " bytes, expected at least ",
     layout.core, " for the point data record format ", format);
   return layout;

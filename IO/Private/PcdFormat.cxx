@@ -8,6 +8,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -82,19 +83,11 @@ PcdData understandData(std::string kind)
 {
   std::transform(kind.begin(), kind.end(), kind.begin(),
     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (kind == "ascii")
-  {
-    return PcdData::Ascii;
-  }
-  if (kind == "binary")
-  {
-    return PcdData::Binary;
-  }
-  if (kind == "binary_compressed")
-  {
-    return PcdData::Compressed;
-  }
-  fail("DATA is ", shown(kind), ", expected ascii, binary or binary_compressed");
+  constexpr const char* kinds[] = { "ascii", "binary", "binary_compressed" }; // as in PcdData
+  const auto* found = std::find(std::begin(kinds), std::end(kinds), kind);
+  failIf(found == std::end(kinds), "DATA is ", shown(kind),
+    ", expected ascii, binary or binary_compressed");
+  return static_cast<PcdData>(found - kinds);
 }
 
 using Bytes = std::vector<unsigned char>;
