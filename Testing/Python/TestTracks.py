@@ -211,5 +211,5 @@ class Tracks(InFolder):
                 (polyline([[(0, 0, 0), (0, NAN, 0)]], [0, 1]), "line 0 has at point 1"),
                 (polyline(TWO_LINES, TIMES, ["crow", "dodo"]), "line 1 has a species"),
                 (polyline(TWO_LINES, TIMES, ["crow"]), "'species' has 1 values"),
-                (numbers, "cell array 'species' is not")):
+                (numbers, "cell array 'species' does not have")):
             self.assert_fails(self.from_lines(data), words)
