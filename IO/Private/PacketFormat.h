@@ -41,10 +41,11 @@ struct PacketIndex
 /// Returns whether a source begins like a pcap or pcapng file.
 bool hasPackets(ByteSource& source);
 
-/// Finds the packets of one sensor: "192.168.1.201", "192.168.1.201:2368", or empty if the file has
-/// only one sensor. Leaves out damaged packets. The warning gives the number of damaged packets and
-/// the place where the file is cut short. Throws FormatError if the file is not pcap or pcapng, has
-/// no whole packet of a VLP-16, or if not exactly one sensor fits.
+/// Finds the packets of one sensor. `sensor` is an address ("192.168.1.201"), an address with a
+/// port ("192.168.1.201:2368"), or empty if the file has only one sensor. Leaves out damaged
+/// packets. The warning gives the number of damaged packets and the place where the file is cut
+/// short. Throws FormatError if the file is not pcap or pcapng, has no whole packet of a VLP-16, or
+/// if not exactly one sensor fits.
 PacketIndex indexPackets(ByteSource& source, const std::string& sensor, const KeepGoing& keepGoing);
 
 /// Reads one revolution with the columns `intensity` (0 to 255), `laser_id` (0 is the lowest),

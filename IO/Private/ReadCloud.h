@@ -47,8 +47,8 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing,
   const PacketIndex* packets = nullptr, std::size_t turn = 0);
 
 /// Gives columns the names and units of this project:
-/// - units and notes that a writer of this project put into a text become units and notes of the
-///   cloud;
+/// - units and notes that a writer of this project put into a comment or text area of the file
+///   become units and notes of the cloud;
 /// - `ring` or `channel` becomes `laser_id` if the cloud has no `laser_id`;
 /// - the prefix `file_` is added to a name if another column has this name, or if the name has a
 ///   unit in this project, such as `azimuth`, but not in the file;

@@ -60,9 +60,9 @@ private:
 /// Hash of ids, origins and directions, for ScanBeams::checksum.
 std::uint64_t checksumOf(const ScanBeams& beams);
 
-/// Hash of all inputs of a beam's geometry except the beam: mesh, beam shape, borders of media, all
-/// settings of rays (such as N and the sampling), and the seed. Range units, gate and object ids
-/// are inputs, too, if beams may be integrated or divided into cells.
+/// Hash of everything besides the beam on which the hits of a beam depend: mesh, beam shape,
+/// borders of media, all settings of rays (such as N and the sampling), and the seed. If beams may
+/// be integrated or divided into cells, the hash includes range units, gate and object ids.
 std::uint64_t traceKey(const ScanSetup& setup);
 }
 

@@ -126,7 +126,8 @@ private:
   const SceneTriangles& Scene;
   const CellDensity Density;
   const BeamShape Shape;
-  std::vector<double> Areas; ///< parts in the beam of cells of two levels, half-beamwidths squared
+  /// Area of each cell's part in the beam, for cells of two levels, half-beamwidths squared.
+  std::vector<double> Areas;
   std::vector<float> Jitter; ///< places of rays in a block, in units of their spacing
 
   // The current beam.
