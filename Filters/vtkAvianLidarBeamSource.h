@@ -200,9 +200,9 @@ public:
   /// uniform, or Gaussian, over the plane perpendicular to the axis.
   vtkAvianLidarPropertyMacro(HalfBeamwidthAcross, double, 0.0);
 
-  /// Angle from the sensor's horizontal to the direction of HalfBeamwidth, deg, -360 to 360. Seen
-  /// along the beam, a positive angle raises the right-hand end of this direction. For a vertical
-  /// beam, a fixed direction replaces the horizontal. Default 0.
+  /// Angle from the sensor's horizontal to the direction of HalfBeamwidth, deg, -360 to 360. For a
+  /// viewer who looks along the beam, a positive angle raises the right-hand end of this direction.
+  /// For a vertical beam, a fixed direction replaces the horizontal. Default 0.
   vtkAvianLidarPropertyMacro(BeamRotation, double, 0.0);
 
   ///@{
@@ -231,7 +231,7 @@ public:
   /// Time between two firings of a column, s, at least 0 (with prisms: above 0). Default 30e-6.
   vtkAvianLidarPropertyMacro(FiringInterval, double, 30e-6);
 
-  /// Number of revolutions to play, 1 to 1e6 / StepsPerRevolution. Default 1.
+  /// Number of revolutions that the time steps cover, 1 to 1e6 / StepsPerRevolution. Default 1.
   vtkAvianLidarPropertyMacro(NumberOfRevolutions, int, 1);
 
   /// Number of steps that share a revolution's columns, 1 to the number of columns. Default 1.

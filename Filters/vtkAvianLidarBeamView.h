@@ -22,9 +22,9 @@
  *   `incidence_angle`. The last row, `no surface`, is the sky. The shares of a column sum to one.
  *   If no energy is received, `energy_share` is 0.
  *
- * If few triangles enter the beam, shares are exact up to rounding. Otherwise about 32 times
- * RaysPerBeam rays sample the shares. An error is given if no beam has the id BeamId. Without beams
- * the outputs are empty.
+ * If few triangles enter the beam, shares are exact up to rounding. Otherwise shares are estimated
+ * from rays, whose number is about 32 times RaysPerBeam. An error is given if no beam has the id
+ * BeamId. Without beams the outputs are empty.
  *
  * Example, with the inputs of an echo filter: `view->SetBeamId(123)`. Documentation:
  * reference/paraview.md.

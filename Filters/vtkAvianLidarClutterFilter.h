@@ -6,18 +6,18 @@
  * Space around the sensor is divided into cells of range, azimuth and elevation. The persistence of
  * a cell is the weighted share of scans with an echo in the cell. The weight of each scan is
  * 1 - 1/Window times the weight of the next scan. The filter keeps the persistences as its memory.
- * The clutter probability of a point is the largest persistence, before this scan, of the point's
- * cell and the cells around this cell. Method, times and limits: Documentation/guide/filters.md.
- * The sensor must stand still.
+ * The clutter probability of a point is the largest persistence that the point's cell and the cells
+ * around this cell had before the scan of the point. Method, times and limits:
+ * Documentation/guide/filters.md. The sensor must stand still.
  *
  * - Input port 0, a scan: any vtkPointSet in metres, such as echoes or the cloud of a reader.
  * - Input port 1, a table (optional): vtkPolyData, the output port 1 of an earlier run, directly or
  *   from a file.
  * - Output port 0: a shallow copy of the scan with the point arrays `clutter_probability` and
  *   `is_clutter`.
- * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell with a persistence,
- *   in the order of `clutter_cell`, with `clutter_probability` and `clutter_cell`. Rank 0 has the
- *   table of all ranks.
+ * - Output port 1, the table: vtkPolyData, a vertex in the middle of each cell that has a
+ *   persistence, in the order of `clutter_cell`. The point arrays are `clutter_probability` and
+ *   `clutter_cell`. Rank 0 has the table of all ranks.
  * - Field data of both output ports: `learned_scans`, `position` and the settings in snake case
  *   with the prefix `clutter_`, such as `clutter_window`.
  *

@@ -113,8 +113,8 @@ public:
   /// Largest number of triangles in a leaf, at least 1 (1: Algorithm 1 as printed). Default: 4.
   vtkAvianLidarPropertyMacro(MaximumLeafSize, int, 4);
 
-  /// Level of the nodes whose volumes port 1 shows, with the leaves above this level; negative: no
-  /// volumes. Default: 0, the root.
+  /// Level of the nodes whose volumes port 1 shows; negative: no volumes. Port 1 also shows the
+  /// volumes of leaves above this level. Default: 0, the root.
   vtkAvianLidarPropertyMacro(DisplayLevel, int, 0);
 
   /// Number of nodes, number of leaves, and depth of the last tree; 0 without a tree.
@@ -122,8 +122,8 @@ public:
   int GetNumberOfLeaves() const;
   int GetDepth() const;
 
-  /// Number of trees that this filter has built. If the input already has a tree that fits, the
-  /// filter uses that tree and does not count it.
+  /// Number of trees that this filter has built. If the input already has a tree of the same
+  /// surfaces and options, the filter uses that tree and does not count it.
   int GetNumberOfBuilds() const;
 
   /// Size of the surfaces that this rank has sent to other ranks so far, bytes, for tests and

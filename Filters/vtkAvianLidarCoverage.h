@@ -6,10 +6,10 @@
  *
  * For each place the filter finds the beams that contain the place, the surfaces in front of the
  * place, the clutter in the same range units, and the probability of detection in closed form,
- * averaged over the bird's poses. No bird is traced. Lines of sight are kept: for another bird, air
- * or receiver the filter only evaluates these lines again. The result has the same bits as a new
- * run. Method and limits: Documentation/guide/coverage.md. We found no measured detection ranges of
- * birds for this kind of lidar.
+ * averaged over the bird's poses. No ray is traced to a bird. Lines of sight are kept: for another
+ * bird, air or receiver the filter only evaluates these lines again. The result has the same bits
+ * as the result of a new run. Method and limits: Documentation/guide/coverage.md. We found no
+ * measured detection ranges of birds for this kind of lidar.
  *
  * - Input port 0, beams of one sensor: as for vtkAvianLidarEchoFilter. The filter requests all
  *   beams for any piece of the output.
@@ -93,8 +93,8 @@ public:
   vtkAvianLidarSwitchMacro(Gliding, false);
 
   /// Effective area to which the bird is scaled, m2, 0 to 1e6: the mean over all headings and wing
-  /// phases, seen at an elevation of 3 degrees. The standard avian optical target has 0.018 m2.
-  /// Default: 0, area of the species.
+  /// phases, for a bird at an elevation of 3 degrees. The standard avian optical target has 0.018
+  /// m2. Default: 0, area of the species.
   vtkAvianLidarPropertyMacro(EffectiveArea, double, 0.0);
 
   /// Reflectance of the plumage, 1, above 0 to 1. Default: 0.3 (assumed; 0.15 dark, 0.6 white).

@@ -9,9 +9,10 @@
  *
  * Passes: read beams and sensor; merge the surfaces; take the tree that came with the surfaces, or
  * build a tree; find what each beam sees; compute energies; sum energies in range units; form
- * returns. After a change of materials, air, limits, noise or return mode, only the energies are
- * computed again, and weak paths that an earlier execution left out are traced. The result has the
- * same bits as a new run. The filter uses OpenMP, but neither a VTK locator nor vtkSMPTools.
+ * returns. After a change of materials, air, limits, noise or return mode, the filter only computes
+ * energies again and traces weak paths that an earlier execution left out. The result has the same
+ * bits as the result of a new run. The filter uses OpenMP, but neither a VTK locator nor
+ * vtkSMPTools.
  *
  * - Input port 0, beams: vtkPolyData, one point per beam at the sensor, with the point array
  *   `direction` and the field data of a vtkAvianLidarBeamSource.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarMedium
- * @brief Makes a medium that weakens light and sends it back in a part of the scene: ground fog, a
- * fog bank, a shower, the crown of a tree.
+ * @brief Makes a medium for a part of the scene. A medium, such as ground fog, a fog bank, a shower
+ * or the crown of a tree, weakens light and sends light back.
  *
  * - Input port 0 (optional, for SHAPE_SURFACE): vtkPolyData, the closed surface that bounds the
  *   medium, m, with triangles wound either way.

@@ -14,10 +14,11 @@
  *   `skipped_bound` (NaN without a beam). Field data: `column_azimuths`, `row_elevations`, and the
  *   limits of the receiver.
  *
- * Columns are the distinct azimuths, and rows the distinct elevations, to 1e-4 degrees. If the
- * beams come from a vtkAvianLidarBeamSource through the pipeline, columns and rows are taken from
- * the sensor's whole scan, and otherwise from the given beams. Rows of a tilted sensor are
- * channels. For grids, spacing and maps see Documentation/guide/clouds.md.
+ * Columns are the distinct azimuths of the beams. Rows are the distinct elevations. Angles that
+ * differ by at most 1e-4 degrees count as equal. If the beams come from a vtkAvianLidarBeamSource
+ * through the pipeline, columns and rows are taken from the sensor's whole scan, and otherwise from
+ * the given beams. Rows of a tilted sensor are channels. For grids, spacing and maps see
+ * Documentation/guide/clouds.md.
  *
  * Before execution, the size of the image comes from the beam source, or from Columns and Rows with
  * origin 0 and spacing 1. MPI ranks share echoes and beams. Each rank makes one sub-extent.
@@ -50,17 +51,11 @@ public:
   vtkTypeMacro(vtkAvianLidarRangeImage, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /// Number of columns, 0 or more, for beams that are not from a beam source. Default 0: automatic.
-  vtkSetClampMacro(Columns, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Columns, int);
-  ///@}
+  vtkAvianLidarLimitedMacro(Columns, 0, VTK_INT_MAX, 0);
 
-  ///@{
   /// Number of rows, 0 or more, for beams that are not from a beam source. Default 0: automatic.
-  vtkSetClampMacro(Rows, int, 0, VTK_INT_MAX);
-  vtkGetMacro(Rows, int);
-  ///@}
+  vtkAvianLidarLimitedMacro(Rows, 0, VTK_INT_MAX, 0);
 
   /// Controller of the processes that may work together; null: this process works alone. Default:
   /// the global controller.
@@ -76,9 +71,6 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-
-  int Columns = 0;
-  int Rows = 0;
 
 private:
   vtkAvianLidarRangeImage(const vtkAvianLidarRangeImage&) = delete;

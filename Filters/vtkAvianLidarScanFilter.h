@@ -188,7 +188,7 @@ public:
   ///@}
 
   ///@{
-  /// Rays that descend the tree together, without effect on the echoes:
+  /// Choice of the rays that descend the tree together. All choices give the same echoes:
   ///
   /// - BATCH_COLLISION_DETECTION_RAYS (Off): every ray by itself
   /// - BATCH_COLLISION_DETECTION_GROUPS (On): neighbouring beams together, then packets of rays;

@@ -97,7 +97,7 @@ public:
   /// Largest speed over ground of a new track, m/s, 0.1 to 1000. Default 25 (assumed).
   vtkAvianLidarPropertyMacro(MaximumSpeed, double, 25.0);
 
-  /// Largest climb or descent of a new track, m/s, 0.1 to 1000. Default 5 (assumed).
+  /// Largest rate of climb or descent of a new track, m/s, 0.1 to 1000. Default 5 (assumed).
   vtkAvianLidarPropertyMacro(MaximumClimbRate, double, 5.0);
 
   /// Largest turn rate of a new track, deg/s, 0 to 360. Default 40 (assumed).

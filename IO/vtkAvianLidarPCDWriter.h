@@ -66,8 +66,8 @@ public:
   ///@{
   /**
    * Whether the file has rows and columns. Automatic: only if no beam has several echoes.
-   * Organised: always, with the echo of most `energy_received` in each cell, and an error if the
-   * beams do not form a grid. List: never. Default ORGANISATION_AUTOMATIC.
+   * Organised: always, with the echo of the largest `energy_received` in each cell, and an error if
+   * the beams do not form a grid. List: never. Default ORGANISATION_AUTOMATIC.
    */
   vtkAvianLidarLimitedMacro(
     Organisation, ORGANISATION_AUTOMATIC, ORGANISATION_LIST, ORGANISATION_AUTOMATIC);

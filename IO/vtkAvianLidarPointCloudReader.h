@@ -61,9 +61,9 @@ public:
 
   ///@{
   /**
-   * IPv4 address of the sensor to read if packets come from several sensors, with the port if only
-   * the port differs ("192.168.1.201:2368"). Without an address, packets of several sensors give an
-   * error. Default: no address.
+   * IPv4 address of the sensor to read. If sensors differ only by their ports, the address includes
+   * the port ("192.168.1.201:2368"). Without an address, packets of several sensors give an error.
+   * Default: no address.
    */
   vtkSetStringMacro(SensorAddress);
   vtkGetStringMacro(SensorAddress);

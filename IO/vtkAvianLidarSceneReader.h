@@ -53,14 +53,9 @@ public:
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  ///@{
-  /**
-   * Scene as JSON text that replaces the contents of FileName, which need not exist. Messages name
-   * FileName. Paths of other files are relative to the folder of FileName. Default: an empty text.
-   */
-  vtkSetMacro(Text, std::string);
-  vtkGetMacro(Text, std::string);
-  ///@}
+  /// Scene as JSON text that replaces the contents of FileName, which need not exist. Messages name
+  /// FileName. Paths of other files are relative to the folder of FileName. Default: an empty text.
+  vtkAvianLidarPropertyMacro(Text, std::string, {});
 
   /// Returns 1 if the file name ends with .lidarscene.json and the file can be opened, else 0.
   static int CanReadFile(VTK_FILEPATH const char* fileName);
@@ -79,7 +74,6 @@ private:
   void operator=(const vtkAvianLidarSceneReader&) = delete;
 
   char* FileName = nullptr;
-  std::string Text;
 };
 
 #endif

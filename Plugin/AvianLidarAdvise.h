@@ -2,9 +2,9 @@
 #ifndef AvianLidarAdvise_h
 #define AvianLidarAdvise_h
 
-/// Adds the button Advise to ParaView's panel of the echo filter. The button measures on the server
-/// which settings keep the error limits given beside it, and enters these settings in the panel.
-/// The user then presses Apply.
+/// Adds the button Advise to ParaView's panel of the echo filter. A click starts measurements of
+/// errors and times on the server. The fastest settings that keep the error limits given beside the
+/// button are then entered in the panel. The user then presses Apply.
 void AvianLidarAddAdvise();
 
 #endif

@@ -32,11 +32,11 @@ void AvianLidarAddDomains();
  * the echo filter and the macros that are installed beside the plugin. The menu Macros and, in
  * ParaView 5.11, the quick launch (Ctrl+Space) have these macros, too. A click on a macro is one
  * step of Edit > Undo. If the XML of a filter has the hint AvianLidarMenu, menus and quick launch
- * show the text of this hint. ParaView searches only the shown texts. The label cannot be this
- * text, because the label gives the name in Python. The first Apply of a source colours echoes and
- * range images by energy, colours points with classes by class, and shows a range image in a view.
- * The function also adds the plugin's help pages, the button Advise and the guard of Save Data.
- * Without a window (pvpython, pvserver) the function does nothing.
+ * show the text of this hint. ParaView searches only the shown texts. The label of the filter
+ * cannot be the text of the hint, because the label gives the name in Python. The first Apply of a
+ * source colours echoes and range images by energy, colours points with classes by class, and shows
+ * a range image in a view. The function also adds the plugin's help pages, the button Advise and
+ * the guard of Save Data. Without a window (pvpython, pvserver) the function does nothing.
  */
 void AvianLidarAddToWindow();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamVolumeTest.h"
 
+#include "BeamCone.h"
 #include "TriangleTest.h"
 
 #include <algorithm>

@@ -19,7 +19,7 @@
 #ifndef avianlidar_BeamVolumeTest_h
 #define avianlidar_BeamVolumeTest_h
 
-#include "BeamCone.h"
+#include "BeamFrame.h"
 #include "BoundingVolume.h"
 
 namespace avianlidar

@@ -3,7 +3,8 @@
  * @file VolumeTree.h
  * @brief The paper's binary tree of AABBs, OBBs or spheres in double precision, and its descent.
  *
- * This tree serves to compare the paper's volumes. The kernel's own tree has eight boxes per node.
+ * The binary tree serves to compare the paper's volumes. The kernel's own tree has eight boxes per
+ * node.
  *
  * Source: paper, Sec. 3.1 and 3.2, Eq. 14, Algorithm 1.
  * Differs: a leaf holds up to maximumLeafSize triangles (Algorithm 1: one triangle). The descent is

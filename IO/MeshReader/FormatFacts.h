@@ -15,18 +15,18 @@
 namespace avianlidar::scene
 {
 /**
- * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support. Refused
- * are files that require an extension (specification, section 3.12) other than Draco or extensions
- * of materials, textures, lights and metadata. Refused are also files that use instances,
- * quantization or the centre of a tile, and positions that are not of single precision.
+ * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support. Files
+ * may require only Draco and the extensions (specification, section 3.12) of materials, textures,
+ * lights and metadata. The function also refuses files that use instances, quantization or the
+ * centre of a tile, and files with positions that are not of single precision.
  * @param text contents of the file, JSON or binary. Throws Error, which names the fault.
  * @return warnings of skins and of weights of morph targets, which are left out
  */
 std::vector<std::string> CheckGltf(const std::string& text);
 
 /**
- * Returns the unit of length of an IFC file, m, for a conversion-based unit such as the foot, else
- * 1. Assimp supports only the metre and its prefixes.
+ * Returns the unit of length of an IFC file, m, if the unit is conversion-based, such as the foot.
+ * Returns 1 without a unit and for SI units, because Assimp supports the metre and its prefixes.
  * @param text contents of the file. Throws Error if the unit cannot be read.
  * @param elements becomes the number of elements with a shape, by type, such as "IFCWALL". Types
  * that are not solid, such as spaces, openings and annotations, are left out.
@@ -62,8 +62,9 @@ double PrintUnit(const std::string& text);
 void CheckAmf(const std::string& text);
 
 /**
- * Moves the vertices of an OBJ file near the origin, because Assimp reads single precision. Files
- * with coordinates below 8192, which single precision rounds by less than 0.001, are not changed.
+ * Moves the vertices of an OBJ file towards the origin, because Assimp reads single precision.
+ * Files with coordinates below 8192, which single precision rounds by less than 0.001, are not
+ * changed.
  * @return vector to be added to the vertices that Assimp reads, in the unit of the file
  */
 Vec3 MoveObjToOrigin(std::vector<char>& bytes);

@@ -66,7 +66,7 @@ struct Column
   Values values;
 };
 
-/// One number or text that belongs to the whole cloud.
+/// Numbers or texts of one name that belong to the whole cloud.
 struct Note
 {
   std::string name;

@@ -4,7 +4,7 @@
  * @brief Reads point clouds of KITTI, and the labels of SemanticKITTI.
  *
  * A `.bin` file has four float32 per point: x forward, y left and z up in the sensor's frame, m,
- * and a reflectance in [0, 1]. This project's clouds have x right and y forward instead. A `.label`
+ * and a reflectance in [0, 1]. In this project's clouds x is right and y is forward. A `.label`
  * file has a uint32 per point, with the class in the lower 16 bits and the instance in the upper 16
  * bits. Sources: Geiger et al., "Vision meets Robotics: The KITTI Dataset", IJRR 2013; Behley et
  * al., "SemanticKITTI", ICCV 2019.

@@ -72,8 +72,8 @@ struct LasAxis
   double bound() const;
 };
 
-/// Returns the finest scale (a power of ten, at least 1e-6 m) and a whole offset for coordinates
-/// from low to high, m.
+/// Returns the finest scale (a power of ten, at least 1e-6 m) and an offset that is a whole number,
+/// for coordinates from low to high, m.
 LasAxis chooseAxis(double low, double high);
 
 /// A field of the core of a point of format 6 or 7.

@@ -9,9 +9,9 @@
  *
  * Sources: laszip_api.h and the chunks and chunk tables in files of LASzip 3. The code reads chunks
  * of one size and, for formats 6 to 8, of several sizes (COPC). LASzip does not check the sizes in
- * a file. The code therefore first compares the sizes with the length of the file, in the record of
- * the compression, the table of chunks, the layers of each chunk and the first bytes of each
- * decoder.
+ * a file. The code therefore first compares all sizes with the length of the file: the sizes in
+ * the record of the compression, in the table of chunks, in the layers of each chunk and in the
+ * first bytes of each decoder.
  */
 #ifndef AvianLidarLazFormat_h
 #define AvianLidarLazFormat_h

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshFormats.h
- * @brief Chooses the library that reads a mesh file by the file extension.
+ * @brief Chooses by the file extension which library reads a mesh file.
  */
 #ifndef AvianLidarMeshFormats_h
 #define AvianLidarMeshFormats_h

@@ -26,8 +26,8 @@ namespace avianlidar::scene
  *
  * | variable                  | meaning             | default                         |
  * |---------------------------|---------------------|---------------------------------|
- * | AVIANLIDAR_MESH_SECONDS   | most time, s        | 3600                            |
- * | AVIANLIDAR_MESH_GIGABYTES | most memory, GB     | nine tenths of available memory |
+ * | AVIANLIDAR_MESH_SECONDS   | limit of time, s    | 3600                            |
+ * | AVIANLIDAR_MESH_GIGABYTES | limit of memory, GB | nine tenths of available memory |
  * | AVIANLIDAR_MESH_READER    | path of the program | program beside the library      |
  *
  * Throws Error if the file cannot be read, contains no triangle, or has a coordinate that is not

@@ -133,9 +133,9 @@ double SignedArea(const Ring& ring);
 double Area(const Polygon& polygon);
 
 /**
- * Returns the same region as valid polygons, without repeated vertices and without crossing or
- * overlapping rings (GEOS MakeValid). The result is empty if no region with an area is left.
- * `repaired` becomes true if the repair changes more than repeated vertices.
+ * Returns valid polygons that cover the region of `polygon`, without repeated vertices and without
+ * crossing or overlapping rings (GEOS MakeValid). The result is empty if no region with an area is
+ * left. `repaired` becomes true if the repair changes more than repeated vertices.
  */
 std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 

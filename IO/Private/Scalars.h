@@ -34,7 +34,7 @@ std::size_t sizeOf(Scalar type);
 bool isFloat(Scalar type);
 bool isSigned(Scalar type);
 
-/// Returns the type of a kind ('I', 'U' or 'F') and a size, bytes, or no value if there is none.
+/// Returns the type of a kind ('I', 'U' or 'F') and a size, bytes, or no value without such a type.
 std::optional<Scalar> scalarOf(char kind, std::size_t size);
 
 /// Calls f with a value of the C++ type of the scalar type.

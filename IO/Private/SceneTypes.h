@@ -43,8 +43,8 @@ struct Material
   avianlidar::Material coefficients{ 0.0, 0.0, 1.0 };
 };
 
-/// Rule that replaces the materials of a mesh whose names fit the pattern (`*`, `?`) by a material
-/// of the scene.
+/// Rule that gives a material of the scene to triangles of a mesh. The name that the material of
+/// these triangles has in the mesh must fit the pattern (`*`, `?`).
 struct MaterialRule
 {
   std::string pattern;

@@ -11,8 +11,8 @@
 
 namespace avianlidar::scene
 {
-/// Part that a polygon and a triangle of a terrain have in common in plan, and the plane of the
-/// triangle: z = a x + b y + c, with x and y relative to `center`.
+/// Intersection, in plan, of a polygon with a triangle of a terrain, and the plane of the triangle:
+/// z = a x + b y + c, with x and y relative to `center`.
 struct TerrainPiece
 {
   Polygon polygon;

@@ -2,7 +2,6 @@
 """Files made wrong: bytes, words, numbers and lines; and values of a JSON document. Each mutation draws what it does from r."""
 
 import copy
-import random
 import re
 import struct
 

@@ -16,7 +16,6 @@ import vtk
 import avianlidar
 import echotools
 import scenetools
-from avianlidar import vtkAvianLidar as al
 from cloudtools import WRITERS, add_array, add_field, cloud
 from faulttools import make, writer
 

@@ -71,11 +71,11 @@ struct Medium
   /// SquareOfLeaves.
   double squareOfDrops = 6.0;
   double renewed = 1.0;   ///< share of the drops that are drawn anew in each scan, 0 to 1
-  bool isFollowed = true; ///< true if a threshold may follow its light (Receiver.h); trees: false
+  bool isFollowed = true; ///< true if a threshold may follow the medium's light; false for trees
   int objectId = -2;      ///< object id of the medium's echoes; ObjectOfAir for air
   /// True if drops are leaves. Light comes back through the gap through which it went out, if its
   /// ways out and back are less than the width of a leaf apart (BeamAir.h). If `drops` is 0, light
-  /// always comes back through this gap.
+  /// always comes back through the gap through which it went out.
   bool sharesGaps = false;
 
   /// Backscatter coefficient mu/S, 1/(m sr).

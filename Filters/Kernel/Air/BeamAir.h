@@ -15,20 +15,20 @@
  * divided into columns. A column has a direction, a share of the pulse, and parts that lie in
  * volumes (MediumVolume.h). Columns are the cells of a grid of eight by eight over the beam's
  * plane, or eight rows if all volumes are layers. Samples hold the columns of their rays
- * (BeamSamples::columns). So a tree in one half of a beam weakens only this half. A tree that a
- * wall half hides returns half of its light.
+ * (BeamSamples::columns). So a tree in one half of a beam weakens only this half. A tree that is
+ * half hidden by a wall returns half of its light.
  *
  * Leaves stop light on the way out and on the way back. A leaf that would stop the light twice
  * counts once. Light from a range R returns to any point of the aperture, a disc about the apex. If
- * this point lies q from the apex, the two ways are q (1 - z/R) apart at a range z. This distance
- * is x times the diameter of a leaf. A leaf of random orientation that stops light on the way out
- * also stops light on the way back with the probability (1 - x)^2, or 0 if x exceeds 1. So leaves
- * transmit exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged over the aperture. For a length
- * L this transmission lies between exp(-2 mu L) and exp(-mu L). It is exp(-mu L) if the aperture is
- * much smaller than a leaf.
+ * this point lies q from the apex, the two ways are q (1 - z/R) apart at a range z. The distance
+ * between the two ways is x times the diameter of a leaf. A leaf of random orientation that stops
+ * light on the way out also stops light on the way back with the probability (1 - x)^2, or 0 if x
+ * exceeds 1. So leaves transmit exp(-mu int (2 - (1 - x)^2) dz) there and back, averaged over the
+ * aperture. For a length L this transmission lies between exp(-2 mu L) and exp(-mu L). It is
+ * exp(-mu L) if the aperture is much smaller than a leaf.
  *
- * Range units that parts of media meet may be perceived without light from surfaces, if the media
- * return more than a millionth of the lower limit.
+ * A range unit that overlaps a part of a medium may be perceived without light from surfaces, if
+ * the media return more than a millionth of the lower limit.
  *
  * Source: the lidar equation, single scattering, e.g. U. Wandinger, in: Lidar, Springer, 2005; the
  * hot spot of leaves: A. Kuusk, Soviet Journal of Remote Sensing 3, 1985 (second-hand).
@@ -278,7 +278,7 @@ private:
   std::vector<Part> Parts; ///< column by column
   /// Units [first, end) in which media may be perceived without light from surfaces.
   std::vector<std::pair<std::int64_t, std::int64_t>> Looked;
-  std::int64_t Dark = 0;   ///< unit from which on media return no light that matters
+  std::int64_t Dark = 0;   ///< unit at which and beyond which media return no light that matters
   double MostOfUnit = 0.0; ///< bound of a unit's energy from media, J per sr of collected()
   std::vector<MetSurface> Surfaces;
   std::size_t Taken = 0;  ///< number of `Surfaces` that have taken their shares
@@ -290,7 +290,7 @@ private:
   std::vector<Part> Here;        ///< parts of a column between two `Breaks`
   std::vector<Share> Sums;       ///< shares of a unit, in the order of `Seen`
   std::array<double, 3> Known{}; ///< ends, m, and decay, 1/m, of the last piece of constant density
-  double OfKnown = 0.0;          ///< integral of this piece without the extinction before it, m sr
+  double OfKnown = 0.0;          ///< integral of `Known`'s piece without extinction before it, m sr
   std::vector<MediumCrossing> Found;
   MediumCrosser Crosser;
 };

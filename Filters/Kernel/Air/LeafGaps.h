@@ -54,8 +54,8 @@ public:
 
   /// Largest cross-section of a divided beam where its first leaves begin, in projected leaf areas.
   static constexpr double MostLeaves = 64.0;
-  /// Largest cross-section of the beam where leaves of further media begin, in projected leaf
-  /// areas. This number limits the number of leaves that are drawn.
+  /// Largest cross-section of the beam where the leaves of a medium behind the first medium begin,
+  /// in projected leaf areas. This number limits the number of leaves that are drawn.
   static constexpr double MostLeavesBehind = 4096.0;
   /// Largest area of a square about all ways out and back, in projected leaf areas. This number
   /// limits the aperture.

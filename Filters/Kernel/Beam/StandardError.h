@@ -17,7 +17,7 @@
  *   accounts for cells with a surface that both rays of the cell miss.
  *
  * With 8 to 15 rays both errors are multiplied by t / 1.96, with t Student's t of N - 1 degrees of
- * freedom. If one plane fills the beam, so few rays give little information about missed surfaces.
+ * freedom. If one plane fills the beam, 8 to 15 rays give little information about missed surfaces.
  *
  * Source: Hoeffding, Ann. Math. Stat. 19(3), 1948; Agresti and Coull, Am. Stat. 52(2), 1998;
  * Student, Biometrika 6(1), 1908.

@@ -3,8 +3,8 @@
  * @file SharedVector.h
  * @brief A constant vector whose copies share their elements.
  *
- * Surfaces, the output of the tree and the scan share the data of every triangle of a large scene,
- * so that these data are in memory once and not three times.
+ * The data of every triangle of a large scene are in memory once and not three times, because
+ * surfaces, scan and the tree's output share these data.
  *
  * Source: none.
  * Valid: any elements. shareWith() requires elements that can be copied as bytes and have no gaps

@@ -5,10 +5,10 @@
  * one pose, as a small image, and the part of the target that a beam lights.
  *
  * The image is drawn as seen from afar, with 3 x 3 samples for each pixel. A depth buffer leaves
- * out parts that other parts hide. Coarser images sum the pixels of this image. A beam uses the
- * coarsest image in which its radius spans RadiusInPixels. A round beam costs about fifty pixels.
- * Other beams cost more, by the ratio of their length to their width. effectiveArea() draws a finer
- * image and does not keep it.
+ * out parts that other parts hide. Coarser images sum the pixels of the drawn image. A beam uses
+ * the coarsest image in which its radius spans RadiusInPixels. A round beam takes about fifty
+ * pixels. Any other beam takes more pixels than a round beam, by the ratio of its length to its
+ * width. effectiveArea() draws a finer image and does not keep it.
  *
  * Source: none.
  * Valid: beams wider than 0.02 of the target's longer side. A narrower beam is replaced by a beam

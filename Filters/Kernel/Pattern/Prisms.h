@@ -4,8 +4,8 @@
  * @brief Rotating wedge prisms (Risley prisms), which steer the beams of a lidar.
  *
  * Prisms stand one behind the other on an axis and turn about it, each at its own rate. Directions
- * repeat after the least common multiple of the periods of rotation, and never if these periods
- * have no common multiple.
+ * repeat after the least common multiple of the periods of rotation. If these periods have no
+ * common multiple, directions never repeat.
  *
  * A prism has a face perpendicular to the axis and a face inclined by the wedge angle. Light leaves
  * through the inclined face if the wedge angle is above 0, and enters through this face if the

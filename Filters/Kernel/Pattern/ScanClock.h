@@ -56,8 +56,8 @@ std::string checkClock(const ScanClock& clock, const ScanPattern& pattern);
 /// Time of a moment, (k + j/n) / RotationRate, s.
 double timeOf(const ScanClock& clock, const ScanMoment& moment);
 
-/// Times of all steps of all revolutions to be played, s, strictly ascending. The only time is 0 if
-/// the clock is not valid.
+/// Times of all steps of all revolutions to be played, s, strictly ascending. If the clock is not
+/// valid, the result is the single time 0.
 std::vector<double> timesOf(const ScanClock& clock);
 
 /**

@@ -16,9 +16,9 @@
  * Source: paper, Fig. 1 and Sec. 5.3.
  * Differs: with an odd number of channels the staggered order has steps of C/2 rounded up. Tables
  * of azimuth offsets and firing times, and sectors without beams, are added. Rotating prisms
- * (Prisms.h) may replace the rotor. A scan is then a window of 1 / RotationRate seconds in which
- * the lasers fire continuously. A column is then one firing of each laser. The next scan continues
- * where the last scan ended. A table of any beams may replace rotor and prisms.
+ * (Prisms.h) may replace the rotor. With prisms, a scan is a window of 1 / RotationRate seconds in
+ * which the lasers fire continuously. A column of such a scan is one firing of each laser. The next
+ * scan continues where the last scan ended. A table of any beams may replace rotor and prisms.
  * Valid: rotations by multiples of 90 degrees are exact. All channels of a column share its
  * azimuth: the rotor's motion between the firings of one column is not modelled (at most
  * FiringInterval * C * RotationRate of the azimuth range).

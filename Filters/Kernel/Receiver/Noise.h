@@ -8,8 +8,8 @@
  * units inside the gate, and h nu the energy of a photon. With a photon receiver the noise is
  * Q_n[m] = z[m] sqrt(sigma0^2 + F n) h nu/eta with z[m] ~ N(0, 1) and n the electrons of the unit
  * (PhotonReceiver.h). b[m] and z[m] are pure functions of (seed, beam, m, revolution), whether or
- * not the unit holds an echo. The uniformly distributed place of a false alarm in its unit is such
- * a function, too. b[m] and z[m] are drawn in steps:
+ * not the unit holds an echo. The uniformly distributed place of a false alarm in its unit is also
+ * a pure function of these values. b[m] and z[m] are drawn in steps:
  *
  * 1. Units whose noise exceeds Qlow without light (false alarms) are drawn by the geometrically
  *    distributed gaps between them. This method costs one draw per alarm, and not one draw for each

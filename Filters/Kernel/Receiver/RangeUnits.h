@@ -76,9 +76,9 @@ struct RangeUnit
 /// Sums the contributions of one beam after the other. An object allocates nothing once its
 /// workspace has grown to the largest beam. Each thread needs its own object.
 ///
-/// Pulses are placed in a loop over lanes, and are added one by one to a table of a window of
-/// units. If a beam's units lie farther apart than the table is long, the window moves to the next
-/// unit that a pulse meets.
+/// Pulses are placed in a loop over lanes, and are added one by one to a table, which holds a
+/// window of units. If a beam's units lie farther apart than the table is long, the window moves to
+/// the next unit that a pulse meets.
 class RangeUnitAccumulator
 {
 public:
@@ -92,7 +92,7 @@ public:
   /// Remove the contributions of the previous beam.
   void clear();
 
-  /// Add a path of the beam. Length and energy must be finite, and the energy at least 0.
+  /// Add a path of the beam. Length and energy must be finite, and the energy must be at least 0.
   void add(const Contribution& contribution);
 
   /// Add `count` paths. @param ranges half the length of each path, m @param energies energies, J

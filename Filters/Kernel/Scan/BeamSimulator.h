@@ -52,8 +52,8 @@ public:
     return this->Tracing.trace(begin, end, traces, leaveOut);
   }
 
-  /// Sums the energies of beam `beam` of the block traced last: adds to its trace, appends its
-  /// echoes, and fills its report.
+  /// Sums the energies of beam `beam` of the block traced last, adds new hits and paths to the
+  /// beam's trace, appends the beam's echoes, and fills the beam's report.
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
   /// See BeamLighting::lightAll().

@@ -6,7 +6,7 @@
  *
  * The units that form a return depend on noise. Range, labels and standard error of a return follow
  * from its first, last and strongest unit. The values of the first MostReturns returns with
- * different units are kept. For a further return the beam is lit again.
+ * different units are kept. For any other return the beam is lit again.
  *
  * Source: none.
  * Valid: for one LightKey and the samples of one trace. Echoes are bitwise identical with and

@@ -78,7 +78,7 @@ struct Return
   int medium = -1;               ///< ReceivedUnit::medium of the unit with most `leaves`
   double rangeOfLeaves = 0.0;    ///< mean range of the light in `leaves`, m
   double range = 0.0;            ///< range, m, as defined by rangeOf()
-  // Both numbers count all returns of the beam, before ReturnMode selects returns.
+  // returnNumber and numberOfReturns count all returns of the beam, before ReturnMode selects.
   int returnNumber = 1;    ///< number of the return, from 1, nearest first
   int numberOfReturns = 1; ///< number of returns of the beam
 };

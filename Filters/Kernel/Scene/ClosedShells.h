@@ -6,7 +6,7 @@
  *
  * Triangles are paired at each edge. Paired triangles belong to one shell. If more than two
  * triangles share an edge, triangles that name the same given points are paired first. The other
- * triangles are paired by their angle about the edge. Bodies that touch thus become separate shells
+ * triangles are paired by their angle about the edge. Thus bodies that touch become separate shells
  * or one closed shell. All shells face outward, except holes. A hole is a shell inside another
  * shell, and its triangles face inward.
  * Source: none.

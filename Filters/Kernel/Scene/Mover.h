@@ -58,7 +58,7 @@ struct Mover
   TriangleMesh mesh;                ///< triangles in the object's frame, m; all points are corners
   std::vector<std::uint32_t> parts; ///< part of each point: 0 is rigid, p moves with flaps[p - 1]
   std::vector<Material> materials;  ///< material of each triangle
-  std::vector<int> objectIds;       ///< object id of each triangle; used by no other object
+  std::vector<int> objectIds;       ///< object id of each triangle; no other object has these ids
   std::vector<int> materialIds;     ///< material id of each triangle
   std::vector<Pose> poses;          ///< poses in order of time
   bool always = false;              ///< true if the only pose holds at any time

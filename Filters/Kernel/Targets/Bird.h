@@ -13,8 +13,8 @@
  * The body is a polyhedron of 48 triangles that has the effective area of the ellipsoid (silhouette
  * weighted by the cosine of incidence) from every direction. For any convex body with a centre of
  * symmetry this area is half a quadratic form of the direction, so a fit of two values suffices.
- * The wings have 24 triangles. With so few triangles, a beam that meets a bird is still integrated
- * over polygons.
+ * The wings have 24 triangles. With 72 triangles in all, a beam that meets a bird is still
+ * integrated over polygons.
  *
  * Frame of a bird: x right, y forward, z up. The bird is turned by the bank (to the right) first,
  * and then by the heading (clockwise from north).

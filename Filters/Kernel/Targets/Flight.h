@@ -23,7 +23,7 @@
  * Source: flocks of starlings: M. Ballerini et al., "Empirical investigation of starling flocks",
  * Animal Behaviour 76 (2008): flocks are thin and flat, with sides in the ratio 1 : 2.8 : 5.6 for
  * any size, and are denser at the border. No neighbour is nearer than about a wingspan. Distances
- * of nearest neighbours do not depend on the size.
+ * of nearest neighbours do not depend on the size of the flock.
  * Differs: a flock is a rigid ellipsoid with its short axis upright. The following is assumed: one
  * bird in (4 wingspans)^3 on average, a density at the border of twice the density in the middle,
  * and the speeds, banks and spreads above. There is no wind.

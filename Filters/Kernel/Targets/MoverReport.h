@@ -24,7 +24,8 @@ namespace avianlidar
 /// Light that the beams of a scan receive from one mover.
 struct MoverReport
 {
-  /// True if the mover exists at the time of `pose`. If false, the other members are invalid.
+  /// True if the mover exists at the time of `pose`. If `present` is false, all other members are
+  /// invalid.
   bool present = false;
   Pose pose; ///< pose at the time of `beam`; if `touched` is false, in the middle of the scan
   /// Poses at the times of the first and the last beam that contains the mover's origin or receives
@@ -45,7 +46,7 @@ struct MoverReport
 /// returns false.
 /// @param sights sights of a scan of these beams @param threads number of threads, > 0; 0:
 /// loopThreads(0)
-/// @param wanted called now and then, on the calling thread; may be empty
+/// @param wanted function called repeatedly on the calling thread; may be empty
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
   const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted = {});
 }

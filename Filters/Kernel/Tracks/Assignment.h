@@ -5,7 +5,7 @@
  * left without a column at a cost.
  *
  * Rows are added one by one. Each row takes the shortest augmenting path that ends at a free column
- * or with a row unassigned (R. Jonker and A. Volgenant, "A shortest augmenting path algorithm for
+ * or leaves a row unassigned (R. Jonker and A. Volgenant, "A shortest augmenting path algorithm for
  * dense and sparse linear assignment problems", Computing 38, 1987). The path uses only rows and
  * columns that allowed pairs connect to this row.
  *

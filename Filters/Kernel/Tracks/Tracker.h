@@ -75,7 +75,8 @@ class Tracker
 {
 public:
   /// Updates the tracks with one more scan. @param time time of the scan, s
-  /// @param goOn called now and then; if `goOn` returns false, WorkStopped is thrown; may be empty
+  /// @param goOn function called repeatedly; WorkStopped is thrown if it returns false; may be
+  /// empty
   /// @return id of each cluster's track
   std::vector<int> update(const std::vector<Cluster>& clusters, const Vec3& sensor, double time,
     const TrackerSettings& settings, const KeepGoing& goOn = {});

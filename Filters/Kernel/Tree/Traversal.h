@@ -66,7 +66,7 @@ std::uint64_t descendWide(
   std::uint64_t visited = 0;
   while (top != bottom)
   {
-    // A copy would have to wait for the write of the entry, which mostly happened just before.
+    // The entry was mostly written just before, so a copy would have to wait for the write.
     const DescentEntry& entry = *--top;
     if (policy.isEnd(entry))
     {

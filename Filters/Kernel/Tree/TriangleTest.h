@@ -143,7 +143,7 @@ struct PlaneRange
   int kind;
 };
 
-/// Property of a triangle that all rays of a group share, so that no ray needs a test of the
+/// Property of a triangle that holds for all rays of a group, so that no ray needs a test of the
 /// property.
 enum class PlaneView
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WideTree.h"
 
+#include "BeamCone.h"
 #include "LaneMath.h"
 #include "Multiversion.h"
 #include "TriangleTest.h"

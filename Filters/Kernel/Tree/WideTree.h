@@ -17,8 +17,6 @@
 #ifndef avianlidar_WideTree_h
 #define avianlidar_WideTree_h
 
-#include "BeamCone.h"
-
 #include <cstdint>
 #include <vector>
 

@@ -5,7 +5,7 @@
  *
  * A program that edits values in place may call Modified() on the array, on its container, or on
  * the data object. None of these objects notifies the other two. So caches first compare the times
- * of all objects at all levels: if all times are unchanged, the data are, too. If one time is
+ * of all objects at all levels: if all times are unchanged, the data are unchanged. If one time is
  * later, caches compare the content, and keep the parts that are equal.
  */
 #ifndef vtkAvianLidarContent_h

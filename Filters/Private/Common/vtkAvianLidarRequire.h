@@ -20,7 +20,7 @@ inline void vtkAvianLidarRequire(const std::string& problem, const std::string& 
 }
 
 /// Call `step`, and put `before` in front of the text of its std::runtime_error, which loses its
-/// derived type: no caller tells FileError or MemoryError apart after this call.
+/// derived type: callers cannot distinguish FileError and MemoryError from other errors.
 template <class Step>
 auto vtkAvianLidarWithin(const std::string& before, const Step& step)
 try

@@ -40,7 +40,7 @@ const std::vector<Word>& Shapes();
 avianlidar::Medium HazeOf(double visibility, double extinction);
 
 /// Rain. @param rate rain rate, mm/h, above 0 @param view view of the lidar @param kind name of a
-/// kind that is given by a rain rate
+/// kind with a rain rate
 avianlidar::Medium RainOf(
   double rate, const avianlidar::LidarView& view, const std::string& kind = "rain");
 

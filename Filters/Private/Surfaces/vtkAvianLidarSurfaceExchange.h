@@ -5,7 +5,7 @@
  * ranks, or in part by each rank. Not installed.
  *
  * 1. Each rank hashes its surfaces, block by block, and all ranks compare one hash. Nothing is sent
- *    if all ranks have the same surfaces, or the same surfaces as at the last exchange.
+ *    if all ranks have equal surfaces, or if no surfaces have changed since the last exchange.
  * 2. Otherwise the ranks list their blocks, with the hashes. Blocks with the same place in the
  *    composite (flat index) are one block. If ranks have equal data of a block, the data count
  *    once. Data that differ are parts of the block. The lowest rank that has a part sends the part

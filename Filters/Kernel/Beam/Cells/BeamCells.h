@@ -48,8 +48,8 @@ namespace avianlidar
 /// the cells have no lists, and each ray descends the collision tree.
 constexpr std::size_t MostTrianglesOfCells = 2000;
 
-/// Smallest share of the disc that the triangles of an object must cover for the object to have
-/// more rays.
+/// Smallest share of the disc that the triangles of an object must cover for the object to have at
+/// least CellDensity::raysOnObject() rays.
 constexpr double LeastShareOfObject = 1e-6;
 
 /// Finds the samples of one beam after the other. Each thread needs its own object. Setup and scene
@@ -87,7 +87,7 @@ private:
   {
     int level;
     std::uint32_t column, row; ///< column and row of the cell, below 4^level
-    float occluder;            ///< CellSurface::inverse of the covering surface; 0: not covered
+    float occluder;            ///< least CellSurface::inverse of the covering surface; 0: uncovered
     double x, y, width;        ///< corner and side of the cell, half-beamwidths
     double area;               ///< area of the cell's part in the beam, half-beamwidths squared
   };

@@ -39,8 +39,8 @@ struct CellSurface
 struct CellChildren
 {
   float x, y, width; ///< corner of the first child, and side of a child, half-beamwidths
-  /// CellSurface::inverse of the nearest surface that covers each child; infinity: the child is
-  /// skipped.
+  /// For each child, the least CellSurface::inverse of the nearest surface that covers the child;
+  /// infinity: the child is skipped.
   float occluders[CellLanes];
   std::uint32_t counts[CellLanes]; ///< lengths of `lists`
   std::uint32_t* lists[CellLanes]; ///< surfaces of each child; each list has room for all surfaces

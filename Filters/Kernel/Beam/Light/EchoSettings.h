@@ -39,7 +39,7 @@ constexpr double MaximumLightEnergyFraction = 1e8;
 
 /// A beam is integrated if the number of the beam's triangles is at most TrianglesPerRay times N,
 /// clamped to the range from FewTriangles to ManyTriangles. With more triangles, cells take less
-/// time for the same error.
+/// time than the integral for the same error.
 constexpr double FewTriangles = 100.0;
 constexpr double ManyTriangles = 200.0;
 constexpr double TrianglesPerRay = 1.0 / 50.0;

@@ -6,8 +6,9 @@
  *
  * Each polygon has the samples of its rule (PolygonRule.h), if the beam needs at most MostNodes
  * samples. Ground at a grazing angle spreads little energy over hundreds of range units. With
- * EchoSettings::lightEnergyConstraint, the faintest polygons over more than FewUnits range units
- * are dropped as long as no unit loses more than half the tolerance of the constraint.
+ * EchoSettings::lightEnergyConstraint, the faintest of the polygons that extend over more than
+ * FewUnits range units are dropped, as long as no unit loses more than half the tolerance of the
+ * constraint.
  *
  * Source: paper, Eq. 4-9, and the light-energy constraint of Sec. 3.4.
  * Differs: the paper samples all beams with rays.

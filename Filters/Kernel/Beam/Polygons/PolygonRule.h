@@ -14,16 +14,16 @@
  * minus the standard deviation, or four samples with two values of rho^2. Together the samples have
  * the exact solid angle of the part (DiscPolygon.h).
  * 3. In wide or Gaussian beams, and where a lobe is not much wider than the beam, a part takes a
- * product of Gauss-Legendre rules instead. The nodes of these rules are dense only within narrow
- * lobes.
+ * product of Gauss-Legendre rules instead of these samples. The nodes of these rules are dense only
+ * within narrow lobes.
  *
  * Source: paper, Eq. 4-9; Gauss-Legendre quadrature.
  * Differs: the paper samples all beams with rays.
- * Valid: the relative error of a unit's energy is below ErrorOfUnit, with two exceptions. Curved
- * lines of equal range and rounded corners may move energy across borders of units. Each node's
- * `uncertain` bounds this energy. Faint polygons have an error of 1e-3 of their energy. A polygon
- * has no rule if lines of equal range are curved by more than MostCurved range units in the
- * polygon.
+ * Valid: the relative error of a unit's energy is below ErrorOfUnit, with two exceptions. First,
+ * curved lines of equal range and rounded corners may move energy across borders of units. Each
+ * node's `uncertain` bounds this energy. Second, faint polygons have an error of 1e-3 of their
+ * energy. A polygon has no rule if lines of equal range are curved by more than MostCurved range
+ * units in the polygon.
  * Test: TestEchoClosedForms.cxx, TestPolygonUnits.cxx.
  */
 #ifndef avianlidar_PolygonRule_h

@@ -7,14 +7,15 @@
  * Eight boxes are tested against the planes about the group. Each box that is left is then tested
  * against sixteen cones (BoxTests.h). The descent ends at a box that is a leaf, at a box whose half
  * diagonal is at most sixteen half-beamwidths, and at a box that at most three beams meet. A beam
- * without entry points hits no triangle, so the beam's rays are not drawn. With smaller entry
- * points, lists of entry points are long where all beams hit triangles. With larger entry points,
- * every packet descends the upper levels of the tree.
+ * without entry points hits no triangle, so the beam's rays are not drawn. If entry points were
+ * smaller, lists of entry points would be long where all beams hit triangles. If entry points were
+ * larger, every packet would descend the upper levels of the tree.
  *
  * Source: batch collision detection (paper, Sec. 3.2); Z-order curve: Morton, "A Computer Oriented
  * Geodetic Data Base and a New Technique in File Sequencing", 1966.
  * Differs: the paper descends once for the rays of a beam, down to the triangles, as
- * findPotential() does. A group descends once for the rays of sixteen beams, and less deep.
+ * findPotential() does. A group descends once for the rays of sixteen beams, and only down to entry
+ * points.
  * Valid: conservative: every triangle that a ray hits lies in the entry points of the ray's beam. A
  * group whose beams lie too far apart (ConeLanes::setFrustum()) is halved.
  * Test: TestBeamGroup.cxx, TestBeamTracer.cxx.

@@ -70,8 +70,8 @@ struct BeamBlock
   std::size_t size = 0;   ///< number of beams
   std::uint32_t rays = 0; ///< rays per beam, at least 1
   /// Function that draws the rays of a beam. The rays must be kept until the block is done. The
-  /// function is called, maybe twice, only if a triangle may meet the beam. Most beams of an
-  /// airport meet no triangle. Drawing rays costs more than a descent.
+  /// function is called only if a triangle may meet the beam. The function may be called twice.
+  /// Most beams of an airport meet no triangle. Drawing rays costs more than a descent.
   std::function<const BeamRays&(std::size_t beam)> source;
   bool inOrder = false; ///< whether packets take the rays in the order in which the rays come
 };

@@ -119,7 +119,8 @@ inline void keepNearest(Hit& hit, double range, std::uint32_t triangle)
 /// Range up to which volumes are visited once a hit is found. If a triangle takes the plane of
 /// another triangle, a hit may lie nearer than the volumes of the hit triangle. Across the plane,
 /// the difference is the distance that rounding puts between the two triangles. Along the ray, the
-/// difference is larger. For rays within 4 degrees of a plane, the range may be too small.
+/// difference is larger than across the plane. For rays within 4 degrees of a plane, the range may
+/// be too small.
 inline double limitOf(const CollisionTree& tree, double range)
 {
   constexpr double alongRay = 16.0;

@@ -7,9 +7,9 @@
  * If RayPacketTriangles.h leaves a hit undecided, the exact functions (PacketRanges.h) decide
  * immediately. The steps of a node depend on each other, so the time of a node hardly grows with
  * the number of rays. Only groups of sixteen rays that meet a leaf are tested against the triangles
- * of the leaf. For both reasons packets are wider than a vector. Packets of 128 rays are faster for
- * narrow beams and slower for fine meshes. Rays that lie closer together share more nodes. The rays
- * of a packet need not belong to one beam.
+ * of the leaf. For both reasons packets are wider than a vector. Packets of 128 rays are faster
+ * than packets of 64 rays for narrow beams, and slower for fine meshes. Rays that lie closer
+ * together share more nodes. The rays of a packet need not belong to one beam.
  *
  * Source: Wald, Slusallek, Benthin, Wagner, "Interactive Rendering with Coherent Ray Tracing",
  * Computer Graphics Forum 20(3), 2001; frustum: Reshetov, Soupikov, Hurley, "Multi-level Ray

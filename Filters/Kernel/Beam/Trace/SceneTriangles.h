@@ -79,8 +79,8 @@ public:
       this->corner(triangle, 2) - point };
   }
 
-  /// Functions with the meaning of the same functions of CollisionTree. A mover's triangle
-  /// coincides with no other triangle and owns its plane.
+  /// These functions mean the same as the functions of CollisionTree with the same names. A mover's
+  /// triangle coincides with no other triangle and owns its plane.
   bool coincides(std::uint32_t triangle) const
   {
     return !this->isMoved(triangle) && this->Tree.coincides(triangle);
