@@ -17,6 +17,8 @@
 #ifndef avianlidar_WideTree_h
 #define avianlidar_WideTree_h
 
+#include "BeamFrame.h"
+
 #include <cstdint>
 #include <vector>
 
