@@ -22,12 +22,12 @@ WEATHER = (
     ("haze, 5 km", {"visibility": 5e3, "air_backscatter": True}),
     ("fog, 1 km", {"visibility": 1e3, "air_backscatter": True}),
     ("fog, 200 m", {"visibility": 200, "air_backscatter": True}),
-    ("ground fog, 400 m below 5 m", {"visibility": 23e3, "air_backscatter": True}, {"Visibility": 400.0, "Top": 5.0, "Softness": 3.0}),
+    ("ground fog up to 5 m, 400 m", {"visibility": 23e3, "air_backscatter": True}, {"Visibility": 400.0, "Top": 5.0, "Softness": 3.0}),
     ("rain, 1 mm/h", {"visibility": 23e3, "air_backscatter": True, "rain_rate": 1}),
     ("rain, 10 mm/h", {"visibility": 10e3, "air_backscatter": True, "rain_rate": 10}),
     ("rain, 50 mm/h", {"visibility": 5e3, "air_backscatter": True, "rain_rate": 50}),
 )
-SHOWN = ("clear, 23 km", "ground fog, 400 m below 5 m", "fog, 1 km", "rain, 10 mm/h")
+SHOWN = ("clear, 23 km", "ground fog up to 5 m, 400 m", "fog, 1 km", "rain, 10 mm/h")
 WIDE = 900.0  # m, half the width of the picture
 
 
@@ -82,8 +82,8 @@ def main(arguments=None):
                 draw(panels[SHOWN.index(name)], name, clear, echoes)
         panels[0].figure.supxlabel("east of the lidar, m", fontsize=9)
         panels[0].figure.supylabel("north, m", fontsize=9)
-    tools.leave(options.out, "weather-gulls", ("weather", "echoes of surfaces", "points of the air", "of noise", "the last of the air",
-                                               "half of the gulls, to"), rows)
+    tools.leave(options.out, "weather-gulls", ("weather", "echoes of surfaces", "points of the air", "points of noise",
+                                               "farthest point of the air", "range at which half of the gulls are detected"), rows)
 
 
 if __name__ == "__main__":

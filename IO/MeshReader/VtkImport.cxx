@@ -219,7 +219,7 @@ void CheckSurface(vtkPolyData* surface)
 /**
  * Checks that the cells and the faces of polyhedra name only existing points, that each cell has
  * the number of points of its type, and that each grid has the number of points of its dimensions.
- * Refuses cells of variable order (Lagrange, Bezier, parametric). The time is linear in the number
+ * Refuses cells of arbitrary order (Lagrange, Bezier, parametric). The time is linear in the number
  * of points of all cells.
  *
  * Throws Error, which names the fault.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EnergyErrors.h
- * @brief Standard errors of the energies in range units of a lit beam.
+ * @brief Standard errors of the energies in range units of a beam whose light
+ * BeamLighting has computed.
  *
  * The error follows from the rays (StandardError.h), or from the cells and the rays from which
  * paths start. For an integrated beam, the error is a bound for the direct echo plus the standard

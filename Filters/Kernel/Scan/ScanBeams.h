@@ -79,10 +79,10 @@ enum class DirectEcho : std::uint8_t
 struct BeamReport
 {
   DirectEcho direct = DirectEcho::Unknown;
-  bool isCrowded = false; ///< whether too many triangles for lists enter the beam (ViewFinder.h)
+  bool isCrowded = false; ///< true if more triangles enter the beam than lists hold
   BeamStatus status = BeamStatus::NoSurface;
   double range = 0.0;              ///< range of the strongest return, m; NaN without a return
-  TraceCounters counters;          ///< cost of tracing all kept parts of the beam
+  TraceCounters counters;          ///< cost of tracing the beam in this run and in earlier runs
   std::uint64_t raysTracedNow = 0; ///< number of rays traced in this run; 0 if all parts were kept
   std::uint32_t skipped = 0;       ///< bits of SkippedPart, except noise
   /// Bound of the energy that was left out, J. Paths without energy do not count. For a beam left
