@@ -104,7 +104,7 @@ public:
     return sum;
   }
 
-  std::vector<double> shares; ///< of the pulse, of each triangle
+  std::vector<double> shares; ///< share of the pulse on each triangle
 
 private:
   const ScanSetup& Setup;

@@ -107,7 +107,7 @@ std::string faultOfBlock(const GeometryCase& one, const BeamFrame& frame, const 
 struct SureHit
 {
   Hit hit;
-  long double bound = 0.0L; ///< of the error of its range, m
+  long double bound = 0.0L; ///< bound of the error of the range, m
   bool sure = true;
 };
 

@@ -275,7 +275,7 @@ struct OracleHit
   std::uint32_t triangle = avianlidar::NoTriangle;
   long double range = INFINITY;
   long double cosine = 1.0L;
-  bool nearEdge = false; ///< of a triangle at or before the hit: rounding may decide
+  bool nearEdge = false; ///< an edge of a triangle is near the ray, at or before the hit
 };
 
 /// Nearest hit by brute force. `tolerance` (rad) is what counts as near an edge.

@@ -172,7 +172,7 @@ TEST(Medium, LightThatDropsDiffractIntoTheViewIsNotLost)
   };
   struct Row
   {
-    double wavelength, halfAngle, kept; ///< of 10 mm/h
+    double wavelength, halfAngle, kept; ///< case in rain of 10 mm/h
   };
   for (const Row& row : { Row{ 903e-9, 0.95e-3, 0.87 }, Row{ 905e-9, 1.5e-3, 0.92 },
          Row{ 1550e-9, 3e-3, 0.93 }, Row{ 905e-9, 5.6e-3, 0.98 }, Row{ 905e-9, 1e-5, 0.034 } })

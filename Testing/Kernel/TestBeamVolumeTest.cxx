@@ -24,7 +24,7 @@ struct Case
   BeamFrame frame;
   Vec3 ray;    ///< unit direction within the cone
   Vec3 point;  ///< on the ray, relative to the apex
-  double size; ///< of the volume to be put around the point
+  double size; ///< size of the volume around the point
 };
 
 Vec3 someAxis(Numbers& random)

@@ -34,7 +34,7 @@ TEST(CoincidentFaces, TheLowerNumberIsSeenInEveryWay)
     int parts;
     EchoSettings ofPair, ofSeen;
     double tolerance;
-    int volumes; ///< of trees
+    int volumes; ///< kind of volumes of the tree
   };
   for (const Way& way : { Way{ 20, directSettings(1000), directSettings(1000), 1e-6, 3 },
          Way{ 60, directSettings(1000), directSettings(1000), 1e-6, 1 },

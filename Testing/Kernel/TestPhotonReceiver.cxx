@@ -26,7 +26,7 @@ struct Row
   double energy, wavelength, halfBeamwidth, diameter, efficiency, radiance, bandwidth;
   double beams, gate;
   double background, deviation, factor, threshold;
-  double ranges[6]; ///< of the areas below
+  double ranges[6]; ///< ranges of the areas below
 };
 
 constexpr double Areas[] = { 0.0052, 0.011, 0.018, 0.030, 0.067, Infinite };

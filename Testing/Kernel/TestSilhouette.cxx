@@ -63,7 +63,7 @@ TEST(Silhouette, ABeamLightsWhatRaysInItMeet)
   const std::vector<Pixel> rays = imageOf(bird, SeenAlong, step);
   struct Shape
   {
-    double ratio; ///< of the sides
+    double ratio; ///< ratio of the sides
     bool isRectangle;
     BeamProfile profile;
     double truncation;

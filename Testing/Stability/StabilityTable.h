@@ -11,7 +11,7 @@ namespace stability
 struct Row
 {
   std::string extreme; ///< what is extreme
-  std::string range;   ///< of the input that was tried
+  std::string range;   ///< range of the input that was tried
   /// How beams were looked into: "rays" alone, "default" (polygons and cells), "both", or "-" where
   /// no beam is.
   std::string view;
