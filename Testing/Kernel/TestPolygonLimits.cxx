@@ -21,7 +21,7 @@ namespace
 struct Nodes
 {
   bool fits;
-  std::size_t count; ///< number of polygons of a beam that fits
+  std::size_t count; ///< number of nodes, for a beam that fits
 };
 
 /// The nodes of a beam along x.
