@@ -174,9 +174,11 @@ private:
         throw WorkStopped();
       }
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Begin;
-      failIf(passed.count() > this->Seconds, this->Library, " cannot read it in ",
-        std::llround(this->Seconds),
-        " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
+      if (passed.count() > this->Seconds)
+      {
+        fail(this->Library, " cannot read it in ", std::llround(this->Seconds),
+          " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
+      }
     }
   }
 

@@ -56,7 +56,10 @@ bool exchangeNames(const std::string& one, const std::string& two)
 /// Throws FormatError with the reason of the system if a call failed.
 void requireDone(bool isDone, const char* problem)
 {
-  failIf(!isDone, problem, ": ", std::strerror(errno));
+  if (!isDone)
+  {
+    fail(problem, ": ", std::strerror(errno));
+  }
 }
 }
 

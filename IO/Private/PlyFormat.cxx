@@ -199,9 +199,9 @@ void writeFace(
 {
   const auto most = std::numeric_limits<std::int32_t>::max();
   const bool beyond = std::any_of(points.begin(), points.end(), [=](auto p) { return p > most; });
-  failIf(points.size() > 255 || beyond, "polygon ", face, " has ",
-    beyond ? "a point beyond the 2^31 - 1 that PLY numbers"
-           : std::to_string(points.size()) + " points, expected at most 255");
+  failIf(beyond, "polygon ", face, " has a point beyond the 2^31 - 1 that PLY numbers");
+  failIf(
+    points.size() > 255, "polygon ", face, " has ", points.size(), " points, expected at most 255");
   std::string line =
     ascii ? std::to_string(points.size()) : std::string(1, static_cast<char>(points.size()));
   for (const std::int64_t point : points)

@@ -296,6 +296,9 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
     {
       continue;
     }
+    // The limit is checked before the fields are made, because an array may have any width.
+    failIf(all.size() + array->GetNumberOfComponents() > formats::MostFields,
+      "the file would have more than ", formats::MostFields, " fields: take away point arrays");
     std::vector<Field> fields = array == colours ? toColours(array) : ToFields(array);
     for (Field& field : fields)
     {
@@ -308,11 +311,6 @@ formats::TableOutput ToTable(vtkPointSet* input, bool single,
     Append(name, fields, all, left);
   }
   WarnOfTaken(left, warn);
-  if (all.size() > formats::MostFields)
-  {
-    throw FormatError(avianlidar::joined("the file would have ", all.size(),
-      " fields, expected at most ", formats::MostFields, ": take away point arrays"));
-  }
   std::vector<std::string> cut; // not used, because a comment may have any length
   CloudNotes notes = ToNotes(input);
   for (std::size_t i = 3; i < all.size(); ++i)

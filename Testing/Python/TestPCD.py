@@ -319,3 +319,8 @@ class Written(InFolder):
         for c in range(3):
             np.testing.assert_array_equal(array(got, f"velocity_{c}"), velocity[:, c])
             self.assertEqual(unit(got, f"velocity_{c}"), "m/s")
+
+    def test_too_many_fields(self):
+        """More than the reader takes, of one array."""
+        add_array(self.data, "wide", np.zeros((self.data.GetNumberOfPoints(), 4100)))
+        assert_refused(self, self.writer, self.data, FILE, "would have more than 4096 fields")

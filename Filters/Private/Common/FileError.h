@@ -6,6 +6,7 @@
 #ifndef AvianLidarFileError_h
 #define AvianLidarFileError_h
 
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -19,11 +20,14 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// Returns a message from its parts: texts and numbers.
+/// Returns a message from its parts: texts and numbers. Numbers do not depend on the locale. Throws
+/// std::bad_alloc rather than cut a message short.
 template <class... Parts>
 std::string joined(const Parts&... parts)
 {
   std::ostringstream message;
+  message.imbue(std::locale::classic());
+  message.exceptions(std::ios::badbit);
   (message << ... << parts);
   return message.str();
 }
