@@ -26,7 +26,7 @@ class Parser(argparse.ArgumentParser):
     """Reports a bad argument in one line, with the exit code 2."""
 
     def error(self, message):
-        self.exit(2, f"{self.prog}: {message} (--help says more)\n")
+        self.exit(2, f"{self.prog}: {message} (see --help)\n")
 
 
 def number(kind, low, high=LARGEST):

@@ -57,15 +57,15 @@ VERBS = {
   avianlidar airport county.geojson --icao EDBN -o edbn
 """),
     "sequence": ("labelled scans of birds, to train on", "Writes labelled scans of a scenario in the layout "
-                 "of SemanticKITTI. The same command continues a stopped run. `mpiexec -n 2 pvbatch "
-                 "--sym -m avianlidar` shares the work.", """\
+                 "of SemanticKITTI. The same command continues a stopped run. "
+                 "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """),
     "track": ("tracks of birds in labelled scans, with scores", "Writes a report card (HTML, CSV) of tracks in sequences: share "
               "of birds tracked, delay, identity switches, false tracks an hour, warning time. Sequences of a scenario "
-              "are made first. Several inputs are compared. The same command continues a stopped run. `mpiexec -n 2 pvbatch "
-              "--sym -m avianlidar` shares the work.", """\
+              "are made first. Several inputs are compared. The same command continues a stopped run. "
+              "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar track sequences -o tracks --runways hongqiao.geojson
   avianlidar track hongqiao.scenario.json -o tracks --sensor Search905 --sensor Search1550 --scans 500
 """),
@@ -81,13 +81,13 @@ VERBS = {
   avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
 """),
     "siting": ("where lidars should stand", "Writes candidates by rank (CSV, GeoJSON, VTP), the best networks and "
-               "what changes these networks, for a plan. The same command continues a stopped run. `mpiexec -n 2 pvbatch "
-               "--sym -m avianlidar` shares the work.", """\
+               "what changes these networks, for a plan. The same command continues a stopped run. "
+               "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar siting hongqiao.coverage.json -o sites --siting-set spacing=100
 """),
-    "design": ("the cheapest lidar design for a share of birds", "Finds the cheapest design within the bounds of a plan that detects or "
-               "tracks the required share of birds (HTML, CSV). The same command continues a stopped run. `mpiexec -n 2 pvbatch "
-               "--sym -m avianlidar` shares the work.", """\
+    "design": ("the cheapest lidar design for a share of birds", "Finds, within the bounds of a plan, the cheapest design that detects or "
+               "tracks the required share of birds (HTML, CSV). The same command continues a stopped run. "
+               "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
   avianlidar design hongqiao-design.coverage.json -o design --design-set share=0.4
 """),
     "report": ("maps, sections, shares and sites as one page of HTML", "Writes one page of HTML for a plan. "
@@ -190,7 +190,7 @@ def parser() -> Parser:
             _out(verb[name], f"file: {WRITTEN}; .png gives a picture of the range image; {MANY}", action="append")
             add("--quiet", action="store_true", help="omits the lines on what was modelled and what was left out")
             add("--preset", choices=tuple(PRESETS), help=(
-                "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams at the airport without, then "
+                "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams, at the airport without and then "
                 f"with masts and fences: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
                 "Paper also builds the collision tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)"))
         else:

@@ -31,7 +31,7 @@ from ._disk import write_whole
 DAYLIGHT = ((532, 1.40), (650, 1.40), (785, 1.05), (850, 0.83), (905, 0.70), (1064, 0.59), (1550, 0.25))
 APERTURE = 1e-4  # start value of fits, m2
 BANDWIDTH = 100.0  # widest filter of a fit, nm: assumed; filters of lidars are 1 to some tens of nm wide
-LIMIT = (f"filter_bandwidth ends at the bound of the fit, {BANDWIDTH:g} nm: the data sheet's ranges in the light "
+LIMIT = (f"filter_bandwidth ends at the bound of the fit, {BANDWIDTH:g} nm: the sheet's ranges in the light "
          "and in the dark differ by more than the daylight that the filter of a lidar lets through")
 HALF = 0.5  # probability of a point without a given probability: assumed
 UNITS = {"range": " m", "probability": "", "reflectance": "", "light": " klx", "board": " m"}
@@ -248,7 +248,7 @@ def write(description: Dict[str, Any], found: Fit, file) -> None:
     for name, value in found.numbers.items():
         unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
         source = f"assumed: {found.limit}" if name == "filter_bandwidth" and found.limit else \
-            f"assumed together: fitted to the {number} points of the sheet"
+            f"assumed with the others: fitted to the {number} points of the sheet"
         description["values"][name] = {"value": float(f"{value:.6g}"), "unit": unit, "source": source}
     description["values"]["receiver_model"] = {"value": 1, "unit": "1", "source": "assumed: photons, by the fit"}
     description["sheet"]["residuals"] = [float(f"{value:.3g}") for value in found.residuals]

@@ -249,6 +249,6 @@ def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
                      f"{most['draws']} draws, with at most {1.0 + max(row['gain at most'] for row in alone):.2f} times the share.")
     words += edge
     if site["draws"] < FEWEST_DRAWS:
-        words.append(f"How sure the best site is was not computed, because this needs draws={FEWEST_DRAWS}.")
+        words.append(f"How certain the choice of the best site is was not computed, because this needs draws={FEWEST_DRAWS}.")
     return {"head": "Check the site.", "more": "#sites", "words": " ".join(words) + " Maps of the site for GIS:",
             "command": command(view, "coverage", "maps", **{"sensor.position": ",".join(rounded(view.sensor.position))})}

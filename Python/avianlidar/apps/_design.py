@@ -79,12 +79,12 @@ def spread(number: int, count: int) -> np.ndarray:
 
 
 def on_the_front(costs, shares) -> np.ndarray:
-    """For each design, whether no other design has an equal share at a lower cost, or a larger share at an equal cost: n of bool.
-    A design with NaN is never on the front."""
+    """For each design, whether no other design has at least the same share at a lower cost, or a larger share at no higher cost: n of
+    bool. A design with NaN is never on the front."""
     costs, shares = np.asarray(costs, float), np.asarray(shares, float)
     order, found = np.lexsort((-shares, costs)), np.zeros(len(costs), bool)
     order = order[np.isfinite(costs + shares)[order]]
-    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]  # the cheapest design with an equal share
+    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]  # the cheapest design with at least this share
     found[order] = (shares[first] == shares[order]) & (costs[first] == costs[order])
     return found
 

@@ -44,7 +44,7 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
         if shape is None or not {"height", "elevation"} & tags.keys():
             left.append(one.left(NO_PLACE))
         elif kind == "wire" or tags.get("gone"):
-            left.append(one.left("a wire" if kind == "wire" else "ruins, or removed"))
+            left.append(one.left("a wire" if kind == "wire" else "ruins, or gone"))
         else:
             found.append(one)
     for one in left:

@@ -56,7 +56,7 @@ class _Piece:
         self.along = way / self.length
 
     def goes_on(self, other: _Piece, known: Dict[str, Any]) -> bool:
-        """Whether two ways belong to one runway: equal numbers, one line, and at most a gap of the map between the ways."""
+        """Whether two ways belong to one runway: no contradicting numbers, one line, and at most a gap of the map between the ways."""
         mine, theirs = _designators(self.tags), _designators(other.tags)
         if mine and theirs and not mine & theirs:
             return False

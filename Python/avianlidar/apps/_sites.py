@@ -143,7 +143,7 @@ class Sites:
 
     @property
     def kept_surfaces(self) -> str:
-        """Words on the surfaces above the masts, their code numbers, and the number of candidates that pierce a surface."""
+        """Words on the surfaces that masts stay below, the code numbers of runways, and the number of candidates that pierce a surface."""
         if not self.pierced:
             return "no surface is used, because the plan switches the surfaces off"
         code = "code number" if "code" in self.changed else "code number by its length, assumed:"
