@@ -445,8 +445,8 @@ void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
   ranks.Together(this,
     [&]()
     {
-      in.Setup.largestReflectance = in.Summary.largestReflectance();
-      in.Setup.largestGain = in.Summary.largestGain();
+      in.Setup.largestReflectance = in.Summary.largestReflectance;
+      in.Setup.largestGain = in.Summary.largestGain;
       avianlidar::planModel(in.Setup);
       avianlidar::ScanResult still;
       const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;

@@ -94,8 +94,8 @@ void vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtk
   vtkInternals& in = *this->Internals;
   this->Moved->Movers.Read(ranks, this, input, *in.Surfaces);
   in.Setup.movers = this->Moved->Movers.movers;
-  in.Setup.largestReflectance = in.Summary.largestReflectance();
-  in.Setup.largestGain = in.Summary.largestGain();
+  in.Setup.largestReflectance = in.Summary.largestReflectance;
+  in.Setup.largestGain = in.Summary.largestGain;
   avianlidar::includeMovers(in.Setup);
   const bool untimed = in.Setup.movers && in.Beams.beams.size() > 0 && !in.Beams.isTimed;
   ranks.Together(this,

@@ -351,8 +351,8 @@ void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
   in.Setup.materials = in.Surfaces->materials;
   in.Setup.objectIds = in.Surfaces->objectIds;
   in.Setup.materialIds = in.Surfaces->materialIds;
-  in.Summary.follow(in.Setup);
-  in.Scene = in.Summary.checksum(in.Geometry);
+  in.Summary = avianlidar::summarize(in.Setup, in.Geometry);
+  in.Scene = in.Summary.checksum;
   for (const std::string& medium : in.Surfaces->media)
   {
     in.Scene = avianlidar::hashOf(medium.data(), medium.size(), in.Scene);

@@ -10,10 +10,9 @@ namespace avianlidar
 /// Set what follows from the rest: largest values, objects, noise and needs.
 inline void finishSetup(ScanSetup& setup)
 {
-  SceneSummary summary;
-  summary.follow(setup);
-  setup.largestReflectance = summary.largestReflectance();
-  setup.largestGain = summary.largestGain();
+  const SceneSummary summary = summarize(setup, 0);
+  setup.largestReflectance = summary.largestReflectance;
+  setup.largestGain = summary.largestGain;
   includeMovers(setup);
   planModel(setup);
 }

@@ -9,7 +9,7 @@
  * hits, 37 bytes for each hit, and 81 bytes for each connection of two hits.
  *
  * Source: none.
- * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one LightKey.
+ * Valid: geometry for one traceKey() (TraceCache.h), `lit` for one lightKey().
  * Test: TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamTrace_h

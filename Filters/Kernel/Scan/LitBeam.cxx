@@ -8,7 +8,7 @@
 
 namespace avianlidar
 {
-bool updateKey(LightKey& key, const ScanSetup& setup)
+std::uint64_t lightKey(const ScanSetup& setup)
 {
   // The key leaves out values that cannot differ. A lit beam belongs to a trace, and thus to a tree
   // (traceKey()). The largest gain and the noise plan act through the needs. Beams that movers
@@ -35,10 +35,9 @@ bool updateKey(LightKey& key, const ScanSetup& setup)
     numbers.push_back(one.medium.extinction);
     numbers.push_back(one.medium.backscatterRatio);
   }
-  const std::uint64_t now = hashOf(numbers.data(), numbers.size() * sizeof(double), 0);
-  const bool same = key.numbers == now && key.materials.sharesWith(setup.materials) &&
-    key.objectIds.sharesWith(setup.objectIds) && key.materialIds.sharesWith(setup.materialIds);
-  key = { setup.materials, setup.objectIds, setup.materialIds, now };
-  return same;
+  const std::uint64_t surfaces[] = { setup.materials.checksum(), setup.objectIds.checksum(),
+    setup.materialIds.checksum() };
+  return hashOf(
+    numbers.data(), numbers.size() * sizeof(double), hashOf(surfaces, sizeof(surfaces), 0));
 }
 }

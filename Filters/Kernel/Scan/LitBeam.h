@@ -9,7 +9,7 @@
  * different units are kept. For any other return the beam is lit again.
  *
  * Source: none.
- * Valid: for one LightKey and the samples of one trace. Echoes are bitwise identical with and
+ * Valid: for one lightKey() and the samples of one trace. Echoes are bitwise identical with and
  * without a LitBeam.
  * Test: TestScanAgain.cxx.
  */
@@ -53,17 +53,8 @@ struct LitBeam
   }
 };
 
-/// All inputs, besides a trace, on which energies in range units and labels depend.
-struct LightKey
-{
-  SharedVector<Material> materials;
-  SharedVector<int> objectIds;
-  SharedVector<int> materialIds;
-  std::uint64_t numbers = 0; ///< hash of all other values
-};
-
-/// Set the key to the key of a setup. @return false if the key has changed
-bool updateKey(LightKey& key, const ScanSetup& setup);
+/// Checksum of all inputs, besides a trace, on which energies in range units and labels depend.
+std::uint64_t lightKey(const ScanSetup& setup);
 }
 
 #endif

@@ -74,10 +74,12 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   }
   this->key = wanted;
   this->scan = checksum;
-  if (!updateKey(this->light, setup))
+  const std::uint64_t wantedLight = lightKey(setup);
+  if (this->light != wantedLight)
   {
     this->forgetLight();
   }
+  this->light = wantedLight;
 }
 
 void TraceCache::forgetLight()

@@ -4,9 +4,8 @@
  * @brief Beams kept from earlier runs of a scan, and the keys for which they are valid.
  *
  * Source: none.
- * Valid: hits belong to one traceKey(), and lit beams to one LightKey. Echoes do not depend on the
- * cache. An aborted run leaves the cache empty.
- * Test: TestScanAgain.cxx, TestScanSweep.cxx.
+ * Valid: hits belong to one traceKey(), and lit beams to one lightKey(). Echoes do not depend on
+ * the cache. An aborted run leaves the cache empty. Test: TestScanAgain.cxx, TestScanSweep.cxx.
  */
 #ifndef avianlidar_TraceCache_h
 #define avianlidar_TraceCache_h
@@ -43,7 +42,7 @@ struct TraceCache
   std::vector<BeamTrace> absent;
   std::vector<BeamKey> absentKeys;
   std::vector<std::unique_ptr<BeamSampler>> samplers; ///< sampler of each thread
-  LightKey light;                                     ///< key of the energies in the last run
+  std::uint64_t light = 0;                            ///< lightKey() of the last run
 
   /// Set setup and beams, and keep the beams that remain valid. Absent beams are removed if all
   /// beams take more than `maximumBytes`. @param maximumBytes largest memory for all beams, bytes

@@ -222,13 +222,6 @@ private:
     this->Result.materials = std::move(this->Materials);
     this->Result.objectIds = std::move(this->ObjectIds);
     this->Result.materialIds = std::move(this->MaterialIds);
-    if (known)
-    {
-      // Equal values share one copy, and a shared copy is summarised once.
-      this->Result.materials.shareWith(known->materials);
-      this->Result.objectIds.shareWith(known->objectIds);
-      this->Result.materialIds.shareWith(known->materialIds);
-    }
     this->Result.objectNames = std::move(this->Ids.ObjectNames);
     this->Result.objectClasses = std::move(this->Ids.ObjectClasses);
     this->Result.materialNames = std::move(this->Ids.MaterialNames);
