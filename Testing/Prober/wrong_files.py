@@ -126,7 +126,8 @@ def says_nothing(name, content):
     """True if a file itself says that it holds nothing, or no number."""
     nan = b"nan" in content.lower()
     none = re.search(rb"(POINTS|WIDTH|HEIGHT)\s+0\s|DATA binary", content)
-    return {"json": b'"objects": []' in content, ".bin": not content, ".las": content[107:111] == b"\0\0\0\0", ".pcd": nan or none,
+    without_points = content[107:111] == b"\0\0\0\0"
+    return {"json": b'"objects": []' in content, ".bin": not content, ".las": without_points, ".laz": without_points, ".pcd": nan or none,
             ".ply": nan or re.search(rb"vertex +[0+-]|format binary", content)}.get(name[-4:], False)
 
 
