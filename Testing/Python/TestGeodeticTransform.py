@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites, and
-bad input. Poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values
-in TestBadInput.py.
+"""The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites,
+and bad input. Poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values in
+TestBadInput.py.
 
-Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and the
-methods themselves a few; 20 nm in UTM, where northings reach 1e7 m and the two series differ. Measured differences are
-half of that.
+Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and
+the methods themselves a few; 20 nm in UTM, where northings reach 1e7 m and the two series differ. Measured differences
+are half of that.
 """
 import math
 import subprocess
