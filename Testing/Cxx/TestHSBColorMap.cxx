@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of Eq. 13 (other hues are TestHue.cxx's): limits from field data or given, any array, the
-// lookup table, energies that are not numbers, bad limits.
+// Colours of Eq. 13: limits from field data or given, equal ones, any array, the lookup table,
+// energies that are not numbers, bad limits.
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarHSBColorMap.h"
 
@@ -24,11 +24,11 @@ using Filter = vtkAvianLidarHSBColorMap;
 using checks::At;
 using checks::Check;
 
-// Limits 1 and 3: hue 240, 180, 120, 60, 0, and both ends again outside (paper, Eq. 13).
-const std::vector<double> Energies{ 1.0, 1.5, 2.0, 2.5, 3.0, 0.0, 9.0 };
-const double Hues[] = { 240.0, 180.0, 120.0, 60.0, 0.0, 240.0, 0.0 };
+// Limits 1 and 3: hue 240, 180, 120, 60, 0, both ends again outside, and between (paper, Eq. 13).
+const std::vector<double> Energies{ 1.0, 1.5, 2.0, 2.5, 3.0, 0.0, 9.0, 2.75, 2.25 };
+const double Hues[] = { 240.0, 180.0, 120.0, 60.0, 0.0, 240.0, 0.0, 30.0, 90.0 };
 const double Colours[][3] = { { 0, 0, 255 }, { 0, 255, 255 }, { 0, 255, 0 }, { 255, 255, 0 },
-  { 255, 0, 0 }, { 0, 0, 255 }, { 255, 0, 0 } };
+  { 255, 0, 0 }, { 0, 0, 255 }, { 255, 0, 0 }, { 255, 128, 0 }, { 128, 255, 0 } };
 
 /// The energies in an array of a name.
 template <class SetT, class ArrayT = vtkDoubleArray>
@@ -60,7 +60,7 @@ vtkPointData* Output(Filter* filter, vtkDataObject* input)
 
 void CheckColours(vtkPointData* output, const std::string& what)
 {
-  for (vtkIdType i = 0; i < 7; ++i)
+  for (vtkIdType i = 0; i < 9; ++i)
   {
     Check(std::abs(At(output, "hue", i) - Hues[i]) < 1e-12, what + ": hue " + std::to_string(i));
     for (int c = 0; c < 3; ++c)
@@ -79,6 +79,10 @@ void TestColours()
   filter->SetEnergyRange(1.0, 3.0);
   CheckColours(Output(filter, Cloud<vtkUnstructuredGrid>(Energies, 5.0, 6.0)), "limits given");
   Check(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0)), "the type is kept");
+  filter->SetEnergyRange(2.0, 2.0);
+  Check(
+    At(Output(filter, Cloud<vtkPolyData>({ 2.0 }, 1.0, 3.0)), "hue") == 0.0, "equal limits: red");
+  filter->SetEnergyRange(1.0, 3.0);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
   CheckColours(Output(filter, Cloud<vtkPolyData, vtkFloatArray>(Energies, 1.0, 3.0, "other")),
     "another array");

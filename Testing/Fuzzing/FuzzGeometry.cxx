@@ -12,9 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string fault = geometrycase::findFault(one);
   if (!fault.empty())
   {
-    const auto less = geometrycase::shrunk(
-      one, [](const geometrycase::GeometryCase& c) { return !geometrycase::findFault(c).empty(); });
-    std::fprintf(stderr, "%s\n%s\n", fault.c_str(), geometrycase::describe(less).c_str());
+    std::fprintf(stderr, "%s\n%s\n", fault.c_str(), geometrycase::describe(one).c_str());
     std::abort();
   }
   return 0;

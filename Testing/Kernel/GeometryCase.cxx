@@ -249,24 +249,6 @@ GeometryCase fromBytes(const std::uint8_t* data, std::size_t size)
   return Maker(data, size).make();
 }
 
-GeometryCase shrunk(GeometryCase one, const std::function<bool(const GeometryCase&)>& faulty)
-{
-  for (std::size_t t = one.mesh.size(); t-- > 0;)
-  {
-    GeometryCase less = one;
-    less.mesh.triangles.erase(less.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
-    one = faulty(less) ? less : one;
-  }
-  for (std::size_t i = one.rays.size(); i-- > 0 && one.rays.size() > 1;)
-  {
-    GeometryCase less = one;
-    less.rays.x.erase(less.rays.x.begin() + static_cast<std::ptrdiff_t>(i));
-    less.rays.y.erase(less.rays.y.begin() + static_cast<std::ptrdiff_t>(i));
-    one = faulty(less) ? less : one;
-  }
-  return one;
-}
-
 std::string describe(const GeometryCase& one)
 {
   std::ostringstream text;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A small scene of nasty geometry with a beam, made from bytes, and what must hold of it. Property
-// tests draw the bytes, a fuzzer mutates them; a case that fails is shrunk and printed.
+// tests draw the bytes, a fuzzer mutates them; a case that fails is printed.
 #ifndef GeometryCase_h
 #define GeometryCase_h
 
@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 
 namespace geometrycase
@@ -42,10 +41,6 @@ GeometryCase fromBytes(const std::uint8_t* data, std::size_t size);
 /// - echoes are finite, in order, within the ranges of the scene and within (kd + ks) Qs; with a
 ///   cache they are the bits of a fresh scan.
 std::string findFault(const GeometryCase& one);
-
-/// The case without what its fault does not need: triangles and rays are dropped while `faulty`
-/// stays true.
-GeometryCase shrunk(GeometryCase one, const std::function<bool(const GeometryCase&)>& faulty);
 
 /// All its numbers, exactly.
 std::string describe(const GeometryCase& one);

@@ -324,6 +324,25 @@ inline BeamRays raysInDisc(Numbers& random, std::size_t count)
   return rays;
 }
 
+/// Neighbouring beams: a window of rows and columns about `middle`, `step` rad apart.
+inline std::vector<BeamFrame> window(
+  const Vec3& apex, const Vec3& middle, int columns, int rows, double step, double halfBeamwidth)
+{
+  const BeamFrame about = avianlidar::makeBeamFrame(apex, middle, 0.5);
+  std::vector<BeamFrame> frames;
+  for (int c = 0; c < columns; ++c)
+  {
+    for (int r = 0; r < rows; ++r)
+    {
+      const double u = step * (c - 0.5 * (columns - 1));
+      const double v = step * (r - 0.5 * (rows - 1));
+      frames.push_back(
+        avianlidar::makeBeamFrame(apex, about.axis + u * about.e1 + v * about.e2, halfBeamwidth));
+    }
+  }
+  return frames;
+}
+
 /// Triangles of about `size` in a cube of half width `half`.
 inline TriangleMesh randomTriangles(Numbers& random, std::size_t count, double half, double size)
 {

@@ -23,11 +23,10 @@ inline MediumVolume boxOf(const Vec3& centre, const Vec3& half)
   return box;
 }
 
-/// The same by a mesh.
-inline MediumVolume meshOf(const MediumVolume& box)
+/// Corners by bits, sides that face outwards.
+inline TriangleMesh trianglesOf(const MediumVolume& box)
 {
-  // Corners by bits, sides that face outwards.
-  auto of = std::make_shared<TriangleMesh>();
+  TriangleMesh mesh;
   for (int corner = 0; corner < 8; ++corner)
   {
     Vec3 point = box.centre;
@@ -35,13 +34,20 @@ inline MediumVolume meshOf(const MediumVolume& box)
     {
       point += (corner >> axis & 1 ? 1.0 : -1.0) * box.halfAxes[static_cast<std::size_t>(axis)];
     }
-    of->points.push_back(point);
+    mesh.points.push_back(point);
   }
-  of->triangles = { { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
+  mesh.triangles = { { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 } };
+  return mesh;
+}
+
+/// The same by a mesh.
+inline MediumVolume meshOf(const MediumVolume& box)
+{
   MediumVolume mesh = box;
   mesh.shape = MediumShape::Surface;
-  mesh.surface = buildCollisionTree(of, TreeOptions{}, {}, 1);
+  mesh.surface =
+    buildCollisionTree(std::make_shared<TriangleMesh>(trianglesOf(box)), TreeOptions{}, {}, 1);
   return mesh;
 }
 

@@ -8,8 +8,9 @@
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 
+#include <boost/math/quadrature/gauss.hpp>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -18,33 +19,6 @@ namespace planeoracle
 using namespace echotest;
 using Real = long double;
 using geometrytest::unit;
-
-/// Gauss's rule on [0, 1] by Newton's method on Legendre's polynomial.
-template <int N>
-std::array<std::array<Real, 2>, N> gauss()
-{
-  std::array<std::array<Real, 2>, N> rule;
-  for (int i = 0; i < N; ++i)
-  {
-    Real x = std::cos(std::acos(Real(-1)) * (i + Real(0.75)) / (N + Real(0.5)));
-    Real slope = 1;
-    for (int step = 0; step < 30; ++step)
-    {
-      Real p0 = 1;
-      Real p1 = x;
-      for (int n = 2; n <= N; ++n)
-      {
-        const Real p2 = ((2 * n - 1) * x * p1 - (n - 1) * p0) / n;
-        p0 = p1;
-        p1 = p2;
-      }
-      slope = N * (x * p1 - p0) / (x * x - 1);
-      x -= p1 / slope;
-    }
-    rule[i] = { (1 + x) / 2, 1 / ((1 - x * x) * slope * slope) };
-  }
-  return rule;
-}
 
 /// A line on the plane: where m . d is positive and negative, d a direction in the axes (axis of
 /// the beam, towards the normal, across).
@@ -243,8 +217,8 @@ inline std::vector<Real> turnsOf(const Case& c, const std::vector<Real>& borders
 /// Energy, J, that the beam puts into unit `m`.
 inline Real energyIn(const Case& c, double m)
 {
-  static const auto outer = gauss<24>();
-  static const auto inner = gauss<16>();
+  using Outer = boost::math::quadrature::gauss<Real, 25>;
+  using Inner = boost::math::quadrature::gauss<Real, 15>;
   const Real pi = std::acos(Real(-1));
   const Real t = c.sensor.halfBeamwidth;
   const Real a = c.tilt;
@@ -269,12 +243,11 @@ inline Real energyIn(const Case& c, double m)
   for (std::size_t k = 1; k < rings.size(); ++k)
   {
     const Real length = rings[k] - rings[k - 1];
-    for (const auto& [p, w] : outer)
+    const auto onRing = [&](Real p)
     {
       // Roots at both ends vanish.
       const Real s = std::sin(p * pi / 2);
       const Real ring = rings[k - 1] + length * s * s;
-      const Real weight = w * length * (pi / 2) * std::sin(p * pi);
       const std::vector<Real> turns = turnsOf(c, borders, ring);
       Real around = 0;
       for (std::size_t j = 1; j < turns.size(); ++j)
@@ -287,21 +260,22 @@ inline Real energyIn(const Case& c, double m)
         {
           break;
         }
-        for (const auto& [q, v] : inner)
+        const auto at = [&](Real phi)
         {
-          const Real phi = turns[j - 1] + (turns[j] - turns[j - 1]) * q;
           const Real h2 = std::sin((a - ring) / 2) * std::sin((a - ring) / 2) +
             std::sin(a) * std::sin(ring) * std::sin(phi / 2) * std::sin(phi / 2);
           const Real b = 2 * std::asin(std::sqrt(h2));
           const Real r = c.height / std::cos(b);
-          around += v * (turns[j] - turns[j - 1]) * reflected(c, material, b) * shareOf(c, r, m) *
+          return reflected(c, material, b) * shareOf(c, r, m) *
             std::exp(-2 * Real(c.settings.attenuationCoefficient) * r);
-        }
+        };
+        around += Inner::integrate(at, turns[j - 1], turns[j]);
       }
       const Real u = 2 * std::sin(ring / 2) * std::sin(ring / 2) / most;
-      sum += weight * (c.lines.empty() ? 2 : 1) * around * std::sin(ring) *
-        (gaussian ? std::exp(-2 * u) : 1);
-    }
+      return length * (pi / 2) * std::sin(p * pi) * (c.lines.empty() ? 2 : 1) * around *
+        std::sin(ring) * (gaussian ? std::exp(-2 * u) : 1);
+    };
+    sum += Outer::integrate(onRing, Real(0), Real(1));
   }
   return c.sensor.pulseEnergy * sum / norm;
 }

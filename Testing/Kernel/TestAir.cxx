@@ -88,22 +88,6 @@ double varianceOf(BeamAir& air, std::int64_t unit)
   return sum;
 }
 
-PulseShares pulseOf(const Sensor& sensor)
-{
-  return PulseShares(sensor.pulseWidth / sensor.samplingInterval);
-}
-
-/// Add what the drops of a unit return beyond their mean.
-void addBeyondMean(BeamAir& air, const PulseShares& pulse, std::int32_t seed, std::uint64_t beam,
-  std::int64_t unit, double* units)
-{
-  for (const BeamAir::Share& share : air.sharesOf(unit))
-  {
-    addDropsBeyondMean(seed, beam, static_cast<std::uint64_t>(unit), 0, share.mean, share.drops,
-      air.mediumAt(share.medium), pulse, units);
-  }
-}
-
 /// Points of so many beams through nothing but air, by unit.
 std::vector<double> pointsOf(
   const Sensor& sensor, BeamAir air, int beams, std::vector<double>* runs = nullptr)
@@ -382,7 +366,11 @@ TEST(Air, DropsAreACompoundPoissonLaw)
     for (int beam = 0; beam < draws; ++beam)
     {
       double whole = 0.0;
-      addBeyondMean(echo, PulseShares(), 1, static_cast<std::uint64_t>(beam), unit, &whole);
+      for (const BeamAir::Share& share : echo.sharesOf(unit))
+      {
+        addDropsBeyondMean(1, static_cast<std::uint64_t>(beam), static_cast<std::uint64_t>(unit), 0,
+          share.mean, share.drops, rain, PulseShares(), &whole);
+      }
       const double beyond = whole / mean0;
       mean += beyond / draws;
       square += beyond * beyond / draws;
@@ -401,58 +389,6 @@ TEST(Air, DropsAreACompoundPoissonLaw)
     EXPECT_NEAR(varianceOf(echo, unit) / (variance * mean0 * mean0), 1.0, 1e-9);
     EXPECT_NEAR(high, theirs, 0.01) << unit; // of a gamma distribution, in part
   }
-}
-
-TEST(Air, RainMakesPointsByItsLaw)
-{
-  const Sensor sensor = sensorOf(Search905);
-  const PhotonReceiver receiver(sensor);
-  const Medium rain = rainOf(10.0, 20.0, {});
-  BeamAir echo = filledBy(sensor, rain);
-  constexpr int beams = 400;
-  std::vector<double> ofAir;
-  const std::vector<double> points = pointsOf(sensor, echo, beams, &ofAir);
-  // Every unit, by the numbers of the beams.
-  const NoisePlan plan = planNoise(sensor, true);
-  std::vector<double> all(points.size(), 0.0);
-  const PulseShares pulse = pulseOf(sensor);
-  SharedDrops drops(pulse);
-  for (int beam = 0; beam < beams; ++beam)
-  {
-    BeamNoise noise;
-    noise.begin(plan, 7, static_cast<std::uint64_t>(beam), 0);
-    drops.clear();
-    for (std::size_t unit = 0; unit < 500; ++unit)
-    {
-      const auto u = static_cast<std::int64_t>(unit);
-      const double beyond = drops.in(u,
-        [&](std::int64_t of, double* units)
-        { addBeyondMean(echo, pulse, 7, static_cast<std::uint64_t>(beam), of, units); });
-      const double drawn = std::max(0.0, echo.followed(u) + beyond);
-      const double energy = drawn - echo.followed(u) + noise.energy(u, drawn);
-      const double lower = sensor.lowerEnergyLimit *
-        receiver.growthInAir(receiver.electronsPerJoule * echo.followed(u));
-      const bool isBlind = sensor.upperEnergyLimit - echo.followed(u) < lower;
-      all[std::min(unit, all.size() - 1)] += energy > lower && !isBlind ? 1.0 : 0.0;
-    }
-  }
-  std::size_t looked = 0;
-  for (std::size_t unit = 0; unit < points.size(); ++unit)
-  {
-    const auto u = static_cast<std::int64_t>(unit);
-    const double n = receiver.electronsPerJoule * echo.followed(u);
-    const double noise = receiver.deviation(n) / receiver.electronsPerJoule;
-    if (varianceOf(echo, u) > 0.0101 * noise * noise)
-    {
-      EXPECT_EQ(points[unit], all[unit]) << unit;
-      looked = unit;
-    }
-  }
-  EXPECT_GT(looked, 150u);
-  EXPECT_GT(statistics::sumOf(points), 20.0 * beams); // a hundred metres of rain are full of points
-  EXPECT_LT(
-    statistics::sumOf({ points.begin() + static_cast<std::ptrdiff_t>(looked), points.end() }),
-    10.0);
 }
 
 TEST(Air, DropsShareTheirPulsesBetweenUnits)

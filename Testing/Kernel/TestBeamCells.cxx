@@ -83,44 +83,6 @@ TEST(BeamCells, ClutterReturnsWhatManyRaysFind)
   EXPECT_GE(within, scenes - 2);
 }
 
-TEST(BeamCells, WhatIsSeenIsWhatRaysSee)
-{
-  // The share of the beam that each triangle fills, beside a fine grid of rays against all of them.
-  double most = 0.0;
-  for (int seed = 0; seed < 12; ++seed)
-  {
-    SCOPED_TRACE(seed);
-    const Scene scene = clutter(seed);
-    const ScanSetup setup = makeSetup(scene, openSensor(), inCells(400));
-    const SeenInCells cells(setup);
-    std::vector<double> shares = cells.shares;
-    EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-7) << "the wall";
-    constexpr int side = 600;
-    for (int k = 0; k < side * side; ++k)
-    {
-      const PlanePoint p{ (k % side + 0.5) * 2.0 / side - 1.0,
-        (k / side + 0.5) * 2.0 / side - 1.0 };
-      const BeamSurface* nearest = nullptr;
-      for (const BeamSurface* c : cells.candidates())
-      {
-        const bool inside = std::all_of(
-          c->lines, c->lines + c->count, [&](const PlaneLine& l) { return l.at(p) >= 0.0; });
-        nearest = inside && (!nearest || c->inverse.at(p) > nearest->inverse.at(p)) ? c : nearest;
-      }
-      if (nearest && p.x * p.x + p.y * p.y <= 1.0)
-      {
-        const bool other = nearest->other != NoTriangle && nearest->diagonal.at(p) < 0.0;
-        shares[other ? nearest->other : nearest->triangle] -= 4.0 / (Pi * side * side);
-      }
-    }
-    for (const double off : shares)
-    {
-      most = std::max(most, std::fabs(off));
-    }
-  }
-  EXPECT_LT(most, 3e-3);
-}
-
 TEST(BeamCells, CrowdedBeamsDependOnNoTree)
 {
   Numbers random(3);

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams that hold a direction, against looking at all of them.
 #include "BeamDirections.h"
+#include "GeometryTestScene.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 using namespace avianlidar;
 
 namespace
 {
-Vec3 anyDirection(std::mt19937_64& random)
-{
-  std::normal_distribution<double> normal;
-  return unitVector(Vec3(normal(random), normal(random), normal(random)));
-}
-
 void expectAll(const std::vector<Vec3>& beams, double half, const std::vector<Vec3>& directions)
 {
   const BeamDirections finder(beams, half, { 0.01, 0.04 });
@@ -54,15 +48,15 @@ void expectAll(const std::vector<Vec3>& beams, double half, const std::vector<Ve
 
 TEST(BeamDirections, AnywhereAndNearBorders)
 {
-  std::mt19937_64 random(3);
+  geometrytest::Numbers random(3);
   for (const double half : { 1e-4, 1.5e-3, 5.6e-3, 0.05, 0.3, 1.0 })
   {
     std::vector<Vec3> beams;
     std::vector<Vec3> directions;
     for (int i = 0; i < 500; ++i)
     {
-      beams.push_back(3.0 * anyDirection(random));
-      directions.push_back(anyDirection(random));
+      beams.push_back(3.0 * random.direction());
+      directions.push_back(random.direction());
     }
     // Axes, edges and corners of the cube, and places near them.
     for (int x = -1; x <= 1; ++x)
@@ -75,7 +69,7 @@ TEST(BeamDirections, AnywhereAndNearBorders)
           {
             const Vec3 d = unitVector(Vec3(x, y, z));
             beams.push_back(d);
-            beams.push_back(unitVector(d + 0.7 * half * anyDirection(random)));
+            beams.push_back(unitVector(d + 0.7 * half * random.direction()));
           }
         }
       }
@@ -85,7 +79,7 @@ TEST(BeamDirections, AnywhereAndNearBorders)
       for (const double away : { 0.0, 0.5, 0.99, 1.01, 1.5 })
       {
         const Vec3 axis = unitVector(beam);
-        const Vec3 across = unitVector(glm::cross(axis, anyDirection(random)));
+        const Vec3 across = unitVector(glm::cross(axis, random.direction()));
         directions.push_back(
           unitVector(std::cos(away * half) * axis + std::sin(away * half) * across));
       }

@@ -233,41 +233,6 @@ TEST(BeamRaysStrata, SharesFollowTheRays)
   }
 }
 
-TEST(BeamRaysStrata, RingsAreClosedAndCellsCompact)
-{
-  for (std::size_t count = 2; count <= 2000; count += 7)
-  {
-    const auto cells = StrataPartition(count).cells();
-    double v = 0.0;
-    double phi = 2.0 * Pi;
-    for (const auto& cell : cells)
-    {
-      if (cell.v0 != v)
-      {
-        ASSERT_NEAR(phi, 2.0 * Pi, 1e-14);
-        phi = 0.0;
-      }
-      else if (cell.v0 == 0.0 && cell.phi0 == 0.0)
-      {
-        phi = 0.0;
-      }
-      ASSERT_EQ(cell.phi0, phi);
-      v = cell.v0;
-      phi = cell.phi1;
-      // Where a cell does not reach the axis, its sides differ by less than a factor of 2.5.
-      if (cell.v0 > 0.0)
-      {
-        const double high = std::sqrt(cell.v1) - std::sqrt(cell.v0);
-        const double wide =
-          0.5 * (std::sqrt(cell.v1) + std::sqrt(cell.v0)) * (cell.phi1 - cell.phi0);
-        ASSERT_LT(std::max(high / wide, wide / high), 2.5) << count;
-      }
-    }
-    ASSERT_EQ(cells.back().v1, 1.0);
-    ASSERT_NEAR(phi, 2.0 * Pi, 1e-14);
-  }
-}
-
 TEST(BeamRays, PatternsTogetherFillEveryCellEvenly)
 {
   constexpr std::size_t count = 101;

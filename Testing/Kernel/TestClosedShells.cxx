@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ClosedShells.h"
 #include "CollisionTreeBuilder.h"
-#include "MediumVolume.h"
+#include "MediumTestScene.h"
 
 #include <gtest/gtest.h>
 
@@ -25,14 +25,10 @@ TriangleMesh meshOf(const Boxes& boxes)
   {
     const auto [from, to, half] = boxes.all[i];
     const auto first = static_cast<std::uint32_t>(mesh.points.size());
-    for (int k = 0; k < 8; ++k)
-    {
-      mesh.points.emplace_back(k & 1 ? half : -half, k & 2 ? to : from, k & 4 ? half : -half);
-    }
-    const std::array<std::array<std::uint32_t, 3>, 12> sides{ { { 0, 2, 1 }, { 1, 2, 3 },
-      { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 }, { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 },
-      { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 } } };
-    for (const auto& [a, b, c] : sides)
+    const TriangleMesh box = echotest::trianglesOf(
+      echotest::boxOf(Vec3(0.0, 0.5 * (from + to), 0.0), Vec3(half, 0.5 * (to - from), half)));
+    mesh.points.insert(mesh.points.end(), box.points.begin(), box.points.end());
+    for (const auto& [a, b, c] : box.triangles)
     {
       const bool isFlipped = boxes.flipped >> i & 1;
       mesh.triangles.push_back(

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -78,23 +77,6 @@ TEST(EffectiveArea, OfABirdThatHasNoneIsNoNumber)
   BirdShape none = HerringGull;
   none.wingLength = NAN;
   EXPECT_TRUE(std::isnan(meanEffectiveArea(none, false)));
-}
-
-TEST(EffectiveArea, OfBirdsInFlightIsTheMeanOfPosesDrawnAtRandom)
-{
-  EXPECT_LT(meanEffectiveArea(HerringGull, true), meanEffectiveArea(HerringGull, false));
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  double sum = 0.0;
-  for (int i = 0; i < 4800; ++i)
-  {
-    const double heading = 2.0 * Pi * uniform(random);
-    const double up = -std::sin(3.0 * Pi / 180.0);
-    const double side = std::sqrt(1.0 - up * up);
-    sum += effectiveArea(wholeBird(HerringGull, wingAngle(uniform(random), false)),
-      Vec3(-side * std::sin(heading), -side * std::cos(heading), -up));
-  }
-  EXPECT_NEAR(meanEffectiveArea(HerringGull, false), sum / 4800.0, 3e-4);
 }
 
 // The numbers of both tests stand in Documentation/guide/coverage.md.

@@ -34,20 +34,6 @@ glm::dquat aboutZ(double angle)
 }
 }
 
-TEST(Mover, AtRestItKeepsItsBits)
-{
-  Mover mover = pointMover(Vec3(0.1, 1.0 / 3.0, 1e7 / 7.0));
-  ASSERT_EQ(prepareMover(mover), "");
-  Pose pose;
-  ASSERT_TRUE(poseAt(mover, 123.4, pose));
-  TriangleMesh mesh;
-  place(mover, pose, mesh);
-  for (std::size_t i = 0; i < 3; ++i)
-  {
-    EXPECT_EQ(mesh.points[i], mover.mesh.points[i]);
-  }
-}
-
 TEST(Mover, PositionIsLinearAndOrientationTurnsEvenly)
 {
   Mover mover = pointMover();

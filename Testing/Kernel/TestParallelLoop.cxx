@@ -167,14 +167,6 @@ TEST(ParallelLoop, ExceptionOfTheProgress)
 
 namespace
 {
-/// True if all items were done by a loop of so many threads.
-bool loopsWork(int threads)
-{
-  std::atomic<std::size_t> items{ 0 };
-  const LoopBody body = [&](std::size_t begin, std::size_t end, int) { items += end - begin; };
-  return parallelFor(1000, 1, threads, body) && items == 1000;
-}
-
 /// The signal that ended a forked child, or its exit code: 0 if `work` gave true.
 int resultOfChild(const std::function<bool()>& work)
 {
@@ -190,18 +182,10 @@ int resultOfChild(const std::function<bool()>& work)
 }
 }
 
-TEST(ParallelLoop, AForkedChildHasLoopsToo)
-{
-  const auto work = []() { return loopsWork(4); };
-  EXPECT_TRUE(work());
-  EXPECT_EQ(resultOfChild(work), 0);
-  EXPECT_EQ(resultOfChild([&]() { return work() && resultOfChild(work) == 0; }), 0);
-  EXPECT_TRUE(work());
-}
-
+// That a child and its own children have loops is TestFork.py's.
 TEST(ParallelLoop, AForkedChildThrowsAndStopsAsItsParentDoes)
 {
-  EXPECT_TRUE(loopsWork(4));
+  EXPECT_TRUE(parallelFor(1000, 1, 4, [](std::size_t, std::size_t, int) {}));
   EXPECT_EQ(resultOfChild(
               []()
               {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Range units: pulse overlap, sums unit by unit, shares of the paths, memory, and the gate.
+#include "Memory.h"
 #include "Random.h"
 #include "RangeUnits.h"
 #include "Sensor.h"
 
 #include <gtest/gtest.h>
-
-#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,14 +38,6 @@ double totalOf(const RangeUnitAccumulator& accumulator)
     sum += unit.energy;
   }
   return sum;
-}
-
-/// Bytes handed out and not given back, also in large pieces; 0 where a sanitizer counts for
-/// itself.
-std::size_t heapInUse()
-{
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
 }
 }
 
@@ -120,7 +111,7 @@ TEST(RangeUnits, MemoryOfWidePulsesFollowsTheUnitsThatTheyMeet)
   RangeUnitAccumulator accumulator(nanosecond, 1000.0 * nanosecond, 1000.0);
   constexpr std::size_t count = 100000;
   const auto list = randomContributions(count, 300.0, 1500.0);
-  const std::size_t before = heapInUse();
+  const std::size_t before = benchmarks::heapBytes();
   double sum = 0.0;
   for (const Contribution& c : list)
   {
@@ -128,7 +119,7 @@ TEST(RangeUnits, MemoryOfWidePulsesFollowsTheUnitsThatTheyMeet)
     sum += c.energy;
   }
   accumulator.accumulate();
-  EXPECT_LT(heapInUse() - before, 200 * count);
+  EXPECT_LT(benchmarks::heapBytes() - before, 200 * count);
   EXPECT_LT(accumulator.units().size(), 5100u);
   EXPECT_NEAR(totalOf(accumulator) / sum, 1.0, 1e-9);
 }

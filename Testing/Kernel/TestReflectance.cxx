@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reflectance models: the paper's in three dimensions, its lobe at every glossiness, and the peers.
 // Energies of planes in closed form are TestOracles'.
-#include "Random.h"
+#include "GeometryTestScene.h"
 #include "Reflectance.h"
 
 #include <gtest/gtest.h>
@@ -35,14 +35,6 @@ Vec3 outgoingAt(double angle, double azimuth = 0.0)
 }
 
 const Vec3 up{ 0.0, 0.0, 1.0 };
-
-Vec3 randomDirection(std::uint64_t n, std::uint64_t which)
-{
-  const auto u = uniformPair(1, which, n, RandomPurpose::Rays);
-  const double z = 2.0 * u[0] - 1.0;
-  const double r = std::sqrt(1.0 - z * z);
-  return { r * std::cos(2.0 * Pi * u[1]), r * std::sin(2.0 * Pi * u[1]), z };
-}
 }
 
 TEST(Reflectance, LobeAtEveryGlossiness)
@@ -146,17 +138,17 @@ TEST(Reflectance, MirrorGeometryIsThePeak)
 
 TEST(Reflectance, EveryModelIsBoundedByItsCoefficients)
 {
-  for (std::uint64_t n = 0; n < 100000; ++n)
+  geometrytest::Numbers random(2);
+  for (int n = 0; n < 100000; ++n)
   {
-    const auto u = uniformPair(2, 0, n, RandomPurpose::Rays);
-    const auto v = uniformPair(2, 1, n, RandomPurpose::Rays);
-    const Material material{ u[0] * u[1], u[0] * (1.0 - u[1]),
-      std::pow(1e6, v[0]) * (v[1] < 0.05 ? 0.0 : 1.0),
-      0.5 * Pi * uniformPair(2, 5, n, RandomPurpose::Rays)[0] };
-    Vec3 normal = randomDirection(n, 2);
-    const Vec3 in = randomDirection(n, 3);
+    const double albedo = random();
+    const double kd = albedo * random();
+    const double kp = random() < 0.05 ? 0.0 : random.logUniform(1.0, 1e6);
+    const Material material{ kd, albedo - kd, kp, random(0.0, 0.5 * Pi) };
+    Vec3 normal = random.direction();
+    const Vec3 in = random.direction();
     normal = glm::dot(normal, in) > 0.0 ? -normal : normal;
-    const Vec3 out = v[1] < 0.3 ? mirrorDirection(in, normal) : randomDirection(n, 4);
+    const Vec3 out = random() < 0.3 ? mirrorDirection(in, normal) : random.direction();
     const auto g = reflectionGeometry(in, out, normal);
     for (const ReflectanceModel model : models)
     {
@@ -249,15 +241,16 @@ TEST(Reflectance, OrenNayarByItsFormula)
 
 TEST(Reflectance, NoIncidenceIsBrighterThanWhatIsSaid)
 {
-  for (std::uint64_t n = 0; n < 20000; ++n)
+  geometrytest::Numbers random(7);
+  for (int n = 0; n < 20000; ++n)
   {
-    const auto u = uniformPair(7, 0, n, RandomPurpose::Rays);
-    const auto v = uniformPair(7, 1, n, RandomPurpose::Rays);
-    const Material material{ 0.4, 0.3, std::pow(1e6, v[0]), 0.5 * Pi * v[1] };
+    const Material material{ 0.4, 0.3, random.logUniform(1.0, 1e6), random(0.0, 0.5 * Pi) };
+    const double mostCosine = random();
+    const double cosine = mostCosine * random();
     for (const ReflectanceModel model : models)
     {
-      const Reflectance most = mostStraightBack(model, material, u[0]);
-      const Reflectance f = reflectance(model, material, monostaticGeometry(u[0] * u[1]));
+      const Reflectance most = mostStraightBack(model, material, mostCosine);
+      const Reflectance f = reflectance(model, material, monostaticGeometry(cosine));
       ASSERT_LE(f.diffuse, most.diffuse * (1.0 + 1e-12));
       ASSERT_LE(f.specular, most.specular * (1.0 + 1e-12));
     }

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <set>
 
 using namespace avianlidar;
@@ -50,40 +47,6 @@ Split split(SplitRule rule, const TriangleMesh& mesh, std::uint32_t depth = 0)
   }
   return parts;
 }
-
-class SplitRules : public testing::TestWithParam<SplitRule>
-{
-};
-}
-
-TEST_P(SplitRules, GiveTwoNonEmptyPartsThatTogetherAreTheWhole)
-{
-  Numbers random(61);
-  for (int i = 0; i < 500; ++i)
-  {
-    std::vector<Vec3> centers(2 + random.index(60));
-    const int kind = static_cast<int>(random.index(4));
-    for (std::size_t k = 0; k < centers.size(); ++k)
-    {
-      const double step = static_cast<double>(k);
-      centers[k] = kind == 0 ? random.inCube(10.0)
-        : kind == 1          ? Vec3(1.5, 2.5, 3.5) // all the same
-        : kind == 2          ? Vec3(std::ldexp(1.0, static_cast<int>(k)), 0.0, 0.0)
-                             : Vec3(0.0, std::floor(0.3 * step), 1e8);
-    }
-    const Split parts = split(GetParam(), cubesAt(centers, 0.5), static_cast<std::uint32_t>(i));
-    EXPECT_EQ(parts.first.size() + parts.second.size(), centers.size());
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(SplitRule, SplitRules,
-  testing::Values(SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
-    SplitRule::SurfaceAreaHeuristic));
-
-TEST(SplitRule, HalvesCutTheListAsItStands)
-{
-  const Split parts = split(SplitRule::Halves, cubesAt(std::vector<Vec3>(7, Vec3(0.0)), 1.0));
-  EXPECT_EQ(parts.first, (std::set<std::uint32_t>{ 0, 1, 2 }));
 }
 
 TEST(SplitRule, MedianAlternatesAxesWithDepth)

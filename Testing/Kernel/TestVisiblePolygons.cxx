@@ -233,25 +233,6 @@ TEST(VisiblePolygons, PartitionTheDiscAndShowWhatBruteForceFinds)
   EXPECT_LE(most, 300u);
 }
 
-TEST(VisiblePolygons, HalvesOfAQuadrilateralAreOnePolygon)
-{
-  Scene scene;
-  scene.plate(Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.1, 0.02), Vec3(0.0, 0.0, 0.1), Wall);
-  const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
-  const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-  const SceneTriangles finderScene(*setup.tree);
-  PolygonFinder finder(finderScene, 100);
-  std::unique_ptr<VisiblePolygons> found;
-  ASSERT_EQ(findAll(setup, frame, finder, false, found), SeenByBeam::Polygons);
-  EXPECT_EQ(found->surfaces.size(), 1u);
-  EXPECT_EQ(found->polygons.size(), 1u);
-  EXPECT_EQ(found->corners.size(), 4u);
-  EXPECT_FALSE(found->facing);
-  // u + v lies on the diagonal; v is on the other half.
-  EXPECT_EQ(found->triangleAt({ 0.1, 0.3 }) + found->triangleAt({ -0.1, -0.3 }), 1u);
-  EXPECT_EQ(found->triangleAt({ 0.9, 0.9 }), NoTriangle);
-}
-
 TEST(VisiblePolygons, SurfacesThatFaceEachOtherAreToldFromThoseThatDoNot)
 {
   const Vec3 up(0.0, 0.0, 5.0);

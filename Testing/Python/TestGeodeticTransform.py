@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites, and
-bad input. Poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values
-in TestBadInput.py.
+"""The geodetic transform against two outside programs (CartConvert of GeographicLib's tools, cct of PROJ), composites,
+and bad input. Poles and the date line are tested in TestGeodeticFrame.cxx, properties and arrays of wrong values in
+TestBadInput.py.
 
-Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and the
-methods themselves a few; 20 nm in UTM, where northings reach 1e7 m and the two series differ. Measured differences are
-half of that.
+Tolerance against the programs: 10 nm in each coordinate, of which rounding takes 4 nm, digits of the programs 1 nm and
+the methods themselves a few; 20 nm in UTM, where northings reach 1e7 m and the two series differ. Measured differences
+are half of that.
 """
 import math
 import subprocess
@@ -133,6 +133,11 @@ class Behaviour(unittest.TestCase):
         for text, data, properties in (
                 ("latitude is 91", cloud(one), dict(Origin=(91.0, 0.0, 0.0), **here)),
                 ("latitude is -90.5", cloud(one, origin=(-90.5, 0.0, 0.0)), {}),
+                ("longitude is 361", cloud(one, origin=(0.0, 361.0, 0.0)), {}),
+                ("longitude is nan", cloud(one, origin=(0.0, math.nan, 0.0)), {}),
+                ("height is nan", cloud(one, origin=(0.0, 0.0, math.nan)), {}),
+                ("finite", cloud([[0.0, math.nan, 0.0]]), here),
+                ("northing", cloud([[5e5, 3e7, 0.0]]), dict(SourceFrame=UTM, UTMZone=31)),
                 ("'geodetic_origin'", cloud(one), {}),
                 ("latitude (y) is 91", cloud([[0.0, 91.0, 0.0]]), dict(SourceFrame=GEODETIC)),
                 ("easting", cloud([[5e6, 0.0, 0.0]]), dict(SourceFrame=UTM, UTMZone=31)),

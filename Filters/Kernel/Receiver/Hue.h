@@ -6,7 +6,7 @@
  * Source: paper, Sec. 2.5, Eq. 13.
  * Differs: the paper's sentence before Eq. 13 swaps the two ends. The code follows the equation.
  * Valid: all energies. An energy outside the limits has the hue of the nearer limit.
- * Test: TestHue.cxx.
+ * Test: TestHSBColorMap.cxx.
  */
 #ifndef avianlidar_Hue_h
 #define avianlidar_Hue_h
