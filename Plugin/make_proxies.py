@@ -13,6 +13,7 @@ The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML without th
 - `<Property name="X" of="Y">` is the property X of the proxy Y. Attributes and elements of the tag replace attributes
   and elements of Y's property.
 - `type` and `composite` of an input make its domains. `entries` of an enumeration count from 0, except `Name=number`.
+- `requires` of a domain is the property that it uses, as in "Input" or, with a function, "Other=HalfBeamwidth".
 - `visible_if` and `enabled_if`, as in "Kind=0 1" or "Kind!=4", make decorators. An empty text makes no decorator.
 - A PSWriterProxy has the properties of its core, which ParaView's writer for several ranks contains.
 
@@ -135,6 +136,9 @@ def complete_values(prop):
         for i, entry in enumerate(domain.attrib.pop("entries").split()):
             text, _, value = entry.partition("=")
             element(domain, "Entry", text=text, value=value or str(i))
+    for domain in prop.findall("*[@requires]"):
+        function, _, other = domain.attrib.pop("requires").partition("=")
+        element(child(domain, "RequiredProperties"), "Property", name=other or function, function=function)
     for key, mode in (("visible_if", "visibility"), ("enabled_if", "enabled_state")):
         condition = prop.attrib.pop(key, "")
         if condition:
