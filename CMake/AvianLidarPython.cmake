@@ -16,6 +16,8 @@ vtk_module_wrap_python(
 
 # The wrapping makes only the extension module. The lines below make the package with its helpers in Python.
 set(avianlidar_python_files
+  AvianLidarCoverageStatus.json
+  AvianLidarStatus.json
   __init__.py
   __main__.py
   _advice.py
@@ -90,6 +92,7 @@ set(avianlidar_python_files
   apps/bench.html.jinja
   apps/card.html.jinja
   apps/card_parts.html.jinja
+  apps/classes.json
   apps/coverage.schema.json
   apps/design.html.jinja
   apps/macros.html.jinja

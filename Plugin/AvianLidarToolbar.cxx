@@ -36,9 +36,12 @@
 #include <QFileInfo>
 #include <QHelpEngine>
 #include <QIcon>
+#include <QJsonArray>
+#include <QJsonDocument>
 #include <QList>
 #include <QMainWindow>
 #include <QMenu>
+#include <QResource>
 #include <QTimer>
 #include <QToolBar>
 #include <QVariant>
@@ -59,42 +62,9 @@ constexpr char ColourMacro[] = "avian_lidar_energy_colours";
 constexpr char WizardMacro[] = "avian_lidar_wizard";
 constexpr char ClassMacro[] = "avian_lidar_class_colours";
 
-struct Macro
-{
-  const char* file;
-  const char* icon;
-  const char* text;
-  const char* tip;
-  bool hasButton = true; ///< button in the toolbar; otherwise only an entry in the menu
-};
-
-const Macro Macros[] = { { WizardMacro, "wizard", "Avian Lidar: Scan as You Choose...",
-                           "Make a pipeline from a choice of scene, sensor, birds and weather",
-                           false },
-  { "avian_lidar_airport_scan", "scan", "Avian Lidar: Scan Surfaces or an Airport",
-    "Scan the selected surfaces with a lidar, or an airport if nothing is selected" },
-  { "avian_lidar_birds_over_the_airport", "bird", "Avian Lidar: Scan Birds over an Airport",
-    "Gulls, crows and starlings over an airport, in ten scans to play" },
-  { "avian_lidar_birds_tracked", "tracker", "Avian Lidar: Track Birds over an Airport",
-    "Birds over an airport, their tracks, and clutter found by a filter, in twenty scans to play",
-    false },
-  { "avian_lidar_coverage", "coverage", "Avian Lidar: Map Where a Bird Is Seen",
-    "Where a lidar at the airport detects or misses a gull, and why" },
-  { "avian_lidar_ground_fog", "medium", "Avian Lidar: Scan an Airport in Ground Fog",
-    "An airport in translucent ground fog, and the echoes of a lidar", false },
-  { ColourMacro, "colours", "Avian Lidar: Colour by Energy",
-    "Colour the selected echoes or range image by energy, over the dynamic range of the receiver" },
-  { "avian_lidar_status_colours", "status", "Avian Lidar: Colour by Status",
-    "Colour the selected beam report, range image or coverage by the status of each beam or "
-    "place" },
-  { "avian_lidar_show_beam", "beam", "Avian Lidar: Show Beam",
-    "The beam of the selected echo, the surfaces in the beam, and their shares", false },
-  { ClassMacro, "status", "Avian Lidar: Colour by Class",
-    "Colour the selected labelled points by class", false } };
-
 //------------------------------------------------------------------------------
 // Full path of a macro, in a folder beside the plugin's library.
-QString PathOf(const char* macro)
+QString PathOf(const QString& macro)
 {
   Dl_info plugin;
   const bool found = dladdr(reinterpret_cast<void*>(&PathOf), &plugin) && plugin.dli_fname;
@@ -250,16 +220,19 @@ Toolbar::Toolbar(QMainWindow* window)
 void Toolbar::AddMacros(QMenu* menu)
 {
   QList<QAction*> all;
-  for (const Macro& macro : Macros)
+  const QResource macros(":/AvianLidar/macros.json");
+  for (const QJsonValue& macro : QJsonDocument::fromJson(macros.uncompressedData()).array())
   {
-    auto* action =
-      new QAction(QIcon(QString(":/AvianLidar/Icons/%1.svg").arg(macro.icon)), macro.text, this);
-    action->setObjectName(macro.file);
-    action->setToolTip(QString("<b>%1</b><br>%2").arg(macro.text, macro.tip));
-    action->setStatusTip(macro.tip);
-    const QString path = PathOf(macro.file);
-    const QString text = macro.text;
-    const bool asks = macro.file == WizardMacro;
+    const QString name = macro["name"].toString();
+    const QString text = "Avian Lidar: " + macro["text"].toString();
+    const QString tip = macro["tip"].toString();
+    const QIcon icon(QString(":/AvianLidar/%1.svg").arg(macro["icon"].toString()));
+    auto* action = new QAction(icon, text, this);
+    action->setObjectName(name);
+    action->setToolTip(QString("<b>%1</b><br>%2").arg(text, tip));
+    action->setStatusTip(tip);
+    const QString path = PathOf(name);
+    const bool asks = name == WizardMacro;
     connect(action, &QAction::triggered, this,
       [path, text, asks]
       {
@@ -270,7 +243,7 @@ void Toolbar::AddMacros(QMenu* menu)
           AvianLidarDoToUndo(text, [path, answers] { Run(path, answers); });
         }
       });
-    if (macro.hasButton)
+    if (macro["button"].toBool(true))
     {
       this->addAction(action);
     }

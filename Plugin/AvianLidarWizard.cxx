@@ -13,8 +13,11 @@
 
 #include <QComboBox>
 #include <QFormLayout>
+#include <QJsonArray>
+#include <QJsonDocument>
 #include <QLabel>
 #include <QMap>
+#include <QResource>
 #include <QSpinBox>
 #include <QWizard>
 #include <QWizardPage>
@@ -109,8 +112,11 @@ Wizard::Wizard(QWidget* parent)
   page =
     this->AddPage("Birds", "Birds that cross within 250 m of the lidar, 4 to 20 m above its foot.");
   this->Species = this->AddChoice(page, "Species", "Species");
-  this->Species->addItems(
-    { "starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose" });
+  const QString table = QString::fromUtf8(QResource(":/AvianLidar/species.csv").uncompressedData());
+  for (const QString& line : table.split('\n', Qt::SkipEmptyParts).mid(2)) // after the head
+  {
+    this->Species->addItem(line.section(',', 0, 0));
+  }
   this->Species->setCurrentText(FirstSpecies);
   this->Number = new QSpinBox(this);
   this->Number->setObjectName("Number");
@@ -123,11 +129,11 @@ Wizard::Wizard(QWidget* parent)
     "Fog, rain and ground fog send light back, and need a lidar with a receiver aperture "
     "(not Airport 16, Airport 32 or Corridor C16).");
   this->Weather = this->AddChoice(page, "Weather", "Weather");
-  this->Weather->addItem("Clear: visibility 23 km", "clear");
-  this->Weather->addItem("Haze: visibility 5 km", "haze");
-  this->Weather->addItem("Fog: visibility 500 m", "fog");
-  this->Weather->addItem("Rain: 10 mm/h", "rain");
-  this->Weather->addItem("Ground fog: visibility 400 m, height 5 m", "ground fog");
+  const QResource weathers(":/AvianLidar/weathers.json");
+  for (const QJsonValue& weather : QJsonDocument::fromJson(weathers.uncompressedData()).array())
+  {
+    this->Weather->addItem(weather["text"].toString(), weather["name"].toString());
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Common functions of the macros. This module is in the plugin's library: `import avian_lidar_plugin` works wherever the
-plugin is loaded, also in a copy of a macro."""
+"""Common functions of the macros. This module is in the plugin's library: `import avian_lidar_plugin` works wherever
+the plugin is loaded, also in a copy of a macro."""
 
 import importlib.util
 import itertools
+import json
 import math
 import os
 
@@ -15,7 +16,7 @@ EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
 ENERGY_COLOURS = "avian_lidar_energy_colours"
 POSITION = "lidar_position"
 # Parts of a scan.
-SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes, because many sources have one of these classes
+SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes of many sources
 PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # Filters that show a part of a result.
@@ -28,7 +29,8 @@ MARGIN = 1.15
 
 
 def plugin_folder(on_server=False):
-    """The folder of the loaded plugin. @param on_server the folder on the server, for files that a remote server reads"""
+    """The folder of the loaded plugin. @param on_server the folder on the server, for files that a remote server
+    reads"""
     manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
     remote = on_server and servermanager.ActiveConnection.IsRemote()
     plugins = manager.GetLocalInformation()
@@ -54,6 +56,12 @@ def neighbour(name, file=None):
             spec.loader.exec_module(macro)
             return macro
     raise ValueError(f"there is no {name}.py in {' nor in '.join(folders)}")
+
+
+def data(name):
+    """The content of a JSON file in the plugin's folder Data."""
+    with open(os.path.join(plugin_folder(), "Data", name), encoding="utf-8") as file:
+        return json.load(file)
 
 
 def say(title, text, failed=True):
@@ -232,8 +240,9 @@ def axes_of_camera(azimuth, elevation):
 
 
 def frame(view, azimuth, elevation, *boxes, pixels=None):
-    """Points the camera at the boxes from above, along the azimuth. The camera has no perspective: with perspective, the
-    depth buffer mixes an apron and the grass 2 cm below. @param pixels size of the view (default: the present size)"""
+    """Points the camera at the boxes from above, along the azimuth. The camera has no perspective: with perspective,
+    the depth buffer mixes an apron and the grass 2 cm below. @param pixels size of the view (default: the present
+    size)"""
     low, high = ([choose(values) for values in zip(*(b[start::2] for b in boxes))]
                  for choose, start in ((min, 0), (max, 1)))
     corners = [corner for box in boxes for corner in itertools.product(box[:2], box[2:4], box[4:])]

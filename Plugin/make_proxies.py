@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the XML that ParaView reads: make_proxies.py proxies... sensors... proxies.xml contents.xml
+"""Writes the XML that ParaView reads, and the list of the window's resources:
+
+    make_proxies.py proxies... sensors... data... proxies.xml contents.xml resources.qrc
 
 The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML without the parts that follow from the rest:
 
@@ -10,13 +12,14 @@ The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML without th
 - A PropertyGroup contains the properties that it shows.
 - `<Property name="X" of="Y">` is the property X of the proxy Y. Attributes and elements of the tag replace attributes
   and elements of Y's property.
-- `type` and `composite` of an input make its domains. `entries` of an enumeration count from 0.
+- `type` and `composite` of an input make its domains. `entries` of an enumeration count from 0, except `Name=number`.
+- `requires` of a domain is the property that it uses, as in "Input" or, with a function, "Other=HalfBeamwidth".
 - `visible_if` and `enabled_if`, as in "Kind=0 1" or "Kind!=4", make decorators. An empty text makes no decorator.
 - A PSWriterProxy has the properties of its core, which ParaView's writer for several ranks contains.
 
 Each sensor file makes one more source: the beam source with the file's values as defaults, in a category of its maker.
-This source finds its tables, which are not properties, by the sensor's name. contents.xml is the help's table of contents.
-CMake runs this script."""
+This source finds its tables, which are not properties, by the sensor's name. contents.xml is the help's table of
+contents. The resources are the data files and the icons that proxies and macros name. CMake runs this script."""
 
 import copy
 import json
@@ -33,8 +36,8 @@ CHAPTERS = {"Beam Source": "Sensors", "Bird Source": "Birds", "Tracks": "Birds",
 FIRST_PAGES = {"Sensors": f"sources.{BASE}.html", "Birds": "sources.AvianLidarBirdSource.html",
                "Air": "sources.AvianLidarMedium.html", "Filters": "filters.AvianLidarEchoFilter.html",
                "Readers": "Readers.html", "Writers": "Writers.html"}
-# The common part of all writers. With several ranks, the first rank gathers the points and writes them. ParaView's writer
-# of series puts a slash before names without a folder. With GivenFileName the core removes the slash.
+# The common part of all writers. With several ranks, the first rank gathers the points and writes them. ParaView's
+# writer of series puts a slash before names without a folder. With GivenFileName the core removes the slash.
 WRITER = """<ServerManagerConfiguration>
 <Proxy name="{name}Core" class="vtk{name}">
   <StringVectorProperty name="GivenFileName" number_of_elements="1" panel_visibility="never">
@@ -130,8 +133,12 @@ def complete_values(prop):
     if default is not None:
         prop.attrib.setdefault("number_of_elements", "1" if kind == "String" else str(len(default.split())))
     for domain in prop.findall("EnumerationDomain[@entries]"):
-        for i, text in enumerate(domain.attrib.pop("entries").split()):
-            element(domain, "Entry", text=text, value=str(i))
+        for i, entry in enumerate(domain.attrib.pop("entries").split()):
+            text, _, value = entry.partition("=")
+            element(domain, "Entry", text=text, value=value or str(i))
+    for domain in prop.findall("*[@requires]"):
+        function, _, other = domain.attrib.pop("requires").partition("=")
+        element(child(domain, "RequiredProperties"), "Property", name=other or function, function=function)
     for key, mode in (("visible_if", "visibility"), ("enabled_if", "enabled_state")):
         condition = prop.attrib.pop(key, "")
         if condition:
@@ -152,7 +159,7 @@ def complete(proxy):
         elif prop.tag.endswith("VectorProperty"):
             complete_values(prop)
     if "icon" in proxy.attrib:
-        icon = f":/AvianLidar/Icons/{proxy.attrib.pop('icon')}.svg"
+        icon = f":/AvianLidar/{proxy.attrib.pop('icon')}.svg"
         child(proxy, "Hints").insert(0, ElementTree.Element("ShowInMenu", category=CATEGORY, icon=icon))
     if "extensions" in proxy.attrib:
         files = {name: proxy.attrib.pop(name) for name in ("extensions", "file_description")}
@@ -229,8 +236,9 @@ def sensor_source(sensor, base):
         "base_proxygroup": "sources", "base_proxyname": BASE})
     documentation = element(proxy, "Documentation", short_help=f"The sensor {full}.", long_help=sensor["comment"] + ".")
     documentation.text = (
-        f"The beam source with the values of this sensor: {sensor['comment']}. The sensor file {name} gives the source of each "
-        f"number. The field data assumed gives the names of values that nobody has measured. All values can be changed here.")
+        f"The beam source with the values of this sensor: {sensor['comment']}. The sensor file {name} gives the source "
+        "of each number. The field data assumed gives the names of values that nobody has measured. All values can be "
+        "changed here.")
     values = {key.title().replace("_", ""): number["value"] for key, number in sensor["values"].items()}
     if "HalfBeamwidth" in values:
         values["BeamwidthMilliradians"] = round(2000 * values["HalfBeamwidth"], 9)
@@ -239,7 +247,7 @@ def sensor_source(sensor, base):
     proxy.append(overridden(properties["TablesOfPreset"], name))
     hints = element(proxy, "Hints")
     category = f"{CATEGORY}: {maker[0].upper() + maker[1:]}" if maker else CATEGORY
-    element(hints, "ShowInMenu", category=category, icon=":/AvianLidar/Icons/sensor.svg")
+    element(hints, "ShowInMenu", category=category, icon=":/AvianLidar/sensor.svg")
     if full != model:
         element(hints, "AvianLidarMenu", text=full, pipeline="1")  # name in the menu and in the pipeline
     hints.extend(base.find("Hints")[1:])
@@ -266,6 +274,17 @@ def contents(root, sensors):
     return toc
 
 
+def resources(root, data):
+    """Qt's resources :/AvianLidar/NAME: data files, of which the first lists the macros, and icons."""
+    names = {pathlib.Path(hint.get("icon")).name for hint in root.iter("ShowInMenu")}
+    names.update(f"{macro['icon']}.svg" for macro in json.loads(data[0].read_text(encoding="utf-8")))
+    listed = ElementTree.Element("RCC")
+    folder = element(listed, "qresource", prefix="/AvianLidar")
+    for file in (*data, *(pathlib.Path("Icons", name) for name in sorted(names))):
+        element(folder, "file", alias=file.name).text = str(file.resolve())
+    return listed
+
+
 def write(path, root):
     """Writes a file that has changed. A new but equal file would make CMake build its dependents again."""
     ElementTree.indent(root)
@@ -275,14 +294,16 @@ def write(path, root):
 
 
 def main(*files):
-    *sources, proxies, toc = map(pathlib.Path, files)
+    *sources, proxies, toc, qrc = map(pathlib.Path, files)
     root = expanded(file for file in sources if file.suffix == ".xml")
     base = root.find(f"ProxyGroup/SourceProxy[@name='{BASE}']")
-    files = (file for file in sources if file.suffix == ".json")
-    sensors = [sensor_source(json.loads(file.read_text(encoding="utf-8")), base) for file in files]
+    others = [file for file in sources if file.suffix != ".xml"]
+    sensor_files = [file for file in others if file.name.endswith(".lidarsensor.json")]
+    sensors = [sensor_source(json.loads(file.read_text(encoding="utf-8")), base) for file in sensor_files]
     write(toc, contents(root, sensors))
     element(root, "ProxyGroup", name="sources").extend(proxy for _, proxy in sensors)
     write(proxies, root)
+    write(qrc, resources(root, [file for file in others if file not in sensor_files]))
 
 
 if __name__ == "__main__":

@@ -25,9 +25,11 @@ SCENE = pathlib.Path(__file__).resolve().parent / "scene" / "hongqiao.lidarscene
 
 def arguments(argv=None):
     parser = tools.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--scene", type=tools.file, default=SCENE, help="a .lidarscene.json file; default: Shanghai Hongqiao")
+    parser.add_argument("--scene", type=tools.file, default=SCENE,
+                        help="a .lidarscene.json file; default: Shanghai Hongqiao")
     parser.add_argument("--preset", choices=["Airport16", "Airport32", "both"], default="both", help="the sensor")
-    parser.add_argument("--unit", type=tools.above_zero, help="range unit and pulse width, ns; default: values of the preset")
+    parser.add_argument("--unit", type=tools.above_zero,
+                        help="range unit and pulse width, ns; default: values of the preset")
     tools.add_arguments(parser, "build/airport")
     parser.add_argument("--focus", default="Terminal 1", help="object of the close view, default 'Terminal 1'")
     parser.add_argument("--all-wall", action="store_true", help="give all objects the paper's wall material")
@@ -40,13 +42,13 @@ def scan(scene, preset, options, clock):
     if options.unit:
         sensor.set(sampling_interval=1e-9 * options.unit, pulse_width=1e-9 * options.unit)
     with clock("beams"):
-        tools.run(lambda: sensor.beams)
+        tools.update(sensor.algorithm)
     result = al.Scan(scene, sensor, rays_per_beam=options.rays, seed=options.seed, number_of_threads=options.threads,
                      preset=tools.preset(options))
     with clock("trace and light"):
-        tools.run(result.update)
+        result.update()
     with clock("colour, coordinates"):
-        return result, tools.run(result.echoes.annotated), tools.run(result.range_image)
+        return result, result.echoes.annotated(), result.range_image()
 
 
 def focus(surfaces, echoes, name):
@@ -69,18 +71,17 @@ def draw(surfaces, result, echoes, preset, options):
     tools.range_images(options.out / f"{preset}-range.png", result, words)
 
 
-def main(argv=None):
-    options = arguments(argv)
+def work(options):
     common = tools.Clock()
     with common("read the scene"):
-        seen = tools.run(lambda: al.Scene(options.scene))
+        seen = al.Scene(options.scene)
         scene = al.Scene(seen.surfaces, material="Wall") if options.all_wall else seen
     surfaces = seen.surfaces.GetBlock(0)
     if not surfaces.GetNumberOfPoints():
         sys.exit(f"{options.scene}: no surfaces")
     scene.tree.SetPreset(options.paper)
     with common("build the tree"):
-        tools.run(lambda: tools.update(scene.tree))  # shared by both sensors
+        tools.update(scene.tree)  # shared by both sensors
 
     columns, results = {}, {}
     for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
@@ -89,15 +90,20 @@ def main(argv=None):
         options.out.mkdir(parents=True, exist_ok=True)
         with clock("write"):
             for kind in ("vtp", "csv", "las", "pcd", "geojson")[:5 if scene.geodetic_origin else 4]:
-                tools.run(lambda: al.save(echoes, options.out / f"{preset}.{kind}"))  # noqa: B023
+                al.save(echoes, options.out / f"{preset}.{kind}")
         if not options.no_pictures:
             with clock("pictures"):
                 draw(surfaces, result, echoes, preset, options)
         results[preset] = echoes.data, result.algorithm, image
-        columns[preset] = [*tools.counts(scene.tree, echoes.data, result.algorithm), *tools.hue_of(options.focus, echoes.data),
-                           *clock.rows()]
+        columns[preset] = [*tools.counts(scene.tree, echoes.data, result.algorithm),
+                           *tools.hue_of(options.focus, echoes.data), *clock.rows()]
     tools.leave(options.out, "table", *tools.columns(columns))
     return surfaces, results
+
+
+def main(argv=None):
+    options = arguments(argv)
+    return tools.run(lambda: work(options))
 
 
 if __name__ == "__main__":

@@ -22,7 +22,8 @@ import tools  # noqa: E402
 
 def arguments(argv=None):
     parser = tools.Parser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--scene", type=tools.file, default=corridor_scene.SCENE, help="a .lidarscene.json file instead of the corridor")
+    parser.add_argument("--scene", type=tools.file, default=corridor_scene.SCENE,
+                        help="a .lidarscene.json file instead of the corridor")
     parser.add_argument("--position", type=float, nargs=3, metavar=("X", "Y", "Z"), help="position of the lidar, m")
     tools.add_arguments(parser, "build/corridor")
     options = parser.parse_args(argv)
@@ -34,27 +35,26 @@ def arguments(argv=None):
 def scan(scene, position, options, clock):
     """The scan and its coloured echoes."""
     with clock("build the tree"):
-        tools.run(lambda: tools.update(scene.tree))
+        tools.update(scene.tree)
     result = al.Scan(scene, al.Sensor("CorridorC16", position=position), rays_per_beam=options.rays, seed=options.seed,
                      number_of_threads=options.threads, preset=tools.preset(options))
     with clock("trace and light"):
-        tools.run(result.update)
+        result.update()
     with clock("colour"):
-        return result, tools.run(result.echoes.annotated)
+        return result, result.echoes.annotated()
 
 
-def main(argv=None):
-    options = arguments(argv)
+def work(options):
     clock = tools.Clock()
     with clock("read the scene"):
-        scene = tools.run(lambda: al.Scene(options.scene))
+        scene = al.Scene(options.scene)
         scene.tree.SetPreset(options.paper)
     surfaces = corridor_scene.build() if options.scene == corridor_scene.SCENE else scene.surfaces.GetBlock(0)
     result, echoes = scan(scene, options.position or scene.lidar_position or (0, 0, 0), options, clock)
     options.out.mkdir(parents=True, exist_ok=True)
     with clock("write"):
         for kind in ("vtp", "csv"):
-            tools.run(lambda: echoes.save(options.out / f"echoes.{kind}"))  # noqa: B023
+            echoes.save(options.out / f"echoes.{kind}")
     if not options.no_pictures:
         import corridor_pictures  # not at the top, because numbers do not need a display
         with clock("pictures"):
@@ -62,6 +62,11 @@ def main(argv=None):
     rows = tools.counts(result.scene.tree, echoes.data, result.algorithm) + clock.rows()
     tools.leave(options.out, "table", *tools.columns({"CorridorC16": rows}))
     return surfaces, echoes.data, result.algorithm
+
+
+def main(argv=None):
+    options = arguments(argv)
+    return tools.run(lambda: work(options))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@
 
     PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/sequence/labels.py --out build/labels
 
-The script makes 20 scans of the scenario, draws the points as labels.png, and prints the number of points of each class.
+The script makes 20 scans of the scenario, draws the points as labels.png, and prints the number of points of each
+class.
 """
 import argparse
 import pathlib
@@ -14,12 +15,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from avianlidar._command import main as avianlidar
+from avianlidar.apps._labels import CLASSES
 
 HERE = pathlib.Path(__file__).resolve().parent
-# Drawn classes of SemanticKITTI: name, colour, size of a point.
-CLASSES = {50: ("buildings", "#8a8a8a", 2), 52: ("other structures", "#b9a27c", 2), 80: ("masts", "black", 4),
-           252: ("cars", "#1f77b4", 6), 258: ("trucks", "#17becf", 6), 259: ("aircraft and other vehicles", "#2ca02c", 6),
-           99: ("birds", "#d6006c", 6)}
+# Drawn classes of SemanticKITTI, and sizes of their points.
+SIZES = {50: 2, 52: 2, 80: 4, 252: 6, 258: 6, 259: 6, 99: 6}
 
 
 def points(folder):
@@ -44,10 +44,11 @@ def main(arguments=None):
     places, labels = points(folder)
     figure = Figure(figsize=(8, 6), layout="constrained")
     axes = figure.subplots()
-    for label, (name, colour, size) in CLASSES.items():
+    for label, size in SIZES.items():
         x, y = places[labels == label].T
         if len(x):
-            axes.scatter(x, y, size, colour, linewidths=0, label=f"{label} {name}: {len(x)}")
+            colour = np.array(CLASSES[label].color[::-1]) / 255
+            axes.scatter(x, y, size, [colour], linewidths=0, label=f"{label} {CLASSES[label].here}: {len(x)}")
     axes.set(aspect="equal", xlim=(-800, 800), ylim=(-600, 600), xlabel="m east of the sensor", ylabel="m north",
              title=f"Labelled points of {options.scans} scans")
     axes.legend(loc="upper left", markerscale=3, fontsize=8)

@@ -13,8 +13,8 @@ In ParaView: select surfaces, or nothing, and click the button in the toolbar. I
 import math
 
 from avian_lidar_plugin import (
-    ENERGY_COLOURS, POSITION, free_name, frame, hide_scans, lidar_place, name_of, neighbour, open_example, run, say, show,
-    show_grey, show_sensor, start, tree_of)
+    ENERGY_COLOURS, POSITION, free_name, frame, hide_scans, lidar_place, name_of, neighbour, open_example, run, say,
+    show, show_grey, show_sensor, start, tree_of)
 from paraview import servermanager, simple
 
 TITLE = "airport scan"
@@ -23,8 +23,9 @@ WIDE = 50e3  # m, extent from which on surfaces may be in millimetres
 HEIGHT = 3
 DISTANCE = 0.1
 ECHO_SIZE = 5  # size of an echo's point, pixels
-# Elevation of the camera, deg. From higher up, the rows of echoes on a wall hide each other. The view contains the echoes
-# with at least the share STRONG of the largest energy, and looks at the echoes with at least the share STRONGEST.
+# Elevation of the camera, deg. From higher up, the rows of echoes on a wall hide each other. The view contains the
+# echoes with at least the share STRONG of the largest energy, and looks at the echoes with at least the share
+# STRONGEST.
 CAMERA_ELEVATION = 20
 STRONG, STRONGEST = 0.25, 0.9
 
@@ -40,8 +41,8 @@ def bounds_of_strong(echoes, share):
     """Bounds of the echoes with at least this share of the largest energy."""
     strongest = echoes.GetPointDataInformation().GetArray("energy").GetRange(0)[1]
     threshold = servermanager.filters.Threshold(
-        Input=echoes, Scalars=["POINTS", "energy"], ThresholdMethod="Above Upper Threshold", UpperThreshold=share * strongest
-    )
+        Input=echoes, Scalars=["POINTS", "energy"], ThresholdMethod="Above Upper Threshold",
+        UpperThreshold=share * strongest)
     threshold.UpdatePipeline()
     return threshold.GetDataInformation().GetBounds()
 
@@ -97,14 +98,15 @@ def scan(surfaces=None, view=None):
     if echoes.GetDataInformation().GetNumberOfPoints() == 0:
         bounds = surfaces.GetDataInformation().GetBounds()
         if max(bounds[1] - bounds[0], bounds[3] - bounds[2]) > WIDE:
-            say(TITLE, f"no echoes: the surfaces are {bounds[1] - bounds[0]:g} m wide and {bounds[3] - bounds[2]:g} m deep. "
-                "If the unit is the millimetre, apply Transform with the scale 0.001, select the result and click again")
+            say(TITLE, f"no echoes: the surfaces are {bounds[1] - bounds[0]:g} m wide and {bounds[3] - bounds[2]:g} m "
+                "deep. If the unit is the millimetre, apply Transform with the scale 0.001, select the result and "
+                "click again")
         else:
             say(TITLE, f"no echoes: the sensor at {where} sees nothing. To move the sensor, {move}. "
                 "Then select the echoes and click Colour by Energy")
     elif not known:
-        say(TITLE, f"the surfaces have no {POSITION}: the sensor stands beside the surfaces, at {where}. To move the sensor, {move}",
-            failed=False)
+        say(TITLE, f"the surfaces have no {POSITION}: the sensor stands beside the surfaces, at {where}. "
+            f"To move the sensor, {move}", failed=False)
     return tree, beams, echoes
 
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: birds over the airport that comes with the plugin, in ten scans of a rotating lidar to play.
 
-Gulls and crows cross the airport, and a flock of starlings passes. Each kind is a source Avian Lidar Tracks. A group of all movers
-is the third input of the echo filter. The lidar is a Search 905 at the position that the scene gives. Echoes of surfaces are
-coloured by energy. Echoes of birds are large points, coloured by kind. Lines show the paths of the birds. Play goes from scan
-to scan. If the pipeline contains the airport and its collision tree, the macro uses them. The macro hides earlier scans. After
-an error there are no new objects, and Output Messages gives the reason.
+Gulls and crows cross the airport, and a flock of starlings passes. Each kind is a source Avian Lidar Tracks. A group of
+all movers is the third input of the echo filter. The lidar is a Search 905 at the position that the scene gives. Echoes
+of surfaces are coloured by energy. Echoes of birds are large points, coloured by kind. Lines show the paths of the
+birds. Play goes from scan to scan. If the pipeline contains the airport and its collision tree, the macro uses them.
+The macro hides earlier scans. After an error there are no new objects, and Output Messages gives the reason.
 
 In ParaView: click the button in the toolbar. In a script: scan(view).
 """

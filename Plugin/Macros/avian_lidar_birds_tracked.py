@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: birds over the airport, tracked from scan to scan, to play.
 
-The macro makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns clutter, and an
-Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are white. Each confirmed track has its own colour.
-Thin lines show the paths of the birds. The macro executes all scans once. Play goes from scan to scan. In the first five scans
-the filter learns, and all points are clutter. After an error there are no new objects, and Output Messages gives the reason.
+The macro makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns clutter, and
+an Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are white. Each confirmed track has its
+own colour. Thin lines show the paths of the birds. The macro executes all scans once. Play goes from scan to scan. In
+the first five scans the filter learns, and all points are clutter. After an error there are no new objects, and Output
+Messages gives the reason.
 
 In ParaView: choose the macro in the menu Macros. In a script: track(view).
 """
@@ -19,7 +20,8 @@ CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # sizes of poin
 
 
 def track(view=None):
-    """Scans the airport with birds and tracks the birds. @return (paths of the birds, echo filter, clutter filter, tracker)"""
+    """Scans the airport with birds and tracks the birds. @return (paths of the birds, echo filter, clutter filter,
+    tracker)"""
     birds = neighbour(BIRDS, globals().get("__file__"))
     view = start(view)
     ways, beams, echoes, of_birds = birds.scan(view, REVOLUTIONS, TRAIL_WIDTH)

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: where a lidar at the airport would detect or miss a gull, and why.
 
-The macro makes a sensor Search 905 at the position that the scene gives, and an Avian Lidar Coverage for a herring gull in
-clear air around the sensor. The first view shows the airport, a surface within which a scan detects the bird with a
-probability of at least 1/2, and a slice 30 m above the ground with the probability. The second view shows the same slice
-with the status: seen, too weak, shadowed, in clutter, between beams, outside the band. A change of Species, Meteorological
-Visibility or Reflectance of the coverage does not need new lines of sight. If the pipeline contains the airport and its
-collision tree, the macro uses them. The macro hides earlier scans. After an error there are no new objects, and Output
-Messages gives the reason.
+The macro makes a sensor Search 905 at the position that the scene gives, and an Avian Lidar Coverage for a herring gull
+in clear air around the sensor. The first view shows the airport, a surface within which a scan detects the bird with a
+probability of at least 1/2, and a slice 30 m above the ground with the probability. The second view shows the same
+slice with the status: seen, too weak, shadowed, in clutter, between beams, outside the band. A change of Species,
+Meteorological Visibility or Reflectance of the coverage does not need new lines of sight. If the pipeline contains the
+airport and its collision tree, the macro uses them. The macro hides earlier scans. After an error there are no new
+objects, and Output Messages gives the reason.
 
 In ParaView: click the button in the toolbar. In a script: cover(view).
 """
 
 from avian_lidar_plugin import (
-    airport_and_tree, colour_by, frame, free_name, hide_scans, lidar_place, neighbour, run, show, show_grey, show_sensor,
-    start)
+    airport_and_tree, colour_by, frame, free_name, hide_scans, lidar_place, neighbour, run, show, show_grey,
+    show_sensor, start)
 from paraview import simple
 
 STATUS = "avian_lidar_status_colours"
@@ -37,7 +37,8 @@ REASONS = "Reasons"  # name of the second view
 
 
 def region(place):
-    """Bounds of the region around the lidar, m. The slice lies at a layer of points, so status values are not interpolated."""
+    """Bounds of the region around the lidar, m. The slice lies at a layer of points, so status values are not
+    interpolated."""
     x, y = place[:2]
     return [x - REACH, x + REACH, y - REACH, y + REACH, 0.0, CEILING]
 

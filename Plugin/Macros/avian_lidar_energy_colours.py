@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: colours the active echoes or range image by energy as in the paper, blue at Qlow and red at Qhigh.
 
-A range image gets its own view, in which cells without an echo are transparent. The range of the colours is the dynamic range
-of the receiver, from the field data of the echoes. The range is fixed, so that a colour always means the same energy. If limits in the
-field data, the array `energy` or the preset are missing, the macro changes nothing and prints the reason. ParaView's window
-runs the macro at the first Apply of an echo filter or a range image.
+A range image gets its own view, in which cells without an echo are transparent. The range of the colours is the dynamic
+range of the receiver, from the field data of the echoes. The range is fixed, so that a colour always means the same
+energy. If limits in the field data, the array `energy` or the preset are missing, the macro changes nothing and prints
+the reason. ParaView's window runs the macro at the first Apply of an echo filter or a range image.
 
 In ParaView: select the echoes, and click the button in the toolbar. In a script: colour(source, view).
 """

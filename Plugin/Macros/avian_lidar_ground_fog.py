@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: the airport in ground fog, and the echoes of a lidar.
 
-The macro makes a sensor Search 905 at the position that the scene gives, and a medium (fog of 400 m visibility up to a height
-of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo Filter. The fog is translucent, the
-airport is grey, and echoes are coloured by energy. You can then change Kind, Meteorological Visibility or the shape of the
-medium. If the pipeline contains the airport and its collision tree, the macro uses them. The macro hides earlier scans. After
-an error there are no new objects, and Output Messages gives the reason.
+The macro makes a sensor Search 905 at the position that the scene gives, and a medium (fog of 400 m visibility up to a
+height of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo Filter. The fog is
+translucent, the airport is grey, and echoes are coloured by energy. You can then change Kind, Meteorological Visibility
+or the shape of the medium. If the pipeline contains the airport and its collision tree, the macro uses them. The macro
+hides earlier scans. After an error there are no new objects, and Output Messages gives the reason.
 
 In ParaView: choose the macro in the menu Macros. In a script: cover(view).
 """

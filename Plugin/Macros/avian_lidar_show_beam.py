@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: the beam of the selected echo, the surfaces in the beam, and the share of each surface.
 
-Select an echo first, by Select Points On in a render view or as a row of a spreadsheet. The echo may be of the echo filter, or
-of a filter downstream that keeps beam_id. The macro makes an Avian Lidar Beam View with the inputs and the air of the scan. If
-the scan already has a beam view, the macro sets its Beam Id. The cone is translucent, and the parts of the surfaces in the beam
-are coloured by their share of the energy. A table lists the shares. After an error there are no new objects, and Output
-Messages gives the reason.
+Select an echo first, by Select Points On in a render view or as a row of a spreadsheet. The echo may be of the echo
+filter, or of a filter downstream that keeps beam_id. The macro makes an Avian Lidar Beam View with the inputs and the
+air of the scan. If the scan already has a beam view, the macro sets its Beam Id. The cone is translucent, and the parts
+of the surfaces in the beam are coloured by their share of the energy. A table lists the shares. After an error there
+are no new objects, and Output Messages gives the reason.
 
 In ParaView: choose the macro in the menu Macros. In a script: show_beam(echoes, beam_id, view).
 """
@@ -16,6 +16,7 @@ from paraview import servermanager, simple
 TITLE = "show beam"
 ARRAY, SHARE = "beam_id", "energy_share"
 SCAN, VIEW = "AvianLidarEchoFilter", "AvianLidarBeamView"
+INPUTS = ("Beams", "Surfaces", "Movers")
 WHAT_TO_SELECT = "select an echo first (Select Points On in the view, or a row of a spreadsheet)"
 AIR = ("AttenuationCoefficient", "MeteorologicalVisibility", "AirBackscatter", "RainRate", "ReflectanceModel")
 CONE_COLOUR, CONE_OPACITY = (1.0, 0.7, 0.2), 0.25
@@ -50,28 +51,30 @@ def selected_beam():
     for source, port, selection in selections():
         if scan_of(source) is None:
             continue
-        extract = servermanager.filters.ExtractSelection(Input=source[port], Selection=servermanager._getPyProxy(selection))
+        extract = servermanager.filters.ExtractSelection(
+            Input=source[port], Selection=servermanager._getPyProxy(selection))
         extract.UpdatePipeline()
         ids = servermanager.Fetch(extract).GetPointData().GetArray(ARRAY)
         ids = [int(ids.GetTuple1(i)) for i in range(ids.GetNumberOfTuples())] if ids else []
         if ids:
             if len(set(ids)) > 1:
-                say(TITLE, f"echoes of {len(set(ids))} beams are selected: the view shows the beam {ids[0]}", failed=False)
+                several = f"echoes of {len(set(ids))} beams are selected"
+                say(TITLE, f"{several}: the view shows the beam {ids[0]}", failed=False)
             return source, ids[0]
     raise ValueError(WHAT_TO_SELECT)
 
 
 def same(one, other):
     """Whether two inputs are connected to the same output."""
-    pairs = [(getattr(port, "Proxy", port), getattr(port, "Port", 0)) if port is not None else None for port in (one, other)]
+    pairs = [(getattr(port, "Proxy", port), getattr(port, "Port", 0)) for port in (one, other)]
     return pairs[0] == pairs[1]
 
 
 def view_of(scan):
     """The beam view with the inputs of a scan, if there is one."""
     for source in simple.GetSources().values():
-        if source.SMProxy.GetXMLName() == VIEW and all(same(getattr(source, name), getattr(scan, name))
-                                                      for name in ("Beams", "Surfaces", "Movers")):
+        if source.SMProxy.GetXMLName() == VIEW and all(
+                same(getattr(source, name), getattr(scan, name)) for name in INPUTS):
             return source
     return None
 
@@ -85,7 +88,8 @@ def show_parts(beam, view):
     apex, count = data.GetPoint(0), data.GetNumberOfPoints()
     middle = [sum(data.GetPoint(i)[axis] for i in range(1, count)) / (count - 1) for axis in range(3)]
     length = sum((a - b) ** 2 for a, b in zip(middle, apex)) ** 0.5
-    place = "Translation" if "Translation" in display.ListProperties() else "Position"  # Translation exists from ParaView 5.12 on
+    # The property is Translation from ParaView 5.12 on.
+    place = "Translation" if "Translation" in display.ListProperties() else "Position"
     display.SetPropertyWithName(place, [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)])
     table = colour_by(display, "CELLS", SHARE, "Viridis (matplotlib)", (0.0, 1.0))
     bar = simple.GetScalarBar(table, view)
@@ -122,8 +126,9 @@ def show_beam(source=None, beam_id=None, view=None):
     beam = view_of(scan)
     is_new = beam is None
     if is_new:
-        inputs = {name: getattr(scan, name) for name in ("Beams", "Surfaces", "Movers") if getattr(scan, name) is not None}
-        beam = simple.AvianLidarBeamView(registrationName=free_name("Beam"), **inputs)
+        inputs = {name: getattr(scan, name) for name in INPUTS}
+        beam = simple.AvianLidarBeamView(registrationName=free_name("Beam"),
+                                         **{name: value for name, value in inputs.items() if value is not None})
     beam.BeamId = beam_id
     for name in AIR:
         setattr(beam, name, getattr(scan, name))

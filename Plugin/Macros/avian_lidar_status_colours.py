@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: colours a beam report, range image or coverage by status, with words in the legend.
 
-Beams are coloured by status: echo, no surface, below the lower limit, saturated, outside the gate. Places of a coverage are
-coloured by other status values: seen, or the reason why a bird is missed. A range image needs a beam report as Beams. A
-slice of a coverage is also possible. If the active output has no array `status` but the filter's Beam Report has, the macro colours
-the report. Without an array `status`, or without the preset, the macro changes nothing and prints the reason.
+Beams are coloured by status: echo, no surface, below the lower limit, saturated, outside the gate. Places of a coverage
+are coloured by other status values: seen, or the reason why a bird is missed. A range image needs a beam report as
+Beams. A slice of a coverage is also possible. If the active output has no array `status` but the filter's Beam Report
+has, the macro colours the report. Without an array `status`, or without the preset, the macro changes nothing and
+prints the reason.
 
 In ParaView: select the output, and click the button in the toolbar. In a script: colour(source, view).
 """
@@ -17,7 +18,6 @@ COVERAGE_PRESET = "Avian lidar coverage status"
 ARRAY = "status"
 # Array that only a coverage has.
 OF_COVERAGE = "track_probability"
-FILES = {PRESET: "AvianLidarStatus.json", COVERAGE_PRESET: "AvianLidarCoverageStatus.json"}
 
 
 def with_status(source):
@@ -29,7 +29,8 @@ def with_status(source):
     for port in ports:
         if port.GetPointDataInformation().GetArray(ARRAY) is not None:
             return port
-    raise ValueError(f"there is no point array {ARRAY}: select a beam report, or a range image with a beam report as Beams")
+    raise ValueError(f"there is no point array {ARRAY}: select a beam report, or a range image with a beam report as "
+                     "Beams")
 
 
 def of_coverage(source):
@@ -44,7 +45,8 @@ def colour(source, view=None):
     places = of_coverage(source)
     preset = COVERAGE_PRESET if places else PRESET
     if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(preset):
-        raise ValueError(f"there is no colour preset {preset}: load the plugin, or import {FILES.get(preset, 'it')}")
+        file = f"{preset.title().replace(' ', '')}.json"
+        raise ValueError(f"there is no colour preset {preset}: load the plugin, or import {file}")
     images = neighbour(ENERGY_COLOURS, globals().get("__file__"))
     image = images.is_image(source)
     if image and not places:
@@ -54,7 +56,8 @@ def colour(source, view=None):
         display = simple.Show(source, view)
     if places and image and display.Representation == "Outline":
         display.SetRepresentationType("Slice")
-    # Status values of places have other meanings than status values of beams, so places have a separate table of colours.
+    # Status values of places have other meanings than status values of beams, so places have a separate table of
+    # colours.
     simple.ColorBy(display, ("POINTS", ARRAY), separate=places)
     table = simple.GetColorTransferFunction(ARRAY, display, separate=places)
     table.AutomaticRescaleRangeMode = "Never"

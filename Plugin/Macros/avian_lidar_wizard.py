@@ -1,45 +1,41 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: a scan of a scene with a sensor, birds and weather, which the user chooses in a dialog.
 
-In ParaView, Macros > Avian Lidar: Scan as You Choose... opens the dialog. The button Finish on the first page gives birds over
-the airport that comes with the plugin, in clear air. The macro makes a scene (unless the pipeline contains the airport), a
-collision tree, the sensor, birds (Avian Lidar Tracks in a group) and an echo filter with ten scans to play. Ground fog also
-needs a medium. After an error there are no new objects, and Output Messages gives the reason. In a script: make(scene, sensor,
-species, number, weather, view).
+In ParaView, Macros > Avian Lidar: Scan as You Choose... opens the dialog. The button Finish on the first page gives
+birds over the airport that comes with the plugin, in clear air. The macro makes a scene (unless the pipeline contains
+the airport), a collision tree, the sensor, birds (Avian Lidar Tracks in a group) and an echo filter with ten scans to
+play. Ground fog also needs a medium. After an error there are no new objects, and Output Messages gives the reason. In
+a script: make(scene, sensor, species, number, weather, view).
 """
 
 import os
 
 from avian_lidar_plugin import (
-    ENERGY_COLOURS, airport_and_tree, frame, free_name, hide_scans, lidar_place, neighbour, plugin_folder, run, start,
-    tree_of, update_first_step)
+    ENERGY_COLOURS, airport_and_tree, data, frame, free_name, hide_scans, lidar_place, neighbour, plugin_folder, run,
+    start, tree_of, update_first_step)
 from paraview import servermanager, simple
 
 AIRPORT, BIRDS, FOG = "avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_ground_fog"
 REVOLUTIONS = 10
 BIRD_COLOUR = (0.9, 0.1, 0.5)
 RADIUS, HEIGHTS = 250.0, [4.0, 20.0]  # region of the birds, m
-# Properties of the echo filter. For ground fog, the scene also has a medium.
-WEATHER = {
-    "clear": {"MeteorologicalVisibility": 23000.0},
-    "haze": {"MeteorologicalVisibility": 5000.0},
-    "fog": {"MeteorologicalVisibility": 500.0, "AirBackscatter": 1},
-    "rain": {"MeteorologicalVisibility": 23000.0, "RainRate": 10.0},
-    "ground fog": {"MeteorologicalVisibility": 23000.0},
-}
-SCATTERS = ("fog", "rain", "ground fog")
 
 
 def check(sensor, weather):
-    """Raises an error if sensor and weather do not fit, before any object is made."""
-    if weather not in WEATHER:
-        raise ValueError(f"the weather is {weather!r}, expected one of {', '.join(WEATHER)}")
+    """Raises an error if sensor and weather do not fit, before any object is made. @return the echo filter's properties
+    in this weather. For ground fog, the scene also has a medium."""
+    weathers = {one["name"]: one for one in data("weathers.json")}
+    if weather not in weathers:
+        raise ValueError(f"the weather is {weather!r}, expected one of {', '.join(weathers)}")
     prototype = servermanager.ProxyManager().GetPrototypeProxy("sources", sensor)
     if prototype is None or prototype.GetVTKClassName() != "vtkAvianLidarBeamSource":
         raise ValueError(f"the sensor is {sensor!r}, expected the source of a sensor, such as AvianLidarSearch905")
-    if weather in SCATTERS and not prototype.GetProperty("ReceiverAperture").GetElement(0) > 0:
+    # Of a new proxy, because prototypes in ParaView's window have the values of the beam source.
+    aperture = servermanager.ProxyManager().NewProxy("sources", sensor).GetProperty("ReceiverAperture").GetElement(0)
+    if "sends_light_back" in weathers[weather] and not aperture > 0:
         raise ValueError(f"{weather} sends light back and needs a sensor with a Receiver Aperture, such as Search 905. "
                          f"{prototype.GetXMLLabel()} does not have a Receiver Aperture")
+    return weathers[weather]["properties"]
 
 
 def open_scene(scene):
@@ -61,14 +57,13 @@ def name_of(sensor):
     return hint.GetAttribute("text") if hint else prototype.GetXMLLabel().replace("Avian Lidar ", "")
 
 
-def build(macros, view, scene, sensor, species, number, weather):
+def build(macros, view, scene, sensor, species, number, weather, air):
     """Makes the pipeline, and shows it in the view."""
     airport, birds, fogs, colours = macros
     surfaces, tree = open_scene(scene)
     place = lidar_place(tree) or airport.place_beside(tree)
-    beams = getattr(simple, "".join(one for one in servermanager.ProxyManager().GetPrototypeProxy("sources", sensor).GetXMLLabel()
-                                    if one.isalnum() or one == "_"))(
-        registrationName=free_name(name_of(sensor)), Position=place, NumberOfRevolutions=REVOLUTIONS)
+    beams = getattr(simple, sensor)(registrationName=free_name(name_of(sensor)), Position=place,
+                                    NumberOfRevolutions=REVOLUTIONS)
     beams.UpdatePipelineInformation()
     solid, fog = tree, None
     if weather == "ground fog":
@@ -77,14 +72,15 @@ def build(macros, view, scene, sensor, species, number, weather):
         solid = simple.GroupDatasets(registrationName=free_name("Scene in fog"), Input=[tree, fog])
     tracks, inputs = [], {}
     if number > 0:
-        flight = {"Pattern": "Crossings", "Species": species, "NumberOfBirds": number, "Radius": RADIUS, "Heights": HEIGHTS}
+        flight = {"Pattern": "Crossings", "Species": species, "NumberOfBirds": number, "Radius": RADIUS,
+                  "Heights": HEIGHTS}
         kinds = {species.capitalize(): (BIRD_COLOUR, flight)}
         tracks = birds.flights(kinds, place, REVOLUTIONS / beams.RotationRate)
         for each in tracks if scene else ():
             each.Center = [*place[:2], place[2] - airport.HEIGHT]  # the macro's heights are above the lidar's foot
         inputs["Movers"] = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan"), Beams=beams, Surfaces=solid,
-                                         NumberOfReflections=1, **inputs, **WEATHER[weather])
+                                         NumberOfReflections=1, **inputs, **air)
     update_first_step(echoes)
     hide_scans(view)
     airport.show_scan(surfaces, tree, beams, echoes, view, colours.colour, birds.CAMERA_ELEVATION)
@@ -106,11 +102,11 @@ def make(scene=None, sensor="AvianLidarSearch905", species="herring gull", numbe
     """Makes a scan. @return (sensor, tracks, echo filter). After an error there are no new objects."""
     macros = [neighbour(name, globals().get("__file__")) for name in (AIRPORT, BIRDS, FOG, ENERGY_COLOURS)]
     plugin_folder(on_server=True)
-    check(sensor, weather)
+    air = check(sensor, weather)
     view = start(view)
     before = list(simple.GetSources().values())
     try:
-        return build(macros, view, scene, sensor, species, number, weather)
+        return build(macros, view, scene, sensor, species, number, weather, air)
     except Exception:
         made = [source for source in simple.GetSources().values() if source not in before]
         for source in sorted(made, key=lambda one: -one.SMProxy.GetGlobalID()):  # consumers first

@@ -2,6 +2,9 @@
 """Pictures with Matplotlib, which only the functions import."""
 from __future__ import annotations
 
+import json
+import pathlib
+
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
@@ -10,9 +13,15 @@ from . import vtkAvianLidar as _wrapped
 
 LABELS = {"distance_m": "distance (m)", "candidates": "triangles tested",
           "nodes_visited": "nodes visited", "rays_traced": "rays traced", "skipped_bound": "skipped, at most (J)"}
-# The statuses of a beam, with the colours of ParaView's preset "Avian lidar status".
-STATUS = {"echo": (0, 0.62, 0.45), "no surface": (0.83, 0.83, 0.83), "below the lower limit": (0, 0.45, 0.7),
-          "saturated": (0.84, 0.37, 0), "outside the gate": (0.8, 0.47, 0.65)}
+
+
+def status_colours(preset: str):
+    """{name: (red, green, blue)} of the statuses in a colour preset of ParaView, a file of this package."""
+    (found,) = json.loads(pathlib.Path(__file__).with_name(preset).read_text(encoding="utf-8"))
+    return dict(zip(found["Annotations"][1::2], map(tuple, np.reshape(found["IndexedColors"], (-1, 3)).tolist())))
+
+
+STATUS = status_colours("AvianLidarStatus.json")  # of beams
 
 
 def hue_colors():

@@ -95,9 +95,13 @@ def wizard():
     assert simple.FindSource("Scan").MeteorologicalVisibility == 23000
     yield from press(action("actionEditUndo"))
     assert not names(), names()
-    yield from ask("FinishButton", Sensor="Airport 16", Weather=next(text for text in weathers if "ain" in text))
+    rain = next(text for text in weathers if "ain" in text)
+    yield from ask("FinishButton", Sensor="Airport 16", Weather=rain)
     (said,) = take()
     assert "Receiver Aperture" in said and not names(), (said, names())
+    yield from ask("FinishButton", Weather=rain)
+    assert simple.FindSource("Scan").RainRate == 10
+    yield from delete_all()
     with open(BOX, "w", encoding="utf-8") as file:
         file.write("v -10 60 0\nv 10 60 0\nv 10 60 10\nv -10 60 10\nf 1 2 3\nf 1 3 4\n")
     yield from ask("FinishButton", Sensor="Velodyne VLP-16", Number=3, Species="crow", Scene=BOX)

@@ -248,7 +248,7 @@ class Work(unittest.TestCase):
         self.assertGreater(p, 0.9)
         _, expected = flown.fly(al.Scene(NOTHING, material="Wall"), al.Sensor("VLP16"), place, 30, "herring gull", AIR, 400)
         self.assertAlmostEqual(p, expected[0], delta=0.05)
-        row = flown_sensors.compare("VLP16", "herring gull", flown_sensors.flights("VLP16", "herring gull", 50, 10), 10)
+        row = flown_sensors.compare("VLP16", "herring gull", 50, 10)
         self.assertGreater(row["between"], 5)
         self.assertLess(abs(row["bias"]), 0.03)  # 500 flights: at most 0.023 by chance
         self.assertLess(abs(row["expected"] - row["stated"]), 0.02)

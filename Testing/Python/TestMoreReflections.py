@@ -43,7 +43,9 @@ class ToTheLetter(unittest.TestCase):
             getattr(paint, "Set" + name)(value)
         mr.running.update(paint)
         axis = -np.array((1.0, 1.0, 0.0)) / math.sqrt(2)
-        return mr.subject("corner", paint.GetOutputDataObject(0), "Airport16", tuple(-100 * axis), 1e-4, tuple(axis))
+        subject = mr.Subject("corner", paint.GetOutputDataObject(0), "Airport16", -100 * axis, 1e-4)
+        subject.axis = tuple(axis)
+        return subject
 
     def test_two_rays_by_hand(self):
         subject = self.corner(Kd=0.3, Ks=0.5, Kp=3.0)

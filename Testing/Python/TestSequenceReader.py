@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A sequence as one time series: which scan at which time, poses, labels, boxes, and what is refused."""
-import ast
 import os
 import pathlib
 import shutil
@@ -10,7 +9,6 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
-from avianlidar.apps import _labels
 from avianlidar.vtkAvianLidar import vtkAvianLidarSequenceReader
 from echotools import InFolder, Messages
 
@@ -114,10 +112,3 @@ class Sequence(InFolder):
         messages = Messages(reader)
         reader.Update()
         self.assertIn("FileName is not set", messages.errors[0])
-
-    def test_the_macro_has_the_colours_of_the_classes(self):
-        path = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Macros", "avian_lidar_class_colours.py")
-        macro = ast.parse(pathlib.Path(path).read_text(encoding="utf-8"))
-        classes = next(ast.literal_eval(node.value) for node in macro.body
-                       if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "CLASSES")
-        self.assertEqual(classes, {label: (one.name, one.color[::-1]) for label, one in _labels.CLASSES.items()})

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs a study, or brings tables and pictures of studies into Documentation/.
 
-    Testing/Studies/run.py room --only-main                          one study; --help says what it takes
-    Testing/Studies/run.py pages room birds                          runs these and brings them into the pages
-    Testing/Studies/run.py pages                                     all that take minutes at most; wants the data folder
-    Testing/Studies/run.py pages --from build/paper corridor airport     runs nothing: results are in folders of these names
+    Testing/Studies/run.py room --only-main                 one study; --help says what it takes
+    Testing/Studies/run.py pages room birds                 runs these and brings them into the pages
+    Testing/Studies/run.py pages                            all that take minutes at most; wants the data folder
+    Testing/Studies/run.py pages --from build/paper airport    runs nothing: results are in folders of these names
 
-The Python package is that of build/paraview, unless PYTHONPATH names another. Some pictures need a display (`xvfb-run -a`), some
-studies the folder that AVIANLIDAR_DATA_DIR names; where AVIANLIDAR_SCENES_DIR names the scenes that the build makes of it, some
-measure those, too.
+The Python package is that of build/paraview, unless PYTHONPATH names another. Some pictures need a display
+(`xvfb-run -a`), some studies the folder that AVIANLIDAR_DATA_DIR names; where AVIANLIDAR_SCENES_DIR names the scenes
+that the build makes of it, some measure those, too.
 """
 import importlib
 import pathlib
@@ -48,9 +48,9 @@ PICTURES = {
     "weather": {"weather": "weather"},
     "your_airport": {"airport": "your-airport"},
 }
-TABLES = ("advice", "attenuation", "detail", "falloff", "media_time", "more_reflections", "moved_scenes",
-          "multiple_scattering", "others", "paper_times", "presets", "protocol", "quadcopter", "second_reflection",
-          "sequence_costs", "tracked_gulls", "vegetation")
+TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "media_time", "more_reflections",
+          "moved_scenes", "multiple_scattering", "others", "paper_times", "presets", "protocol", "quadcopter",
+          "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
 LONG = ("accuracy_page", "sequence_costs")  # only when they are named
 
 
@@ -66,14 +66,18 @@ def pages(words):
         for picture, target in PICTURES.get(name, {}).items():
             shutil.copyfile(out / f"{picture}.png", page_tables.DOCUMENTATION / "images" / f"{target}.png")
         for table in out.glob("*.md"):
-            page_tables.put(name if table.stem == "table" else table.stem, table.read_text(encoding="utf-8"))
+            shown = name if table.stem == "table" else table.stem
+            if not page_tables.put(shown, table.read_text(encoding="utf-8")):
+                print(f"{shown}: no page has this table")
 
 
 def main(words):
-    known = {file.stem for folder in FOLDERS for file in folder.glob("*.py") if "\ndef main(" in file.read_text(encoding="utf-8")}
+    files = (file for folder in FOLDERS for file in folder.glob("*.py"))
+    known = {file.stem for file in files if "\ndef main(" in file.read_text(encoding="utf-8")}
     if not words or words[0] not in {"pages", *known}:
         sys.exit(f"{__doc__}\nStudies: {', '.join(sorted(known))}")
-    code = tools.run(lambda: pages(words[1:]) if words[0] == "pages" else importlib.import_module(words[0]).main(words[1:]))
+    work = pages if words[0] == "pages" else importlib.import_module(words[0]).main
+    code = tools.run(lambda: work(words[1:]))
     sys.exit(code if isinstance(code, int) else 0)
 
 

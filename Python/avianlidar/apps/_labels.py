@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Tuple
 import numpy as np
 
 from .._pipeline import Error
+from ._json import packaged
 
 BIRD = 99  # default label of birds
 FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of movers; labels hold id + 1 in 16 bits
@@ -18,30 +19,13 @@ class Class(NamedTuple):
     """A class of the labels."""
     name: str                      # name in SemanticKITTI
     here: str                      # meaning in a sequence
-    color: Tuple[int, int, int]    # blue, green, red
+    color: Tuple[int, ...]         # blue, green, red
 
 
-# Every class of a sequence, by its id in SemanticKITTI (Documentation/reference/formats.md). Classes to be found come first.
-CLASSES = {
-    0: Class("unlabeled", "false alarms, objects of no known class", (0, 0, 0)),
-    BIRD: Class("bird", "birds", (110, 0, 215)),
-    252: Class("moving-car", "cars under way", (180, 120, 30)),
-    258: Class("moving-truck", "trucks under way", (205, 190, 25)),
-    259: Class("moving-other-vehicle", "aircraft and other vehicles under way", (45, 160, 45)),
-    10: Class("car", "cars of the scene", (230, 200, 175)),
-    18: Class("truck", "trucks of the scene", (230, 218, 160)),
-    20: Class("other-vehicle", "aircraft and other vehicles of the scene", (140, 225, 150)),
-    40: Class("road", "runways, taxiways", (90, 90, 90)),
-    44: Class("parking", "aprons", (125, 110, 120)),
-    49: Class("other-ground", "water", (190, 130, 60)),
-    50: Class("building", "buildings", (140, 140, 140)),
-    51: Class("fence", "fences", (75, 100, 140)),
-    52: Class("other-structure", "bridges, jetways, other structures", (125, 160, 185)),
-    70: Class("vegetation", "trees", (60, 125, 35)),
-    72: Class("terrain", "ground", (110, 165, 125)),
-    80: Class("pole", "masts", (30, 30, 30)),
-    81: Class("traffic-sign", "signs", (40, 40, 200)),
-    1: Class("outlier", "points of the air: rain, fog", (235, 215, 200))}
+# Every class of a sequence, by its id in SemanticKITTI (Documentation/reference/formats.md). Classes to be found come
+# first.
+CLASSES = {int(label): Class(name, here, tuple(color))
+           for label, (name, here, color) in packaged("classes.json").items()}
 
 
 def classes_of(bird: int) -> Dict[int, Class]:

@@ -12,12 +12,14 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .._cloud import as_numpy, field_values, leaves_of, triangles_of
 from .._coverage import Coverage
 from .._disk import write_whole
+from .._plot import status_colours
 from ..reach import Reach
 from ._plan import Plan
 from ._regions import APPROACH_LENGTH, Runway, region_outlines
 
-# Colours of vtkAvianLidarCoverage's statuses: outside the gate, above, below, between beams, shadowed, in clutter, too weak, seen.
-STATUS_COLOURS = ("#f7f7f7", "#a6cee3", "#c6a982", "#f4e04d", "#77778a", "#d95f02", "#cc99bb", "#1b9e77")
+# Colours of vtkAvianLidarCoverage's statuses.
+STATUS_COLOURS = ["#" + "".join(f"{round(255 * value):02x}" for value in colour)
+                  for colour in status_colours("AvianLidarCoverageStatus.json").values()]
 HIGH = 160.0  # height of the section, m; one tenth more than the plan's greatest height if that is larger
 GLIDE_PATH = 3.0  # slope of the glide path, deg
 THRESHOLD_HEIGHT = 15.0  # height of the glide path above a runway's end, m

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How much time buys how much accuracy on a scene? Scans it with many settings of the echo filter and several seeds,
-compares each with a converged reference, and leaves results.csv, table.md, a plot for each kind of error, and
-advice.md: which setting to use for 1 %, 5 %, 10 % error of energy, for detection, for range.
+compares each with a converged reference, and leaves tables and a plot of errors of energy: settings that no other
+beats, rates of convergence, and the setting to use for 1 %, 5 %, 10 % error of energy, for detection, for range.
 
     Testing/Studies/run.py accuracy_speed airport --sensor airport32
     Testing/Studies/run.py accuracy_speed my.lidarscene.json --sensor corridor --quick
 """
-import csv
-import math
 import sys
 
 import tools
@@ -16,27 +14,11 @@ import trade_results
 import trade_runs
 from running import argument, study, whole
 
-# Column of the CSV file with its unit, and where its number comes from. Echoes of at least twice the limit that are
-# missed count in the errors of energy, as -1; in that of range they do not.
-COLUMNS = {
-    "seeds [1]": lambda r: len(r.scans),
-    "time of one core [s]": lambda r: r.median("cpu"),
-    "wall time of all threads [s]": lambda r: r.scans[0]["wall"],
-    "rays traced per beam [1]": lambda r: r.mean("rays"),
-    "energy rms error with missed as -1 [1]": lambda r: r.error("energy"),
-    "energy rms error of the worst seed with missed as -1 [1]": lambda r: r.worst("energy"),
-    "energy error told by the reference [1]": lambda r: r.resolved("energy"),
-    "energy median error with missed as -1 [1]": lambda r: r.mean("energy_median"),
-    "energy mean error with missed as -1 [1]": lambda r: r.mean("bias"),
-    "beam total rms error [1]": lambda r: r.error("total"),
-    "range rms error [m]": lambda r: r.error("range"),
-    "range 95th percentile [m]": lambda r: r.mean("range_95"),
-    "true echoes [1]": lambda r: r.scans[0]["true"],
-    "missed [1]": lambda r: r.mean("missed"),
-    "missed of at least twice the limit [1]": lambda r: r.mean("missed_strong"),
-    "false [1]": lambda r: r.mean("false"),
-    "missed and false of the true [1]": lambda r: r.error("detection"),
-}
+
+def judged(subject, reference, choice, seed):
+    """The numbers of one seed."""
+    found = trade_runs.scan(subject, choice.settings, seed)
+    return trade_results.summary(trade_runs.judge(reference, found), found)
 
 
 def measure(subject, reference, choices, options):
@@ -45,27 +27,8 @@ def measure(subject, reference, choices, options):
     for seed in range(options.seeds):
         print(f"{subject.title}: seed {seed + 1} of {options.seeds}", file=sys.stderr, flush=True)
         for choice in choices:
-            alone = trade_runs.scan(subject, choice.settings, seed)
-            wall = math.nan  # of all threads, once
-            if seed == 0:
-                wall = trade_runs.scan(subject, choice.settings, seed, options.threads).wall
-            scans[choice].append(trade_results.summary(trade_runs.judge(reference, alone), alone, wall))
+            scans[choice].append(judged(subject, reference, choice, seed))
     return [trade_results.Result(choice, found, reference.own) for choice, found in scans.items()]
-
-
-def write_csv(results, subject, file):
-    """A row for each setting: the settings as the filter used them, errors, costs, and on which fronts it lies."""
-    fronts = {kind: {id(r) for r in trade_results.front(results, kind)} for kind in trade_results.KINDS}
-    used = list(results[0].scans[0]["used"])
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["scene", "sensor", "setting", *(f"{name} [1]" for name in used), *COLUMNS,
-                         *(f"on the front of {kind} [1]" for kind in fronts)])
-        for result in results:
-            settings = result.scans[0]["used"]
-            writer.writerow([subject.name, subject.sensor_name, result.choice.family, *(settings[n] for n in used),
-                             *(f"{number(result):.6g}" for number in COLUMNS.values()),
-                             *(int(id(result) in front) for front in fronts.values())])
 
 
 def table(results):
@@ -108,25 +71,17 @@ def head(subject, reference, options):
        argument("--sensor", choices=list(trade_runs.SENSORS), help="default: corridor there, else airport16"),
        argument("--quick", action="store_true", help="fewer beams, settings and seeds: under a minute"),
        argument("--seeds", type=whole(2, 100), help="scans with each setting, default 5 (quick: 3)"),
-       argument("--threads", type=whole(0, 4096), default=0, help="of the wall times; 0: all cores"),
        argument("--reference-rays", type=whole(1000, 1000000), help="default 30000 (quick: 10000)"))
 def main(options):
     options.seeds = options.seeds or (3 if options.quick else 5)
     options.reference_rays = options.reference_rays or (10000 if options.quick else 30000)
-    subject = trade_runs.Subject(options.scene, options.sensor, 4 if options.quick else 1)
+    subject = trade_runs.subject_of(options.scene, options.sensor, 4 if options.quick else 1)
     reference = trade_runs.Reference(subject, options.reference_rays)
     results = measure(subject, reference, trade_grid.choices(options.quick), options)
 
-    def check(choice):
-        found = trade_runs.scan(subject, choice.settings, 2000003)
-        return trade_results.summary(trade_runs.judge(reference, found), found, found.wall)
-
-    advice = [trade_results.advise(results, *wish, check) for wish in trade_results.wishes(subject)]
-    options.out.mkdir(parents=True, exist_ok=True)
-    for kind in trade_results.KINDS:
-        trade_results.draw(results, subject, reference, kind, options.out / f"{kind}.png")
-    write_csv(results, subject, options.out / "results.csv")
-    (options.out / "head.md").write_text(head(subject, reference, options) + "\n", encoding="utf-8")
+    advice = [trade_results.advise(results, *wish, lambda choice: judged(subject, reference, choice, 2000003))
+              for wish in trade_results.wishes(subject)]
+    trade_results.draw(results, subject, reference, options.out / "energy.png")
     print(head(subject, reference, options))
     tools.leave(options.out, "rates", *rates(results))
     tools.leave(options.out, "table", *table(results))

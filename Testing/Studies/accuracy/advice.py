@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Do settings hold on the whole scan that `Scan.advise` found on some of its beams? In each scene some sensors ask for some
-errors; the whole scan is compared with a reference of its own, with other seeds than advice has, and so is the next faster setting of
-advice's table. Leaves tables.
+"""Do settings hold on the whole scan that `Scan.advise` found on some of its beams? In each scene some sensors ask for
+some errors; the whole scan is compared with a reference of its own, with other seeds than advice has, and so is the
+next faster setting of advice's table. Leaves tables.
 
-    Testing/Studies/run.py advice --scenes build/paraview/Testing/Scenes
+    AVIANLIDAR_SCENES_DIR=build/paraview/Testing/Scenes Testing/Studies/run.py advice
 """
-import os
-import pathlib
 import sys
 import time
 
@@ -15,7 +13,7 @@ import numpy as np
 import running
 import tools
 import trade_runs
-from running import argument, study
+from running import argument, built_scene, study
 import avianlidar as al
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
@@ -36,7 +34,8 @@ def setting_of(advice, row):
 
 
 def next_faster(advice):
-    """The slowest setting of the table that is faster than the one advised by a tenth or more; None if there is none."""
+    """The slowest setting of the table that is faster than the one advised by a tenth or more; None if there is
+    none."""
     times = advice.table["seconds_per_beam"]
     faster = [row for row in range(1, len(times)) if times[row] < 0.9 * times[advice.row]]
     return max(faster, key=lambda row: times[row]) if faster else None
@@ -60,7 +59,7 @@ def holds(errors, asked):
 
 def measure(title, file, sensor, beams):
     """Rows of the table, as cells."""
-    subject, scan = trade_runs.Subject(file, sensor), al.Scan(al.Scene(str(file)), sensor)
+    subject, scan = trade_runs.subject_of(file, sensor), al.Scan(al.Scene(str(file)), sensor)
     reference = trade_runs.Reference(subject, REFERENCE, (2000003, 2000029), Filter.BEAM_SAMPLES_CELLS, 8)
     reference.strong &= reference.echoes["secondary_share"] <= GHOST
     rows = []
@@ -83,15 +82,15 @@ def measure(title, file, sensor, beams):
     return rows
 
 
-@study(argument("--scenes", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_SCENES_DIR"), help="folder of scenes that the build makes"),
-       argument("--sensors", nargs="+", choices=al.Sensor.presets(), default=["Airport16"], help="default Airport16"),
+@study(argument("--sensors", nargs="+", choices=al.Sensor.presets(), default=["Airport16"], help="default Airport16"),
        argument("--beams", type=running.whole(50, 1000000), default=1000, help="that advice measures on, default 1000"))
 def main(options):
-    files = [(title, options.scenes / f"{name}.lidarscene.json" if name else running.AIRPORT) for title, name in SCENES
-             if name is None or options.scenes]
-    rows = [row for sensor in options.sensors for title, file in files for row in measure(title, file, sensor, options.beams)]
-    tools.leave(options.out, "table", ("scene", "sensor", "asked: energy, range, wrong echoes", "advised", "on the whole scan", "holds",
-                                       "the next faster one", "times as fast as the default", "s to measure"), rows, 7)
+    files = [(title, built_scene(name) if name else running.AIRPORT) for title, name in SCENES]
+    rows = [row for sensor in options.sensors for title, file in files if file
+            for row in measure(title, file, sensor, options.beams)]
+    tools.leave(options.out, "table", ("scene", "sensor", "asked: energy, range, wrong echoes", "advised",
+                                       "on the whole scan", "holds", "the next faster one",
+                                       "times as fast as the default", "s to measure"), rows, 7)
     advised = [row for row in rows if row[3] != "none"]
     faster = [row[6] for row in advised if row[6] != "-"]
     hold, fail = sum(row[5] == "yes" for row in advised), sum("fails" in text for text in faster)

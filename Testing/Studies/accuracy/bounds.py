@@ -10,13 +10,14 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
 import tools
 import trade_runs
-from running import argument, column, scanned, some_beams, study, whole
+from running import argument, column, rms, scanned, some_beams, study, whole
 
 
 def scan(subject, beams, **settings):
     """Direct echoes alone, by range units."""
-    return scanned(beams, subject.tree, **{"AttenuationCoefficient": subject.attenuation, "ReturnMode": Filter.RETURN_MODE_RANGE_UNITS,
-                                           "NumberOfReflections": 1, "Noise": False, **settings})
+    return scanned(beams, subject.tree, **{"AttenuationCoefficient": subject.attenuation,
+                                           "ReturnMode": Filter.RETURN_MODE_RANGE_UNITS, "NumberOfReflections": 1,
+                                           "Noise": False, **settings})
 
 
 def units(subject, lidar):
@@ -29,16 +30,18 @@ def units(subject, lidar):
 
 def measure(name, sensor, options):
     """A row of the table."""
-    subject = trade_runs.Subject(name, sensor)
+    subject = trade_runs.subject_of(name, sensor)
     beams = subject.sensor.GetOutput()
-    # Over two reflections beams in cells trace rays; integrated ones do not, unless light may go on from their surfaces.
+    # Over two reflections beams in cells trace rays; integrated ones do not, unless light may go on from their
+    # surfaces.
     report = scan(subject, beams, NumberOfReflections=2, NumberOfConnections=0).GetOutput(1)
     echoing = np.unique(column(scan(subject, beams).GetOutput(), "beam_id"))
     exact = np.intersect1d(echoing, column(report, "beam_id")[column(report, "rays_traced") == 0])
     drawn = np.random.default_rng(options.seed).permutation(exact)[:options.beams]
     some = some_beams(beams, np.flatnonzero(np.isin(column(beams, "beam_id"), drawn)))
     found = units(subject, scan(subject, some))
-    means = [units(subject, scan(subject, some, BeamSamples=Filter.BEAM_SAMPLES_RAYS, RaysPerBeam=options.rays, Seed=seed))
+    means = [units(subject,
+                   scan(subject, some, BeamSamples=Filter.BEAM_SAMPLES_RAYS, RaysPerBeam=options.rays, Seed=seed))
              for seed in range(options.scans)]
     # Where some scans perceive nothing the mean of the others is too large.
     keys = [key for key in found if all(key in mean for mean in means)]
@@ -47,7 +50,7 @@ def measure(name, sensor, options):
     error = true.std(1, ddof=1) / np.sqrt(options.scans)
     off = abs(energy - true.mean(1))
     return [(subject.title, f"{len(exact)} of {len(echoing)}", len(drawn), f"{len(keys)} of {len(found)}",
-             f"{np.sqrt(np.mean((off / energy)**2)):.1e}", f"{np.sqrt(np.mean((error / energy)**2)):.1e}", f"{np.mean(bound / energy):.1e}",
+             f"{rms(off / energy):.1e}", f"{rms(error / energy):.1e}", f"{np.mean(bound / energy):.1e}",
              f"{np.max(bound / energy):.1e}", f"{np.max(np.maximum(off - bound, 0) / error):.1f} standard errors")]
 
 
@@ -56,6 +59,8 @@ def measure(name, sensor, options):
        argument("--rays", type=whole(100, 1000000), default=100000, help="of each beam, default 100000"),
        argument("--seed", type=whole(0, 1000000), default=1, help="of the choice of beams, default 1"))
 def main(options):
-    tools.leave(options.out, "table", ("scene, sensor", "integrated beams with an echo", "compared", "their range units", "rms difference",
-                                       "rms standard error of the rays", "bound: mean", "largest", "most beyond the bound"),
+    tools.leave(options.out, "polygons-bounds", ("scene, sensor", "integrated beams with an echo", "compared",
+                                                 "their range units", "rms difference",
+                                                 "rms standard error of the rays", "bound: mean", "largest",
+                                                 "most beyond the bound"),
                 list(trade_runs.measured(options, measure)))

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scans an airport, moves it by its place in UTM, turns it about the vertical, the lidar with it, scans it again, and tells what
-differs: the shipped airport, and that with structures where AVIANLIDAR_SCENES_DIR names the folder of its scene. Half a minute.
+"""Scans an airport, moves it by its place in UTM, turns it about the vertical, the lidar with it, scans it again, and
+tells what differs: the shipped airport, and that with structures where AVIANLIDAR_SCENES_DIR names the folder of its
+scene. Half a minute.
 
     Testing/Studies/run.py moved_scenes
 """
 import itertools
-import os
-import pathlib
 
 import numpy as np
 from vtkmodules.vtkCommonTransforms import vtkTransform
@@ -15,10 +14,11 @@ from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
 import avianlidar as al
 import tools
 from avianlidar._pipeline import update
-from running import AIRPORT, study
+from running import AIRPORT, built_scene, rms, study
 
-HEAD = ("scene", "moved by", "turned by (deg)", "echoes, before", "after", "the same", "energy differs by 1e-6", "by 1 %", "by 10 %", "most",
-        "rms", "most, in stated standard errors", "range: most (m)", "rms (m)", "all energy")
+HEAD = ("scene", "moved by", "turned by (deg)", "echoes, before", "after", "the same", "energy differs by 1e-6",
+        "by 1 %", "by 10 %", "most", "rms", "most, in stated standard errors", "range: most (m)", "rms (m)",
+        "all energy")
 UTM = (351234.567, 3452345.678, 0.0)  # m
 UNIT = 0.75  # m, a range unit
 # The second is between grid north of zone 51 and true north at Hongqiao.
@@ -79,8 +79,8 @@ def compare(one, other):
     return {
         "before": len(one["beam_id"]), "after": len(other["beam_id"]), "same": len(a), "1e-6": int(differs.sum()),
         "1 %": int((relative > 0.01).sum()), "10 %": int((relative > 0.1).sum()), "most": relative.max(),
-        "rms": np.sqrt((relative ** 2).mean()), "errors": errors.max(initial=0.0), "range": distance.max(),
-        "range rms": np.sqrt((distance ** 2).mean()),
+        "rms": rms(relative), "errors": errors.max(initial=0.0), "range": distance.max(),
+        "range rms": rms(distance),
         "all": other["energy_received"].sum() / one["energy_received"].sum() - 1,
     }
 
@@ -91,8 +91,9 @@ def rows(name, file):
     others += [("UTM", f"{turn:g}", airport.compare(UTM, turn)) for turn in TURNS]
     others.append(("-", "0, other rays", airport.compare(seed=1)))
     for place, turn, d in others:
-        yield (name, place, turn, f"{d['before']:,}", f"{d['after']:,}", f"{d['same']:,}", f"{d['1e-6']:,}", d["1 %"], d["10 %"], percent(d["most"]),
-               percent(d["rms"]), f"{d['errors']:.1f}", f"{d['range']:.2g}", f"{d['range rms']:.2g}", percent(d["all"]))
+        yield (name, place, turn, f"{d['before']:,}", f"{d['after']:,}", f"{d['same']:,}", f"{d['1e-6']:,}", d["1 %"],
+               d["10 %"], percent(d["most"]), percent(d["rms"]), f"{d['errors']:.1f}", f"{d['range']:.2g}",
+               f"{d['range rms']:.2g}", percent(d["all"]))
 
 
 def percent(share):
@@ -102,8 +103,7 @@ def percent(share):
 @study()
 def main(options):
     found = list(rows("Hongqiao", AIRPORT))
-    structures = pathlib.Path(os.environ.get("AVIANLIDAR_SCENES_DIR", ""), "zsss_structures.lidarscene.json")
-    if structures.is_file():
-        found += rows("Hongqiao, structures", structures)
+    if built_scene("zsss_structures"):
+        found += rows("Hongqiao, structures", built_scene("zsss_structures"))
     tools.leave(options.out, "moved", HEAD, found, 3)
     return found

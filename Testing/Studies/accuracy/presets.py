@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Error of energy, wrong echoes and processor time of the presets of the echo filter, at the shipped airport and in the scenes
-that AVIANLIDAR_SCENES_DIR names. The helps of the presets quote it.
+"""Error of energy, wrong echoes and processor time of the presets of the echo filter, at the shipped airport and in the
+scenes that AVIANLIDAR_SCENES_DIR names. The helps of the presets quote it.
 
     Testing/Studies/run.py presets
 """
-import os
-import pathlib
-
 import numpy as np
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
@@ -14,14 +11,17 @@ import paper_times
 import tools
 import trade_results
 import trade_runs
-from running import argument, study, whole
+from running import argument, built_scene, study, whole
 
 # The preset Paper sets ReturnMode, too, which the judge needs otherwise: its settings one by one.
 PRESETS = {"Preview": {"Preset": Filter.PRESET_PREVIEW}, "Draft": {"Preset": Filter.PRESET_DRAFT}, "default": {},
-           "Standard": {"Preset": Filter.PRESET_STANDARD}, "Reference": {"Preset": Filter.PRESET_REFERENCE}, "Paper": paper_times.SCAN}
+           "Standard": {"Preset": Filter.PRESET_STANDARD}, "Reference": {"Preset": Filter.PRESET_REFERENCE},
+           "Paper": paper_times.SCAN}
 # Name in the table, scene, sensor; where AVIANLIDAR_SCENES_DIR does not have the file, there is no row.
-SCENES = (("airport", "airport", "airport16"), ("airport", "airport", "airport32"), ("Neubrandenburg, town and airport", "neubrandenburg", "airport16"),
-          ("Shanghai, 63 towers", "shanghai_cbd", "airport16"), ("Hongqiao with masts and jetways", "zsss_structures", "airport16"),
+SCENES = (("airport", "airport", "airport16"), ("airport", "airport", "airport32"),
+          ("Neubrandenburg, town and airport", "neubrandenburg", "airport16"),
+          ("Shanghai, 63 towers", "shanghai_cbd", "airport16"),
+          ("Hongqiao with masts and jetways", "zsss_structures", "airport16"),
           ("Honolulu with terrain", "phnl", "airport16"), ("Ingolstadt, a street", "ingolstadt", "airport16"),
           ("900 poles, rails, boxes", "field", "airport16"), ("corridor", "corridor", "corridor"))
 BUILT_IN = "airport", "field", "corridor"
@@ -31,19 +31,22 @@ def measured(subject, reference, settings, seeds):
     """Error of energy, time of one core, and missed and invented echoes as a share of the true ones."""
     runs = trade_runs.judged(reference, {**settings, "ReturnMode": Filter.RETURN_MODE_ALL}, range(seeds), subject)
     energy, wrong = trade_runs.energy_and_wrong(runs)
-    return f"{trade_results.amount('energy', energy)}, {np.median([run.cpu for _, run in runs]):.2g} s, {100 * wrong:.2g} %"
+    seconds = np.median([run.cpu for _, run in runs])
+    return f"{trade_results.amount('energy', energy)}, {seconds:.2g} s, {100 * wrong:.2g} %"
 
 
 @study(argument("--seeds", type=whole(1, 100), default=3, help="scans to judge, default 3"),
        argument("--reference-rays", type=whole(100, 1000000), default=10000, help="default 10000"))
 def main(options):
-    folder, rows = os.environ.get("AVIANLIDAR_SCENES_DIR", ""), []
+    rows = []
     for title, scene, sensor in SCENES:
-        file = scene if scene in BUILT_IN else pathlib.Path(folder, f"{scene}.lidarscene.json")
-        if scene not in BUILT_IN and not file.is_file():
+        file = scene if scene in BUILT_IN else built_scene(scene)
+        if not file:
             continue
-        subject = trade_runs.Subject(file, sensor)
+        subject = trade_runs.subject_of(file, sensor)
         reference = trade_runs.Reference(subject, options.reference_rays)
-        rows.append((f"{title}, {subject.sensor_name}", *(measured(subject, reference, settings, options.seeds) for settings in PRESETS.values())))
-    tools.leave(options.out, "presets", ("scene, sensor", *(name if name == "default" else f"`{name}`" for name in PRESETS)), rows)
+        rows.append((f"{title}, {subject.sensor_name}",
+                     *(measured(subject, reference, settings, options.seeds) for settings in PRESETS.values())))
+    tools.leave(options.out, "presets",
+                ("scene, sensor", *(name if name == "default" else f"`{name}`" for name in PRESETS)), rows)
     return rows

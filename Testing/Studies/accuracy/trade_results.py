@@ -14,8 +14,7 @@ WANTED_DETECTION = 0.01  # missed and made-up echoes, of those that are there
 WANTED_RANGE = 0.1  # rms, in range units
 NOTICED = 0.01  # of an error: less is no difference
 MARGIN = 0.9  # a setting is advised if its worst seed stays below this share of what is wanted
-KINDS = {"energy": "rms relative error of energy", "range": "rms error of range (m)",
-         "detection": "missed and false echoes, of the true"}
+KINDS = ("energy", "range", "detection")
 
 
 @dataclasses.dataclass
@@ -54,17 +53,12 @@ class Result:
         return float(np.mean([s[name] for s in self.scans]))
 
 
-def summary(found, cost, wall):
+def summary(found, cost):
     """The numbers of one seed."""
-    away = abs(found["range"])
-    return {"energy": trade_runs.rms(found["energy"]), "range": trade_runs.rms(found["range"]),
-            "total": trade_runs.rms(found["total"]),
-            "energy_median": float(np.median(abs(found["energy"]))) if len(found["energy"]) else math.nan,
-            "range_95": float(np.percentile(away, 95)) if len(away) else math.nan,
-            "bias": float(np.mean(found["energy"])) if len(found["energy"]) else math.nan,
-            "held": float(np.mean(found["held"])), "detection": trade_runs.wrong(found), "missed": found["missed"],
-            "missed_strong": found["missed_strong"], "false": found["false"], "true": found["true"],
-            "cpu": cost.cpu, "wall": wall, "rays": cost.rays, "used": cost.used}
+    return {**{kind: trade_runs.rms(found[kind]) for kind in ("energy", "range", "total")},
+            "energy_median": float(np.median(abs(found["energy"]))), "held": float(np.mean(found["held"])),
+            "detection": trade_runs.wrong(found), "missed": found["missed"], "false": found["false"],
+            "cpu": cost.cpu, "rays": cost.rays}
 
 
 def front(results, kind):
@@ -126,14 +120,17 @@ def advice_table(advice, results):
     """Head and rows: for each wish the setting to use, what it reaches and costs, and what plain Monte Carlo needs."""
     rows = []
     for one in advice:
-        wanted = amount(one.kind, one.wanted)
-        result = one.result or min(results, key=lambda r, kind=one.kind: r.error(kind))
-        rows.append(({"energy": f"energy to {wanted} rms", "range": f"range to {wanted} rms",
-                      "detection": f"{wanted} missed or false"}[one.kind],
-                     result.choice.words if one.result else f"nothing suffices; the best is {result.choice.words}",
-                     amount(one.kind, result.error(one.kind)), amount(one.kind, one.checked[one.kind]) if one.result else "-",
-                     f"{result.median('cpu'):.3g}", f"{result.mean('rays'):.0f}", plain_needs(one, results) if one.result else "-"))
-    return ("wanted", "use", "reached", "on a new seed", "s of one core", "rays per beam", "plain Monte Carlo needs"), rows
+        kind, wanted = one.kind, amount(one.kind, one.wanted)
+        result = one.result or min(results, key=lambda r, kind=kind: r.error(kind))
+        words, on_new_seed, plain = f"nothing suffices; the best is {result.choice.words}", "-", "-"
+        if one.result:
+            words, plain = result.choice.words, plain_needs(one, results)
+            on_new_seed = amount(kind, one.checked[kind])
+        rows.append((f"{wanted} missed or false" if kind == "detection" else f"{kind} to {wanted} rms", words,
+                     amount(kind, result.error(kind)), on_new_seed, f"{result.median('cpu'):.3g}",
+                     f"{result.mean('rays'):.0f}", plain))
+    return ("wanted", "use", "reached", "on a new seed", "s of one core", "rays per beam",
+            "plain Monte Carlo needs"), rows
 
 
 def plain_needs(advice, results):
@@ -154,28 +151,32 @@ def plain_needs(advice, results):
     return f"about {float(f'{needed:.1g}'):.0f} rays (extrapolated)"
 
 
-def draw(results, subject, reference, kind, file):
-    """Error against time: every setting a dot, the front a line, presets named."""
+def draw(results, subject, reference, file):
+    """Error of energy against time: every setting a dot, the front a line, presets named."""
     groups = {}
     for result in results:
         groups.setdefault("presets" if result.choice.family in PRESETS else result.choice.family, []).append(result)
     # Zeros have no place on a logarithmic axis: they lie on its lower end.
-    floor = 0.5 * min((r.error(kind) for r in results if r.error(kind) > 0), default=1e-6)
+    floor = 0.5 * min((r.error("energy") for r in results if r.error("energy") > 0), default=1e-6)
 
     def places(some):
-        return [r.median("cpu") for r in some], [max(r.error(kind), floor) for r in some]
+        return [r.median("cpu") for r in some], [max(r.error("energy"), floor) for r in some]
 
     with tools.figure(file, figsize=(8.5, 6), dpi=110) as axes:
         presets = groups.pop("presets", [])
         for i, (name, some) in enumerate(groups.items()):
             axes.plot(*places(some), "os^vDPX<>ph8d"[i % 13], markersize=5, alpha=0.8, label=name)
-        axes.plot(*places(front(results, kind)), "-", color="black", linewidth=1.2, label="front", zorder=1)
+        axes.plot(*places(front(results, "energy")), "-", color="black", linewidth=1.2, label="front", zorder=1)
         axes.plot(*places(presets), "*", markersize=15, color="crimson", markeredgecolor="white", zorder=5)
         for result, place in zip(presets, zip(*places(presets))):
-            axes.annotate(result.choice.family, place, xytext=(0, 10), textcoords="offset points", color="crimson", weight="bold", ha="center")
-        if kind != "detection" and reference.own[kind] > 0:
-            axes.axhline(reference.own[kind], color="grey", linestyle=":", linewidth=1, label="the reference's own error")
-        axes.set(xscale="log", yscale="log", xlabel=f"time of one core for {subject.number_of_beams} beams (s)", ylabel=KINDS[kind])
-        axes.set_title(f"{subject.title}: {int(reference.strong.sum())} echoes of at least twice the lower limit", fontsize=11)
+            axes.annotate(result.choice.family, place, xytext=(0, 10), textcoords="offset points", color="crimson",
+                          weight="bold", ha="center")
+        if reference.own["energy"] > 0:
+            axes.axhline(reference.own["energy"], color="grey", linestyle=":", linewidth=1,
+                         label="the reference's own error")
+        axes.set(xscale="log", yscale="log", xlabel=f"time of one core for {subject.number_of_beams} beams (s)",
+                 ylabel="rms relative error of energy")
+        axes.set_title(f"{subject.title}: {int(reference.strong.sum())} echoes of at least twice the lower limit",
+                       fontsize=11)
         axes.grid(alpha=0.3)
         axes.legend(fontsize=8, ncol=2)

@@ -4,7 +4,6 @@ against it."""
 import argparse
 import dataclasses
 import pathlib
-import re
 import sys
 import time
 
@@ -16,10 +15,11 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarColli
 import corridor_scene
 import field_scene
 import running
-from running import AIRPORT
+from running import AIRPORT, rms
 
 HALF_LIGHT_SPEED = 0.5 * 299792458.0  # m/s: metres of range per second of delay
 SENSORS = {"airport16": "Airport16", "airport32": "Airport32", "corridor": "CorridorC16"}
+AIR = vtkAvianLidarEchoFilter().GetAttenuationCoefficient()
 ARRAYS = ("beam_id", "distance_m", "energy_received", "return_energy", "energy_std_error", "secondary_share")
 
 
@@ -35,47 +35,46 @@ def scene_and_sensor(text):
     return scene_name(name), sensor
 
 
-SCENES = running.argument("scenes", nargs="+", type=scene_and_sensor, help="airport, corridor, field, or a .lidarscene.json file, and after a "
-                          "colon airport16 (the default), airport32 or corridor")
+SCENES = running.argument("scenes", nargs="+", type=scene_and_sensor,
+                          help="airport, corridor, field, or a .lidarscene.json file, and after a colon airport16 (the "
+                          "default), airport32 or corridor")
 
 
 def measured(options, measure):
-    """What `measure(scene, sensor, options)` returns for each scene; prints it to the error stream as soon as it is there."""
+    """What `measure(scene, sensor, options)` returns for each scene; prints it to the error stream as soon as it is
+    there."""
     for name, sensor in options.scenes:
         for row in measure(name, sensor, options):
             print(*row, sep=" | ", file=sys.stderr, flush=True)
             yield row
 
 
-class Subject:
-    """A scene with its tree, and a sensor in it, at `place` (m) instead of the scene's own. `coarser` makes the steps of azimuth
-    that many times as wide."""
+def scene_of(name):
+    """Surfaces of a scene, place of the lidar, m, and attenuation coefficient, 1/m."""
+    if name == "corridor":
+        return corridor_scene.build(), corridor_scene.LIDAR, corridor_scene.HAZE
+    if name == "field":
+        return field_scene.build(), field_scene.LIDAR, AIR
+    scene = running.read_scene(AIRPORT if name == "airport" else name).GetOutput()
+    place = scene.GetFieldData().GetArray("lidar_position")
+    return scene, place.GetTuple(0) if place else (0, 0, 3), AIR
 
-    def __init__(self, name, sensor, coarser=1, place=None):
-        scene, position, self.attenuation = self._scene(name)
-        position = position if place is None else place
-        self.name = name if name in ("airport", "corridor", "field") else pathlib.Path(name).name.split(".")[0]
-        sensor = sensor or ("corridor" if name == "corridor" else "airport16")
-        self.sensor_name = SENSORS.get(sensor, sensor)
+
+class Subject:
+    """Surfaces with their tree, and a sensor at a place (m). `coarser` makes the steps of azimuth that many times as
+    wide."""
+
+    axis = None  # direction of a single beam, many times, instead of the sensor's beams
+
+    def __init__(self, name, surfaces, sensor, place, attenuation=AIR, coarser=1):
+        self.name, self.sensor_name, self.attenuation = name, sensor, attenuation
         self.tree, self.sensor = vtkAvianLidarCollisionTree(), vtkAvianLidarBeamSource()
-        self.tree.SetInputDataObject(scene)
-        running.update(self.tree)
-        getattr(self.sensor, "SetPresetTo" + self.sensor_name)()
-        running.made(self.sensor, Position=tuple(position), AzimuthStep=coarser * self.sensor.GetAzimuthStep())
+        running.made(self.tree, InputDataObject=surfaces)
+        getattr(self.sensor, "SetPresetTo" + sensor)()
+        running.made(self.sensor, Position=tuple(place), AzimuthStep=coarser * self.sensor.GetAzimuthStep())
         self.lower_limit = self.sensor.GetLowerEnergyLimit()
         self.unit = HALF_LIGHT_SPEED * self.sensor.GetSamplingInterval()
         self.tolerance = self.unit + HALF_LIGHT_SPEED * self.sensor.GetPulseWidth()
-
-    @staticmethod
-    def _scene(name):
-        """Surfaces, place of the lidar, attenuation coefficient."""
-        if name == "corridor":
-            return corridor_scene.build(), corridor_scene.LIDAR, corridor_scene.HAZE
-        if name == "field":
-            return field_scene.build(), field_scene.LIDAR, vtkAvianLidarEchoFilter().GetAttenuationCoefficient()
-        scene = running.read_scene(AIRPORT if name == "airport" else name).GetOutput()
-        place = scene.GetFieldData().GetArray("lidar_position")
-        return scene, place.GetTuple(0) if place else (0, 0, 3), vtkAvianLidarEchoFilter().GetAttenuationCoefficient()
 
     @property
     def title(self):
@@ -86,39 +85,35 @@ class Subject:
         return self.sensor.GetOutput().GetNumberOfPoints()
 
 
+def subject_of(name, sensor="", coarser=1, place=None):
+    """A scene with the sensor in it, by default that of the scene, at `place` (m) instead of the scene's own."""
+    surfaces, own, attenuation = scene_of(name)
+    sensor = sensor or ("corridor" if name == "corridor" else "airport16")
+    return Subject(pathlib.Path(name).name.split(".")[0], surfaces, SENSORS.get(sensor, sensor),
+                   own if place is None else place, attenuation, coarser)
+
+
 @dataclasses.dataclass
 class Scan:
     """One execution of the filter: its echoes in the order of beams and ranges, and what it cost."""
 
     echoes: dict
     cpu: float  # s, of the process
-    wall: float  # s
     rays: float  # traced per beam, those of paths included
-    used: dict  # {property: its value} as the field data say
-
-
-# Settings that are compared.
-PROPERTIES = "Preset", "RaysPerBeam", "BeamSamples", "Sampling", "NumberOfReflections", "NumberOfConnections", "FullModel"
-
-
-def used_settings(echoes):
-    """{property: value} of the field data, which say what was really used, whatever a preset overrode."""
-    fields = echoes.GetFieldData()
-    return {name: fields.GetArray(re.sub("(?<!^)(?=[A-Z])", "_", name).lower()).GetValue(0)
-            for name in PROPERTIES}
 
 
 def scan(subject, settings, seed, threads=1):
     """A new filter scans: nothing is known from an earlier scan, the tree and the beams are there. Noise is off in all
     scans: it belongs to the receiver and is no error."""
-    wall, used = time.perf_counter(), time.process_time()
+    begin = time.process_time()
     lidar = running.scanned(subject.sensor, subject.tree, **{
-        "AttenuationCoefficient": subject.attenuation, "Noise": False, "NumberOfThreads": threads, "Seed": seed, **settings})
-    cost = time.process_time() - used, time.perf_counter() - wall
+        "AttenuationCoefficient": subject.attenuation, "Noise": False, "NumberOfThreads": threads, "Seed": seed,
+        **settings})
+    cpu = time.process_time() - begin
     columns = {name: running.column(lidar.GetOutput(), name) for name in ARRAYS}
     order = np.lexsort((columns["distance_m"], columns["beam_id"]))
-    return Scan({name: values[order] for name, values in columns.items()}, *cost,
-                lidar.GetNumberOfTracedRays() / subject.number_of_beams, used_settings(lidar.GetOutput()))
+    return Scan({name: values[order] for name, values in columns.items()}, cpu,
+                lidar.GetNumberOfTracedRays() / subject.number_of_beams)
 
 
 def matches(one, other, tolerance):
@@ -150,7 +145,8 @@ class Reference:
     """The mean of two converged scans with seeds of their own. Half of their difference is the reference's own error.
     Echoes that only one of them has are too near to the limit to be judged: finding them is right, missing them too."""
 
-    def __init__(self, subject, rays, seeds=(1000003, 1000033), samples=vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS, connections=2):
+    def __init__(self, subject, rays, seeds=(1000003, 1000033), samples=vtkAvianLidarEchoFilter.BEAM_SAMPLES_RAYS,
+                 connections=2):
         self.subject = subject
         settings = {"RaysPerBeam": rays, "BeamSamples": samples, "NumberOfConnections": connections}
         one, other = (scan(subject, settings, seed, 0).echoes for seed in seeds)
@@ -174,15 +170,11 @@ class Reference:
                     "detection": len(self.undecided["beam_id"]) / max(len(i), 1)}
 
 
-def rms(values):
-    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
-
-
 def judge(reference, found):
     """Differences of one scan from the reference: of energies (relative), of totals (relative), of ranges (m), over
-    echoes and beams of at least twice the lower limit; whether 1.96 standard errors hold these energies; numbers of echoes
-    missed and made up. The energy of a missed echo is wrong by all of it, -1, and not held: a setting must not look better
-    for what it does not see. A missed echo has no range to judge."""
+    echoes and beams of at least twice the lower limit; whether 1.96 standard errors hold these energies; numbers of
+    echoes missed and made up. The energy of a missed echo is wrong by all of it, -1, and not held: a setting must not
+    look better for what it does not see. A missed echo has no range to judge."""
     subject, truth = reference.subject, reference.echoes
     i, j = matches(truth, found.echoes, subject.tolerance)
     strong = reference.strong[i]
@@ -196,8 +188,8 @@ def judge(reference, found):
     excused = matches(rest, reference.undecided, subject.tolerance).shape[1]
     total = totals(found.echoes, reference.beams)[reference.lit] / reference.totals[reference.lit] - 1
     return {"energy": energy[reference.strong], "held": held[reference.strong], "range": away[strong], "total": total,
-            "missed": len(truth["beam_id"]) - len(i), "missed_strong": int(reference.strong.sum() - strong.sum()),
-            "false": len(rest["beam_id"]) - excused, "true": len(truth["beam_id"])}
+            "missed": len(truth["beam_id"]) - len(i), "false": len(rest["beam_id"]) - excused,
+            "true": len(truth["beam_id"])}
 
 
 def wrong(found):

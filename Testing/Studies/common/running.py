@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the studies share: their arguments, pipelines of VTK classes, and beams."""
+import csv
 import functools
 import os
 import pathlib
@@ -11,9 +12,10 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from avianlidar import _pipeline
 from avianlidar._cloud import vertices
-from avianlidar.vtkAvianLidar import vtkAvianLidarCloudComparison, vtkAvianLidarEchoFilter, vtkAvianLidarMaterial, vtkAvianLidarSceneReader
+from avianlidar._pipeline import update
+from avianlidar.vtkAvianLidar import (vtkAvianLidarCloudComparison, vtkAvianLidarEchoFilter, vtkAvianLidarMaterial,
+                                      vtkAvianLidarSceneReader)
 
 import tools
 from tools import above_zero, file, finite  # noqa: F401  (types of arguments)
@@ -22,8 +24,8 @@ AIRPORT = pathlib.Path(__file__).resolve().parents[3] / "Examples" / "airport" /
 FOOTPRINTS = AIRPORT.with_name("hongqiao.geojson")
 # Corners and triangles of a box with sides of 1.
 BOX = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-BOX_SIDES = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
-                      (1, 5, 7), (1, 7, 3)])
+BOX_SIDES = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
+                      (0, 6, 4), (1, 5, 7), (1, 7, 3)])
 
 
 def whole(low, high):
@@ -48,11 +50,13 @@ def study(*arguments, data=(), out=None):
             name = work.__module__
             parser = tools.Parser(prog=f"run.py {name}", description=sys.modules[name].__doc__.split("\n\n")[0])
             folder = pathlib.Path("build", out or name)
-            parser.add_argument("-o", "--out", type=pathlib.Path, default=folder, help=f"folder for results, default {folder}")
+            parser.add_argument("-o", "--out", type=pathlib.Path, default=folder,
+                                help=f"folder for results, default {folder}")
             for flags, more in arguments:
                 parser.add_argument(*flags, **more)
             if data:
-                parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "")),
+                parser.add_argument("--data", type=pathlib.Path,
+                                    default=pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "")),
                                     help="the data folder, default AVIANLIDAR_DATA_DIR")
             options = parser.parse_args(argv)
             missing = [str(options.data / one) for one in data if not (options.data / one).exists()]
@@ -61,16 +65,6 @@ def study(*arguments, data=(), out=None):
             return work(options)
         return main
     return decorate
-
-
-def update(algorithm, work=None):
-    """Bring it up to date, or let it work; its first error ends the study in one line with the exit code 1."""
-    tools.run(lambda: _pipeline.update(algorithm, run=work))
-
-
-def write(writer):
-    """Let it write, as `update`."""
-    update(writer, writer.Write)
 
 
 def set_all(algorithm, properties):
@@ -105,13 +99,25 @@ def seconds_of(work):
     return time.perf_counter() - begin
 
 
+def rms(values):
+    """The root mean square; NaN without values."""
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
+
+
+def rows_of(path):
+    """The rows of a CSV file as dictionaries."""
+    with open(path, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
 def column(data, name):
     """A copy of a point array."""
     return vtk_to_numpy(data.GetPointData().GetArray(name)).copy()
 
 
 def apart(simulated, actual):
-    """The comparison of two clouds (n x 3, m): Hausdorff distance, RMSE (paper, Eq. 19, 20), density-aware Chamfer distance."""
+    """The comparison of two clouds (n x 3, m): Hausdorff distance, RMSE (paper, Eq. 19, 20), density-aware Chamfer
+    distance."""
     comparison = vtkAvianLidarCloudComparison()
     comparison.SetInputData(0, vertices(np.asarray(simulated, float)))
     comparison.SetInputData(1, vertices(np.asarray(actual, float)))
@@ -153,6 +159,12 @@ def painted(scene, materials):
         painter.Update()
         scene = painter.GetOutputDataObject(0)
     return scene
+
+
+def built_scene(name):
+    """The file of a scene that the build makes from the data folder, in AVIANLIDAR_SCENES_DIR; None without it."""
+    path = pathlib.Path(os.environ.get("AVIANLIDAR_SCENES_DIR", ""), f"{name}.lidarscene.json")
+    return path if path.is_file() else None
 
 
 def read_scene(name):

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Coverage against birds that are flown, for beams wider and narrower than a bird: for each sensor and species places in free
-space, at random azimuths, elevations of 0 to 10 degrees and distances, scan after scan through the echo filter.
+"""Coverage against birds that are flown, for beams wider and narrower than a bird: for each sensor and species places
+in free space, at random azimuths, elevations of 0 to 10 degrees and distances, scan after scan through the echo filter.
 
-    Testing/Studies/run.py flown_sensors --places 2000 --scans 100 --file flown.csv
-    Testing/Studies/run.py flown_sensors --flown flown.csv
+    Testing/Studies/run.py flown_sensors --places 2000 --scans 20
 """
-import csv
-import pathlib
-
 import numpy as np
 
 import avianlidar as al
@@ -43,19 +39,13 @@ def stated(sensor, species, places):
     return cover["detection_probability"].astype(float)
 
 
-def flights(name, species, count, scans, seed=0):
-    """Places, and in how many scans a bird there had an echo and was expected to have one: count x 5."""
+def compare(name, species, count, scans, seed=0):
+    """A row of the table: what coverage states against flights at so many places."""
     sensor, places = al.Sensor(name, position=(0.0, 0.0, 0.0)), places_for(name, species, count, seed)
-    seen, expected = flown.fly(al.Scene(NOTHING, material="Wall"), sensor, places, scans, species, AIR, 400, seed + 1000)
-    return np.column_stack([places, np.rint(scans * seen), scans * expected])
-
-
-def compare(name, species, table, scans):
-    """A row of the table: what coverage states against flights."""
-    probability = stated(al.Sensor(name, position=(0.0, 0.0, 0.0)), species, table[:, :3])
-    seen = table[:, 3] / scans
+    probability, scene = stated(sensor, species, places), al.Scene(NOTHING, material="Wall")
+    seen, expected = flown.fly(scene, sensor, places, scans, species, AIR, 400, seed + 1000)
     return {"sensor": name, "species": species, "stated": probability.mean(), "flown": seen.mean(),
-            "expected": table[:, 4].mean() / scans, **flown.compare(probability, seen, scans),
+            "expected": expected.mean(), **flown.compare(probability, seen, scans),
             "between": int(np.count_nonzero((probability > 0.01) & (probability < 0.99)))}
 
 
@@ -64,32 +54,16 @@ HEAD = ("sensor", "bird", "places, scans", "stated", "flown", "bias", "beyond 3 
 
 
 def line(row, places, scans):
-    return (row["sensor"], row["species"], f"{places:,}, {scans}", f"{row['stated']:.4f}", f"{row['flown']:.4f}", f"{row['bias']:+.4f}",
-            f"{100 * row['beyond_3_std_errors']:.2f} %", f"{100 * row['outside_99.73_percent']:.2f} %", row["between"])
-
-
-def lines_of(file):
-    """Rows: flights that were written before, against what is stated now."""
-    found = {}
-    with open(file, encoding="utf-8") as stream:
-        for row in csv.DictReader(stream):
-            found.setdefault((row["sensor"], row["species"], int(row["scans"])), []).append(
-                [float(row[name]) for name in ("x [m]", "y [m]", "z [m]", "seen", "expected")])
-    return [line(compare(name, species, np.array(rows), scans), len(rows), scans) for (name, species, scans), rows in found.items()]
+    return (row["sensor"], row["species"], f"{places:,}, {scans}", f"{row['stated']:.4f}", f"{row['flown']:.4f}",
+            f"{row['bias']:+.4f}", f"{100 * row['beyond_3_std_errors']:.2f} %",
+            f"{100 * row['outside_99.73_percent']:.2f} %", row["between"])
 
 
 @study(argument("--sensors", nargs="+", default=list(REACH), choices=list(REACH)),
        argument("--species", nargs="+", default=list(SPECIES), choices=list(SPECIES)),
-       argument("--places", type=int, default=2000), argument("--scans", type=int, default=100), argument("--seed", type=int, default=0),
-       argument("--file", type=pathlib.Path, default=pathlib.Path("flown.csv"), help="CSV, one row per place, default flown.csv"),
-       argument("--flown", type=pathlib.Path, help="what --file left: nothing is flown, only stated again"))
+       argument("--places", type=int, default=2000), argument("--scans", type=int, default=100),
+       argument("--seed", type=int, default=0))
 def main(options):
-    if not options.flown:
-        with options.file.open("w", newline="", encoding="utf-8") as stream:
-            writer = csv.writer(stream)
-            writer.writerow(["sensor", "species", "scans", "x [m]", "y [m]", "z [m]", "seen", "expected"])
-            for name in options.sensors:
-                for species in options.species:
-                    for row in flights(name, species, options.places, options.scans, options.seed):
-                        writer.writerow([name, species, options.scans, *(f"{value:.6g}" for value in row)])
-    tools.leave(options.out, "coverage-flown", HEAD, lines_of(options.flown or options.file), 2)
+    found = [compare(name, species, options.places, options.scans, options.seed)
+             for name in options.sensors for species in options.species]
+    tools.leave(options.out, "coverage-flown", HEAD, [line(row, options.places, options.scans) for row in found], 2)

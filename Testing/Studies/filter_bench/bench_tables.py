@@ -4,10 +4,8 @@
     Testing/Studies/run.py bench_tables
     Testing/Studies/run.py pages --from build/bench scores
 """
-import csv
-
 import tools
-from running import study
+from running import rows_of, study
 
 FILTERS = ("persistence", "trees-one-scan", "trees", "network-one-scan", "network")
 PLACES = ("hongqiao", "honolulu", "neubrandenburg")
@@ -17,10 +15,11 @@ TABLES = {"bench-iou": ("IoU", 1.0, 3), "bench-recall": ("recall at 1 false poin
 
 @study(out="bench/scores")
 def main(options):
-    with open(options.out / "bench.csv", newline="", encoding="utf-8") as stream:
-        scores = {(row["set"], row["predictions"], row["score"]): row for row in csv.DictReader(stream) if row["by"] == "all"}
+    rows = [row for row in rows_of(options.out / "bench.csv") if row["by"] == "all"]
+    scores = {(row["set"], row["predictions"], row["score"]): row for row in rows}
     for name, (score, factor, digits) in TABLES.items():
         tools.leave(options.out, name, ("", *(of.replace("-", ", ").capitalize() for of in SETS)), [
             (f"`{kind}`", *("{0:.{2}f} ± {1:.{2}f}".format(
-                *(factor * float(scores[of, kind, score][key]) for key in ("value", "std_error")), digits) for of in SETS))
+                *(factor * float(scores[of, kind, score][key]) for key in ("value", "std_error")),
+                digits) for of in SETS))
             for kind in FILTERS])

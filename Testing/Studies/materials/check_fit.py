@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Holds fit.py to known materials: the 86 Blinn-Phong fits to the MERL database by Ngan, Durand and Matusik (EGSR 2005).
+"""Holds fit.py to known materials: the 86 Blinn-Phong fits to the MERL database by Ngan, Durand and Matusik (EGSR
+2005).
 
     Testing/Studies/run.py check_fit --data DATA      default: AVIANLIDAR_DATA_DIR; about four minutes
 
@@ -7,7 +8,6 @@ The MERL tables themselves are not at hand. For each material three tables are w
 project's model with the material's numbers, the same with noise of 10 %, and the Blinn-Phong lobe of the fit. Leaves
 tables of what comes back (Documentation/evidence/materials.md) and a picture.
 """
-import csv
 import pathlib
 import re
 import tempfile
@@ -16,7 +16,7 @@ import numpy as np
 
 import fit
 import tools
-from running import argument, study
+from running import argument, rows_of, study
 
 FOLDER = "reflectance/merl_ngan2005_fits"
 NOISE = 0.1
@@ -39,8 +39,8 @@ def write_merl(file, red):
 
 def materials(folder):
     """name: (kd, ks, n), red; and Ward's alpha of the same names."""
-    with (folder / "ngan_blinnphong.csv").open(newline="", encoding="utf-8") as stream:
-        rows = {row["material"]: (float(row["kd_r"]), float(row["ks_r"]), float(row["n"])) for row in csv.DictReader(stream)}
+    rows = {row["material"]: (float(row["kd_r"]), float(row["ks_r"]), float(row["n"]))
+            for row in rows_of(folder / "ngan_blinnphong.csv")}
     text = (folder / "ngan_ward.fit").read_text(encoding="utf-8")
     return rows, {name: float(alpha) for name, alpha in re.findall(r"^(\S+) = .*roughness = ([\d.e+-]+)", text, re.M)}
 
@@ -83,18 +83,24 @@ def main(options):
         lines.append((name, kd, ks, f"{n:g}", *(f"{value:.4g}" for value in material), f"{log:.3f}", f"{linear:.2g}",
                       f"{found['LambertBlinnPhong', 2.0][1]:.3f}", f"{found['LambertBlinnPhong', 180.0][1]:.3f}"))
         if name == SHOWN:
-            fit.draw(options.out / f"{name}.png", f"{name}: kd {material[0]:.3g}, ks {material[1]:.3g}, kp {material[2]:.3g}",
-                     "LambertBlinnPhong", material, sampled, measured)
+            fit.draw(options.out / f"{name}.png",
+                     f"{name}: kd {material[0]:.3g}, ks {material[1]:.3g}, kp {material[2]:.3g}", "LambertBlinnPhong",
+                     material, sampled, measured)
     tools.leave(options.out, "materials-returned", ("table", "kd off by at most", "ks", "kp"), [
         (what, *(f"{100 * value:.2g} %" for value in np.max(values, axis=0))) for what, values in off.items()])
-    tools.leave(options.out, "materials-models", ("model", "within (deg)", "rms ln, median", "largest", "rms (1/sr), median", "largest"), [
-        (model, f"{within:g}", f"{np.median(log):.3f}", f"{max(log):.3f}", f"{np.median(linear):.2g}", f"{max(linear):.2g}")
+    tools.leave(options.out, "materials-models", (
+        "model", "within (deg)", "rms ln, median", "largest", "rms (1/sr), median", "largest"), [
+        (model, f"{within:g}", f"{np.median(log):.3f}", f"{max(log):.3f}", f"{np.median(linear):.2g}",
+         f"{max(linear):.2g}")
         for (model, within), values in misfits.items() for log, linear in [np.transpose(values)]])
-    tools.leave(options.out, "materials-ratios", ("within (deg)", "kd over theirs", "ks over theirs", "kp over their n"), [
-        (f"{within:g}", *("{1:.3f} ({0:.3f} to {2:.3f})".format(*np.percentile(column, (5, 50, 95))) for column in zip(*values)))
+    tools.leave(options.out, "materials-ratios", (
+        "within (deg)", "kd over theirs", "ks over theirs", "kp over their n"), [
+        (f"{within:g}",
+         *("{1:.3f} ({0:.3f} to {2:.3f})".format(*np.percentile(column, (5, 50, 95))) for column in zip(*values)))
         for within, values in ratios.items()])
-    tools.leave(options.out, "materials-all", ("material", "kd", "ks", "n", "fitted kd", "fitted ks", "fitted kp", "rms ln", "rms (1/sr)",
-                                               "rms ln, within 2 deg", "all directions"), lines)
+    tools.leave(options.out, "materials-all", ("material", "kd", "ks", "n", "fitted kd", "fitted ks", "fitted kp",
+                                               "rms ln", "rms (1/sr)", "rms ln, within 2 deg", "all directions"), lines)
     ratio = [n * ward[name]**2 / 2 for name, (_, _, n) in rows.items() if name in ward]
-    print(f"n alpha^2/2, alpha of the Ward fits: median {np.median(ratio):.2f}, quartiles {np.percentile(ratio, 25):.2f} to "
-          f"{np.percentile(ratio, 75):.2f} (1: n is of the half vector, 4: of the mirror direction)")
+    low, middle, high = np.percentile(ratio, (25, 50, 75))
+    print(f"n alpha^2/2, alpha of the Ward fits: median {middle:.2f}, quartiles {low:.2f} to {high:.2f} "
+          "(1: n is of the half vector, 4: of the mirror direction)")

@@ -2,11 +2,12 @@
 """Fits kd, ks, kp of a material to measured tables of reflectance (BRDF, 1/sr).
 
     Testing/Studies/run.py fit chrome.binary nickel.binary -o build/materials    tables of the MERL database
-    Testing/Studies/run.py fit wall.csv --within 180                             to all directions, not only near straight back
+    Testing/Studies/run.py fit wall.csv --within 180                             to all directions
 
 A table is a MERL file (.binary), or a CSV file with the header `incidence,view,azimuth,brdf` or, straight back alone,
-`incidence,brdf`: angles in degrees to the normal, azimuth from the source to the viewer about it (180: the mirror's side).
-Leaves materials.json, whose content goes into a .lidarscene.json, and a picture for each table. Documentation/method/reflectance.md says what is fitted and why.
+`incidence,brdf`: angles in degrees to the normal, azimuth from the source to the viewer about it (180: the mirror's
+side). Leaves materials.json, whose content goes into a .lidarscene.json, and a picture for each table.
+Documentation/method/reflectance.md says what is fitted and why.
 """
 import csv
 import dataclasses
@@ -17,10 +18,10 @@ import numpy as np
 from scipy.optimize import least_squares, nnls
 
 import tools
-from running import argument, study
+from running import argument, rms, study
 
-# MERL: half-angle parametrisation of Rusinkiewicz, 90 x 90 x 180 cells, red, green and blue one after the other (Matusik,
-# Pfister, Brand, McMillan: A Data-Driven Reflectance Model, ACM TOG 22(3), 2003).
+# MERL: half-angle parametrisation of Rusinkiewicz, 90 x 90 x 180 cells, red, green and blue one after the other
+# (Matusik, Pfister, Brand, McMillan: A Data-Driven Reflectance Model, ACM TOG 22(3), 2003).
 MERL_SHAPE = (90, 90, 180)
 MERL_SCALE = {"red": 1.0 / 1500, "green": 1.15 / 1500, "blue": 1.66 / 1500}
 MERL_STEPS = (1, 3, 6)  # every cell of the lobe, every third of the difference angle, every sixth of its azimuth
@@ -111,8 +112,10 @@ def directions(theta, phi):
 
 
 def merl_geometry(steps=MERL_STEPS):
-    """The middles of every steps-th cell: geometry, and the cells' numbers. theta_half rises with the square of its number."""
-    half, difference, azimuth = np.meshgrid(*(np.arange(0, n, step) for n, step in zip(MERL_SHAPE, steps)), indexing="ij")
+    """The middles of every steps-th cell: geometry, and the cells' numbers. theta_half rises with the square of its
+    number."""
+    half, difference, azimuth = np.meshgrid(*(np.arange(0, n, step) for n, step in zip(MERL_SHAPE, steps)),
+                                            indexing="ij")
     cells = np.ravel_multi_index([half, difference, azimuth], MERL_SHAPE).ravel()
     theta = np.radians((half.ravel() + 0.5)**2 / 90)
     along = directions(np.radians(difference.ravel() + 0.5), np.radians(azimuth.ravel() + 0.5))
@@ -142,7 +145,8 @@ def read_csv(file):
         lines = [(number, row) for number, row in enumerate(csv.reader(stream), 1) if row]
     header = [name.strip().lower() for name in lines[0][1]] if lines else []
     if header not in columns:
-        raise ValueError(f"{file}: expected the header {' or '.join(','.join(c) for c in columns)}, found '{','.join(header)}'")
+        expected = " or ".join(",".join(names) for names in columns)
+        raise ValueError(f"{file}: expected the header {expected}, found '{','.join(header)}'")
     table = []
     for number, row in lines[1:]:
         try:
@@ -203,10 +207,6 @@ def fit(model, g, measured, error="log"):
     return tuple(float(f"{value:.5g}") for value in (kd, ks, round(kp, 6)))
 
 
-def rms(values):
-    return float(np.sqrt(np.mean(values**2)))
-
-
 def misfit(model, material, g, measured):
     """rms of ln(fitted/measured), and of their difference (1/sr)."""
     fitted = reflected(model, material, g)
@@ -235,7 +235,8 @@ def draw(path, title, model, material, g, measured):
                 help="whose rms is least: the logarithm of fitted/measured (default), or the difference"),
        argument("--within", type=float, default=30.0,
                 help="deg between source and viewer, default 30: what a lidar sees; 180: all directions"),
-       argument("--grazing", type=float, default=GRAZING, help=f"deg from the normal, beyond which nothing is used, default {GRAZING:g}"),
+       argument("--grazing", type=float, default=GRAZING,
+                help=f"deg from the normal, beyond which nothing is used, default {GRAZING:g}"),
        argument("--no-pictures", action="store_true"))
 def main(options):
     materials, lines = {}, []
@@ -245,18 +246,19 @@ def main(options):
         g, measured = g[usable], (brdf * g.cos_outgoing)[usable]
         used = g.off_back() <= options.within
         if used.sum() < 4:
-            raise ValueError(f"{file}: {used.sum()} values above 0 within {options.grazing:g} degrees of the normal and "
-                             f"{options.within:g} of straight back; expected 4 or more")
+            raise ValueError(f"{file}: {used.sum()} values above 0 within {options.grazing:g} degrees of the normal "
+                             f"and {options.within:g} of straight back; expected 4 or more")
         kd, ks, kp = material = fit(options.model, g[used], measured[used], options.error)
         log, linear = misfit(options.model, material, g[used], measured[used])
         materials[file.stem] = {"kd": kd, "ks": ks, "kp": kp, "comment": f"fitted to {file.name}, {options.model}, "
                                 f"rms of ln(fitted/measured) {log:.3f}"}
         lines.append(f"{file.stem:24} {kd:9.5g} {ks:9.5g} {kp:9.5g} {log:7.3f} {linear:11.4g} {used.sum():8d}")
         if not options.no_pictures:
-            draw(options.out / f"{file.stem}.png", f"{file.stem}: kd {kd:g}, ks {ks:g}, kp {kp:g}", options.model, material,
-                 g, measured)
+            draw(options.out / f"{file.stem}.png", f"{file.stem}: kd {kd:g}, ks {ks:g}, kp {kp:g}", options.model,
+                 material, g, measured)
     options.out.mkdir(parents=True, exist_ok=True)
     text = json.dumps({"materials": materials}, indent=2)
     (options.out / "materials.json").write_text(text + "\n", encoding="utf-8")
-    print(f"{'':24} {'kd':>9} {'ks':>9} {'kp':>9} {'rms ln':>7} {'rms (1/sr)':>11} {'values':>8}", *lines, text, sep="\n")
+    print(f"{'':24} {'kd':>9} {'ks':>9} {'kp':>9} {'rms ln':>7} {'rms (1/sr)':>11} {'values':>8}", *lines, text,
+          sep="\n")
     return materials

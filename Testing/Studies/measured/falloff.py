@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Does a lidar's signal fall with range as the photon receiver says? Ground and walls of real frames, beam by beam, against the
-same beams simulated on the same planes.
+"""Does a lidar's signal fall with range as the photon receiver says? Ground and walls of real frames, beam by beam,
+against the same beams simulated on the same planes.
 
     Testing/Studies/run.py falloff --data DATA       # default: AVIANLIDAR_DATA_DIR
     Testing/Studies/run.py falloff --clouds my.pcd --field signal
 
-Planes are found by random samples (Fischler and Bolles, CACM 24(6), 1981). On a plane at distance h the cosine of incidence
-is h/r, so the signal cos/r^n of a matt plane is h/r^(n + 1): n is the slope of ln signal over ln r with its sign turned,
-less one. Slopes are fitted to medians of bins of range, of each beam and of all beams of a plane. Leaves tables.
+Planes are found by random samples (Fischler and Bolles, CACM 24(6), 1981). On a plane at distance h the cosine of
+incidence is h/r, so the signal cos/r^n of a matt plane is h/r^(n + 1): n is the slope of ln signal over ln r with its
+sign turned, less one. Slopes are fitted to medians of bins of range, of each beam and of all beams of a plane. Leaves
+tables.
 
 Documentation/evidence/real-scans.md says what they are and what comes out.
 """
@@ -21,7 +22,7 @@ from scipy.optimize import least_squares
 import avianlidar as al
 import running
 import tools
-from running import argument, study
+from running import argument, rms, study
 
 
 @dataclasses.dataclass
@@ -144,8 +145,8 @@ def slope(x, y, groups=None):
 
 
 def jackknifed(x, y, groups, blocks):
-    """The slope, and its standard error from leaving out one block after the other: what lies in one place of a plane is
-    bright or dark for all beams."""
+    """The slope, and its standard error from leaving out one block after the other: what lies in one place of a plane
+    is bright or dark for all beams."""
     names = np.unique(blocks)
     without = np.array([slope(*(values[blocks != name] for values in (x, y, groups)))[0] for name in names])
     return slope(x, y, groups)[0], np.sqrt((len(names) - 1) / len(names) * ((without - without.mean())**2).sum())
@@ -159,8 +160,9 @@ def faint_from(distance, signal, least):
 
 
 def exponents(distance, signal, ring, kind, near=0.0, far=np.inf):
-    """{beam: (n, standard error, nearest, farthest, points)} of the beams whose range varies enough, and the same of all
-    together or None: of a wall each beam with a gain of its own, of ground one gain, as a beam's range varies little there."""
+    """{beam: (n, standard error, nearest, farthest, points)} of the beams whose range varies enough, and the same of
+    all together or None: of a wall each beam with a gain of its own, of ground one gain, as a beam's range varies
+    little there."""
     there = (distance >= near) & (distance < far)
     distance, signal, ring = distance[there], signal[there], ring[there]
 
@@ -189,8 +191,8 @@ def own_gain(distance, signal, scale, top):
 
 
 def near_range(distance, gain):
-    """Overlap and defocus range (m) of a sensor (Documentation/reference/sensor-files.md) fitted to its own gain up to its largest, with a level
-    of its own, and the rms of what is left, of the level."""
+    """Overlap and defocus range (m) of a sensor (Documentation/reference/sensor-files.md) fitted to its own gain up to
+    its largest, with a level of its own, and the rms of what is left, of the level."""
     there = distance <= distance[np.argmax(gain)]
     r, y = distance[there], gain[there]
 
@@ -199,10 +201,11 @@ def near_range(distance, gain):
         return level * -np.expm1(-(r / overlap) ** 2) / (1 + (defocus / r) ** 2) - y
 
     half = r[np.argmax(y >= 0.5)]
-    best = min((least_squares(off, np.log([part * half, (1 - part) * half, 1.0]), bounds=(np.log([1e-3, 1e-3, 0.5]), np.log([1e3, 1e3, 2])))
+    best = min((least_squares(off, np.log([part * half, (1 - part) * half, 1.0]),
+                              bounds=(np.log([1e-3, 1e-3, 0.5]), np.log([1e3, 1e3, 2])))
                 for part in (0.1, 0.5, 0.9)), key=lambda found: found.cost)
     overlap, defocus, level = np.exp(best.x)
-    return overlap, defocus, np.sqrt(np.mean(best.fun**2)) / level
+    return overlap, defocus, rms(best.fun) / level
 
 
 def square_on(plane, half):
@@ -218,7 +221,8 @@ def simulated(plane, elevations, step=360.0 / 1024):
     """Range, energy and beam of what a photon receiver gets from the whole plane by beams of these elevations."""
     scene = al.Scene()
     scene.add(square_on(plane, 500), material=(0.3, 0.0, 0.0), name="plane")
-    sensor = al.Sensor("Automotive16", azimuth_step=step, channel_elevations=list(elevations), range_noise=0, range_noise_floor=0)
+    sensor = al.Sensor("Automotive16", azimuth_step=step, channel_elevations=list(elevations), range_noise=0,
+                       range_noise_floor=0)
     echoes = al.Scan(scene, sensor, attenuation_coefficient=AIR).echoes
     return echoes["distance_m"], echoes["return_energy"], np.asarray(echoes["beam_id"], int) % len(elevations)
 
@@ -241,14 +245,16 @@ def beyond_nearest(cloud, *fields):
     points = np.array(cloud.points, float)
     distance = np.linalg.norm(points, axis=1)
     used = distance > NEAREST
-    return points[used], np.array(cloud["laser_id"], int)[used], distance[used], *(np.array(cloud[name], float)[used] for name in fields)
+    ring = np.array(cloud["laser_id"], int)
+    return points[used], ring[used], distance[used], *(np.array(cloud[name], float)[used] for name in fields)
 
 
 def study_of(frame, file, share=FULL):
     cloud = al.load_cloud(file)
     for name in (frame.field, "laser_id"):
         if name not in cloud:
-            raise ValueError(f"{file}: no field {'ring or channel' if name == 'laser_id' else name}; found {', '.join(cloud)}")
+            missing = "ring or channel" if name == "laser_id" else name
+            raise ValueError(f"{file}: no field {missing}; found {', '.join(cloud)}")
     ring = np.array(cloud["laser_id"], int)
     elevation = [float(np.median(cloud["vertical_angle"][ring == i])) if (ring == i).any() else 90.0
                  for i in range(ring.max() + 1)]
@@ -259,8 +265,9 @@ def study_of(frame, file, share=FULL):
         full = result.gain[0][np.argmax(result.gain[1] >= share)]
     for plane in find_planes(points, ring):
         on = plane.points
-        far = faint_from(distance[on], signal[on], FAINT * signal[signal > 0].min()) if frame.field == "signal" else np.inf
-        far = min(far, distance[on].max())
+        far = distance[on].max()
+        if frame.field == "signal":
+            far = min(far, faint_from(distance[on], signal[on], FAINT * signal[signal > 0].min()))
         ranges, energy, beam = simulated(plane, elevation)
         same = np.isin(beam, ring[on])
         windows = []
@@ -296,8 +303,9 @@ def tables(studies):
             scales.append((one.frame.name, f"{x[np.argmax(y >= FULL)]:.1f}",
                            *(f"{np.interp(r, x, y):.2f}" if x[0] <= r <= x[-1] else "-" for r in at)))
             if y[0] < 0.5:  # else no near range is seen
-                overlap, defocus, rms = near_range(x, y)
-                near.append((one.frame.name, f"{x[0]:.1f} to {x[np.argmax(y)]:.1f}", f"{overlap:.2f}", f"{defocus:.2f}", f"{rms:.3f}"))
+                overlap, defocus, left = near_range(x, y)
+                near.append((one.frame.name, f"{x[0]:.1f} to {x[np.argmax(y)]:.1f}", f"{overlap:.2f}", f"{defocus:.2f}",
+                             f"{left:.3f}"))
         if not one.planes:
             planes.append((one.frame.name, "none long enough", *["-"] * 7))
         for plane, windows in one.planes:
@@ -309,18 +317,21 @@ def tables(studies):
             for ring, found in own.items():
                 beams.append((one.frame.name, where, f"{one.elevation[ring]:.1f}", found[4], f"{found[2]:.1f}",
                               f"{found[3]:.1f}", number(found), number(models[ring])))
-    return {"falloff-planes": (("sensor", "plane", "points", "from (m)", "to (m)", "n", "n of the reflectivity", "n simulated",
-                                "beams alone"), planes),
+    return {"falloff-planes": (("sensor", "plane", "points", "from (m)", "to (m)", "n", "n of the reflectivity",
+                                "n simulated", "beams alone"), planes),
             "falloff-scales": (("sensor", f"{FULL:g} from (m)", *(f"at {r:g} m" for r in at)), scales),
             "falloff-near": (("sensor", "ranges (m)", "`overlap_range` (m)", "`defocus_range` (m)", "rms left"), near),
-            "falloff-beams": (("sensor", "plane", "elevation (deg)", "points", "from (m)", "to (m)", "n", "n simulated"), beams)}
+            "falloff-beams": (("sensor", "plane", "elevation (deg)", "points", "from (m)", "to (m)", "n",
+                               "n simulated"), beams)}
 
 
-@study(argument("--data", type=pathlib.Path, default=pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "")), help="the data folder"),
-       argument("--clouds", nargs="+", type=running.file, help="files to take instead, each one turn in the sensor's frame"),
+@study(argument("--data", type=pathlib.Path, default=pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "")),
+                help="the data folder"),
+       argument("--clouds", nargs="+", type=running.file,
+                help="files to take instead, each one turn in the sensor's frame"),
        argument("--field", default="signal", help="of these files, default signal"),
-       argument("--full", type=running.above_zero, default=FULL, help="share of 1/r2 by the sensor's own scale, from which on its far field "
-                f"begins, default {FULL}"))
+       argument("--full", type=running.above_zero, default=FULL,
+                help=f"share of 1/r2 by the sensor's own scale, from which on its far field begins, default {FULL}"))
 def main(options):
     frames = [(Frame(file.stem, file.name, options.field), file) for file in options.clouds or ()] or [
         (frame, options.data / frame.file) for frame in FRAMES]

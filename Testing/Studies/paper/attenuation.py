@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which unit may the paper's attenuation coefficient have? Scans the corridor with 0.088 and the airport with 0.035 in every
-unit of a grid, over the way there and back or one way, and leaves a table: does the end of the corridor vanish, as
-the text to Fig. 15 says, and is Terminal 1 there, as in Fig. 17?
+"""Which unit may the paper's attenuation coefficient have? Scans the corridor with 0.088 and the airport with 0.035 in
+every unit of a grid, over the way there and back or one way, and leaves a table: does the end of the corridor vanish,
+as the text to Fig. 15 says, and is Terminal 1 there, as in Fig. 17?
 
     Testing/Studies/run.py attenuation
 """
@@ -28,7 +28,8 @@ END_IS_ABSENT, TERMINAL_IS_THERE = "Fig. 15: the end is absent", "Fig. 17: Termi
 
 def grid():
     """(name, factor to 1/m), the largest first."""
-    units = [(name + way, factor * part) for name, factor in NAMED.items() for way, part in (("", 1.0), (", one way", 0.5))]
+    units = [(name + way, factor * part) for name, factor in NAMED.items()
+             for way, part in (("", 1.0), (", one way", 0.5))]
     units += [(f"{scale:.3g} 1/m", scale) for scale in SCALES if not any(math.isclose(scale, f) for _, f in units)]
     return sorted(units, key=lambda unit: -unit[1])
 
@@ -52,7 +53,7 @@ def scan(subject, mu):
 
 def measure():
     """A row for each unit of the grid, the clear air first."""
-    corridor, airport = (paper.configured(trade_runs.Subject(name, sensor), paper.CONFIGURATIONS["paper"][0])
+    corridor, airport = (paper.configured(trade_runs.subject_of(name, sensor), paper.CONFIGURATIONS["paper"][0])
                          for name, sensor in (("corridor", "corridor"), ("airport", "airport16")))
     rows = []
     for name, factor in [("no air", 0.0), *grid()]:

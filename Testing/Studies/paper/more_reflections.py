@@ -1,32 +1,31 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How much light comes back after three reflections and more, which the echo filter leaves out? A ray tracer of its own
-(NumPy, and VTK's cell locator in place of the collision tree) follows paths over up to eight reflections, in scenes made of
-mirrors, in the corridor and at the airport. Its first two orders are compared with the echo filter. Leaves tables.
+(NumPy, and VTK's cell locator in place of the collision tree) follows paths over up to eight reflections, in scenes
+made of mirrors, in the corridor and at the airport. Its first two orders are compared with the echo filter. Leaves
+tables.
 
     Testing/Studies/run.py more_reflections
 
-A path O, P1, ..., Pm, O follows the rules that Documentation/method/echoes.md has for two reflections. From each hit but the last
-it goes on in the mirror direction, with f_s = ks, or, at most twice, to the hit point of another ray of the beam, with
-f_d = kd cos(theta_i). At the last hit the whole f_sur towards O acts; it counts only if Pm lies in the beam's cone, is
-visible from O, and is met on the side that faces O. Between mirrors a path may leave the cone. Diffuse light from outside
-the cone is left out: as a form factor, some (theta_0.5 r/L)^2 of it meets what the beam lights, 3e-5 from as far as O is.
+A path O, P1, ..., Pm, O follows the rules that Documentation/method/echoes.md has for two reflections. From each hit
+but the last it goes on in the mirror direction, with f_s = ks, or, at most twice, to the hit point of another ray of
+the beam, with f_d = kd cos(theta_i). At the last hit the whole f_sur towards O acts; it counts only if Pm lies in the
+beam's cone, is visible from O, and is met on the side that faces O. Between mirrors a path may leave the cone. Diffuse
+light from outside the cone is left out: as a form factor, some (theta_0.5 r/L)^2 of it meets what the beam lights, 3e-5
+from as far as O is.
 """
 import dataclasses
 import math
-import os
-import pathlib
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkStaticCellLocator
 
-from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarCollisionTree
-
-import corridor_scene
 import running
 import tools
-from running import argument, column, study, whole
+import trade_runs
+from running import argument, built_scene, column, study, whole
+from trade_runs import Subject
 
 ORDERS = 8
 LEAST = 1e-7  # of a ray's energy: what carries less is not followed
@@ -34,7 +33,7 @@ CONNECTIONS = 2  # diffuse reflections of a path before its last: all there can 
 RANGE = 100.0  # m, from the lidar to the scenes of mirrors
 
 
-# --- the tracer ---------------------------------------------------------------------------------------------------------
+# --- the tracer
 
 class Surfaces:
     """Triangles with kd, ks, kp, and the nearest of them along a ray."""
@@ -141,8 +140,8 @@ class Beam:
             mirror = incident + 2 * cosine * normal
             there, what = self.surfaces.first(point, mirror, cell)
             if there is not None:
-                self._reflect(order + 1, there, what, mirror, length + np.linalg.norm(there - point), share * ks, connected,
-                              False)
+                self._reflect(order + 1, there, what, mirror, length + np.linalg.norm(there - point), share * ks,
+                              connected, False)
         if seen and connected < self.connections and share * kd * cosine * len(self.rays) > LEAST:
             self._connect(order, point, cell, normal, length, share * kd * cosine, connected)
 
@@ -162,39 +161,23 @@ class Beam:
             self._reflect(order + 1, there, what, way / far, length + far, share, connected + 1, True)
 
 
-# --- scenes -------------------------------------------------------------------------------------------------------------
-
-@dataclasses.dataclass
-class Subject:
-    """What is measured: a collision tree, of which the tracer takes the triangles alone, and a sensor. `axis`: a single beam
-    in that direction, many times, instead of the sensor's beams."""
-    name: str
-    tree: vtkAvianLidarCollisionTree
-    sensor: vtkAvianLidarBeamSource
-    attenuation: float
-    axis: tuple = None
-
+# --- scenes
 
 def painted(data, material):
     """All of it of one material."""
     return running.painted(data, [("*", material)])
 
 
-def subject(name, data, preset, position, attenuation, axis=None):
-    tree, sensor = vtkAvianLidarCollisionTree(), vtkAvianLidarBeamSource()
-    running.made(tree, InputDataObject=data)
-    getattr(sensor, "SetPresetTo" + preset)()
-    running.made(sensor, Position=tuple(position))
-    return Subject(name, tree, sensor, attenuation, axis)
-
-
 def mirrors(name, quads, towards, floor="Glass"):
-    """Glass plates about the origin, the first of another material if named, and a beam of Airport16 from `towards`."""
+    """Glass plates about the origin, the first of another material if named, and the axis of a beam of Airport16 from
+    `towards`."""
     towards = np.array(towards) / np.linalg.norm(towards)
     blocks = vtkMultiBlockDataSet()
     blocks.SetBlock(0, painted(running.quads(quads[:1]), floor))
     blocks.SetBlock(1, painted(running.quads(quads[1:]), "Glass"))
-    return subject(name, blocks, "Airport16", RANGE * towards, 3.5e-5, -towards)
+    subject = Subject(name, blocks, "Airport16", RANGE * towards)
+    subject.axis = -towards
+    return subject
 
 
 def two_mirrors():
@@ -218,31 +201,29 @@ def channel(width=0.2, depth=0.3):
                     for x0, y0, x1, y1 in ((-depth, -w, 0, -w), (-depth, w, 0, w), (-depth, -w, -depth, w))], (1, 1, 0))
 
 
+def outdoors(name, scene, preset, material=None):
+    """A scene of trade_runs.py, all of one material if named."""
+    surfaces, place, attenuation = trade_runs.scene_of(scene)
+    return Subject(name + (f", all of {material.lower()}" if material else ""),
+                   painted(surfaces, material) if material else surfaces, preset, place, attenuation)
+
+
 def corridor(material=None):
-    scene = corridor_scene.build()
-    if material:
-        scene = painted(scene, material)
-    return subject("corridor" + (", all of glass" if material else ""), scene, "CorridorC16", corridor_scene.LIDAR, 8.8e-5)
-
-
-def outdoors(name, file, preset, material=None):
-    scene = running.read_scene(file).GetOutput()
-    position = scene.GetFieldData().GetArray("lidar_position")
-    position = position.GetTuple(0) if position else (0, 0, 0)
-    return subject(name, painted(scene, material) if material else scene, preset, position, 3.5e-5)
+    return outdoors("corridor", "corridor", "CorridorC16", material)
 
 
 # Scenes made from the data folder, where the build has made them.
-FROM_DATA = (("Honolulu, 32 channels", "phnl", "Airport32"), ("Shanghai, centre, 32 channels", "shanghai_cbd", "Airport32"),
+FROM_DATA = (("Honolulu, 32 channels", "phnl", "Airport32"),
+             ("Shanghai, centre, 32 channels", "shanghai_cbd", "Airport32"),
              ("Ingolstadt, 32 channels", "ingolstadt", "Airport32"))
 
 
-# --- measuring ----------------------------------------------------------------------------------------------------------
+# --- measuring
 
 @dataclasses.dataclass
 class Measured:
-    """Energies per beam, as shares of the pulse: by order, and of orders one and two by the echo filter; the mean share that
-    leaves the last order; Rmax^3; Qlow over Qs."""
+    """Energies per beam, as shares of the pulse: by order, and of orders one and two by the echo filter; the mean share
+    that leaves the last order; Rmax^3; Qlow over Qs."""
     orders: np.ndarray
     filter: np.ndarray
     under_way: float
@@ -280,7 +261,8 @@ def chosen_beams(subject, count, random):
 
 def fields_of(beams):
     """Half beamwidth (rad), energy of the pulse and lower limit (J)."""
-    return [beams.GetFieldData().GetArray(name).GetValue(0) for name in ("half_beamwidth", "pulse_energy", "lower_energy_limit")]
+    fields = beams.GetFieldData()
+    return [fields.GetArray(name).GetValue(0) for name in ("half_beamwidth", "pulse_energy", "lower_energy_limit")]
 
 
 def places_of(beams):
@@ -289,14 +271,16 @@ def places_of(beams):
 
 
 def by_filter(subject, beams, rays, seed):
-    """Energies of orders one and two of each beam, J, by the echo filter, after its limits and its gate are set wide."""
+    """Energies of orders one and two of each beam, J, by the echo filter, after its limits and its gate are set
+    wide."""
     for name, value in (("lower_energy_limit", 1e-18), ("upper_energy_limit", 1.0), ("range_gate", 1e6)):
         beams.GetFieldData().GetArray(name).SetValue(0, value)
     ids, sums = column(beams, "beam_id"), []
     for reflections in (1, 2):
-        echoes = running.scanned(beams, subject.tree, AttenuationCoefficient=subject.attenuation, RaysPerBeam=rays, Seed=seed,
-                                 NumberOfReflections=reflections, FullModel=True, Noise=False).GetOutput()
-        sums.append(np.bincount(np.searchsorted(ids, column(echoes, "beam_id")), column(echoes, "return_energy"), len(ids)))
+        echoes = running.scanned(beams, subject.tree, AttenuationCoefficient=subject.attenuation, RaysPerBeam=rays,
+                                 Seed=seed, NumberOfReflections=reflections, FullModel=True, Noise=False).GetOutput()
+        sums.append(np.bincount(np.searchsorted(ids, column(echoes, "beam_id")), column(echoes, "return_energy"),
+                                len(ids)))
     return np.column_stack([sums[0], sums[1] - sums[0]])
 
 
@@ -326,35 +310,35 @@ def percent(value, error):
 def row(found):
     """(column, text): energies as a share of the pulse, mean of the beams."""
     orders, more = found.orders, found.more()
-    return [("1 (% of Qs)", percent(*found.mean(orders[:, 0]))), ("1, echo filter", percent(*found.mean(found.filter[:, 0]))),
-            ("2", percent(*found.mean(orders[:, 1]))), ("2, echo filter", percent(*found.mean(found.filter[:, 1]))),
-            ("3", percent(*found.mean(orders[:, 2]))), ("4 to 8", percent(*found.mean(orders[:, 3:].sum(axis=1)))),
-            ("3 to 8, % of all received", percent(*found.share(more))), ("most in a beam (% of Qs)", f"{100 * more.max():.2g}"),
+    return [("1 (% of Qs)", percent(*found.mean(orders[:, 0]))),
+            ("1, echo filter", percent(*found.mean(found.filter[:, 0]))), ("2", percent(*found.mean(orders[:, 1]))),
+            ("2, echo filter", percent(*found.mean(found.filter[:, 1]))), ("3", percent(*found.mean(orders[:, 2]))),
+            ("4 to 8", percent(*found.mean(orders[:, 3:].sum(axis=1)))),
+            ("3 to 8, % of all received", percent(*found.share(more))),
+            ("most in a beam (% of Qs)", f"{100 * more.max():.2g}"),
             ("beams with more than Qlow of 3 to 8", f"{(more > found.limit).sum()} of {len(more)}")]
 
 
-@study(argument("--scenes", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_SCENES_DIR"),
-                help="folder of the scenes that the build makes from the data folder, to measure those too"),
-       argument("--beams", type=whole(2, 1000000), default=2000, help="of each scene, default 2000"),
+@study(argument("--beams", type=whole(2, 1000000), default=2000, help="of each scene, default 2000"),
        argument("--rays", type=whole(1, 100000), default=30, help="rays per beam, default 30"),
        argument("--seed", type=whole(0, 2**31 - 1), default=0, help="of the random numbers, default 0"))
 def main(options):
     few = max(2, options.beams // 10)  # the same beam again and again
-    sets = {"table": [(few, two_mirrors), (few, corner), (few, lambda: corner("Wall")), (few, channel),
-                      (options.beams, corridor), (options.beams, lambda: corridor("Glass")),
-                      *((4 * options.beams, lambda p=p, m=m: outdoors(
-                          f"Hongqiao, {p} channels" + (", all of glass" if m else ""), running.AIRPORT, f"Airport{p}", m))
-                        for p, m in ((16, None), (32, None), (32, "Glass")))]}
-    if options.scenes:
-        sets["more-reflections-elsewhere"] = [
-            (options.beams, lambda n=name, f=file, p=preset: outdoors(n, options.scenes / f"{f}.lidarscene.json", p))
-            for name, file, preset in FROM_DATA if (options.scenes / f"{file}.lidarscene.json").exists()]
+    sets = {"more-reflections": [
+        (few, two_mirrors), (few, corner), (few, lambda: corner("Wall")), (few, channel), (options.beams, corridor),
+        (options.beams, lambda: corridor("Glass")),
+        *((4 * options.beams, lambda p=p, m=m: outdoors(f"Hongqiao, {p} channels", "airport", f"Airport{p}", m))
+          for p, m in ((16, None), (32, None), (32, "Glass")))]}
+    sets["more-reflections-elsewhere"] = [
+        (options.beams, lambda n=name, f=built_scene(file), p=preset: outdoors(n, f, p))
+        for name, file, preset in FROM_DATA if built_scene(file)]
     for name, scenes in sets.items():
         rows = []
         for count, make in scenes:
             one = make()
             found = measure(one, count, options.rays, options.seed)
-            print(f"{one.name}: {100 * found.under_way:.2g} % of Qs go on after order {ORDERS}; Rmax^3 is {100 * found.bound:.1f} %")
+            print(f"{one.name}: {100 * found.under_way:.2g} % of Qs go on after order {ORDERS}; Rmax^3 is "
+                  f"{100 * found.bound:.1f} %")
             rows.append({"": one.name, **dict(row(found))})
         if rows:
             tools.leave(options.out, name, list(rows[0]), [list(row.values()) for row in rows])

@@ -4,8 +4,8 @@ echoes that are invented or missed, and leaves a table and a picture.
 
     Testing/Studies/run.py paper
 
-The paper's configuration is that of the presets Paper, set one by one (paper_times.py) where a run differs in one of them.
-Documentation/evidence/paper.md has the paper's claims and where this project differs.
+The paper's configuration is that of the presets Paper, set one by one (paper_times.py) where a run differs in one of
+them. Documentation/evidence/paper.md has the paper's claims and where this project differs.
 """
 import copy
 
@@ -82,7 +82,7 @@ def counts(subject, lidar, returns):
 def main(options):
     columns, scans, shown, ratios = {}, {}, [], {}
     for name, sensor in SENSORS:
-        subject = trade_runs.Subject(name, sensor)
+        subject = trade_runs.subject_of(name, sensor)
         reference = trade_runs.Reference(subject, options.reference_rays)
         for words, (tree_settings, settings) in CONFIGURATIONS.items():
             mine = configured(subject, tree_settings)
@@ -90,10 +90,12 @@ def main(options):
             lidar = scan(mine, settings, 0, 0)
             scans[f"{subject.sensor_name}, {words}"] = mine, lidar
             columns[f"{subject.sensor_name}, {words}"] = [
-                *counts(mine, lidar, returns.GetOutput().GetNumberOfPoints()), ("returns of the reference", len(reference.echoes["beam_id"])),
+                *counts(mine, lidar, returns.GetOutput().GetNumberOfPoints()),
+                ("returns of the reference", len(reference.echoes["beam_id"])),
                 *errors(reference, mine, settings, options.seeds)]
             if name == "airport":
-                shown.append((mine.tree.GetInputDataObject(0, 0), al.Cloud(lidar.GetOutput()), f"{subject.sensor_name}, {words}"))
+                shown.append((mine.tree.GetInputDataObject(0, 0), al.Cloud(lidar.GetOutput()),
+                              f"{subject.sensor_name}, {words}"))
         ratios[subject.sensor_name] = paper_times.times(paper_times.on_a_kd_tree(subject), options.turns)
     tools.leave(options.out, "paper-times", *tools.columns(ratios))
     tools.leave(options.out, "table", *tools.columns(columns))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The paper's claim of time (Sec. 5.3): how much longer original ray tracing takes than the proposed method at the airport, with
-16 and 32 channels, and which of the three accelerations the ratio comes from. All rows run this project's code on one core and
-one k-D tree; only their settings differ. The tree has eight boxes a node: the descent of single rays through the binary tree of
-the preset Paper is slow enough to make the ratio 41. Takes half a minute and leaves a table.
+"""The paper's claim of time (Sec. 5.3): how much longer original ray tracing takes than the proposed method at the
+airport, with 16 and 32 channels, and which of the three accelerations the ratio comes from. All rows run this project's
+code on one core and one k-D tree; only their settings differ. The tree has eight boxes a node: the descent of single
+rays through the binary tree of the preset Paper is slow enough to make the ratio 41. Takes half a minute and leaves a
+table.
 
     Testing/Studies/run.py paper_times
 """
@@ -33,7 +34,8 @@ STEPS = {"original ray tracing": {**SINGLE, "BeamConstraint": False, "LightEnerg
          "batch collision detection": {"BeamConstraint": False, "LightEnergyConstraint": False},
          "beam constraint": {"LightEnergyConstraint": False},
          "light-energy constraint (proposed)": {},
-         "original with one reflection": {**SINGLE, "BeamConstraint": False, "LightEnergyConstraint": False, "NumberOfReflections": 1}}
+         "original with one reflection": {**SINGLE, "BeamConstraint": False, "LightEnergyConstraint": False,
+                                          "NumberOfReflections": 1}}
 PAPER = {"CorridorC16": "130/83 = 1.57", "Airport16": "1439/1122 = 1.28", "Airport32": "1831/1633 = 1.12"}
 
 
@@ -51,7 +53,8 @@ def times(subject, turns):
             runs[name].append(trade_runs.scan(subject, {**SCAN, **changed}, turn))
     cpu = {name: np.median([run.cpu for run in all_of_it]) for name, all_of_it in runs.items()}
     proposed = cpu["light-energy constraint (proposed)"]
-    rows = [(name, f"{seconds:.3f} s, {runs[name][0].rays:.0f} rays a beam, {seconds / proposed:.2f}") for name, seconds in cpu.items()]
+    rows = [(name, f"{seconds:.3f} s, {runs[name][0].rays:.0f} rays a beam, {seconds / proposed:.2f}")
+            for name, seconds in cpu.items()]
     return [("triangles", subject.tree.GetOutput().GetNumberOfCells()), *rows,
             ("original / proposed", f"{cpu['original ray tracing'] / proposed:.2f}"),
             ("the paper's original / proposed", PAPER[subject.sensor_name])]
@@ -61,7 +64,7 @@ def times(subject, turns):
 def main(options):
     found = {}
     for sensor in ("airport16", "airport32"):
-        subject = on_a_kd_tree(trade_runs.Subject("airport", sensor))
+        subject = on_a_kd_tree(trade_runs.subject_of("airport", sensor))
         found[subject.sensor_name] = times(subject, options.turns)
     tools.leave(options.out, "paper-times", *tools.columns(found))
     return found

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the paper's second reflection brings when it is read to the letter. Sec. 2.2 sends reflected light straight towards
-"adjacent targets of interest", with the whole f_sur of Eq. 8 in that direction; it says neither how many targets nor with what
-weight. The echo filter follows the mirror direction with f_s alone, and with f_d alone the mean over the beam's cone.
+"""What the paper's second reflection brings when it is read to the letter. Sec. 2.2 sends reflected light straight
+towards "adjacent targets of interest", with the whole f_sur of Eq. 8 in that direction; it says neither how many
+targets nor with what weight. The echo filter follows the mirror direction with f_s alone, and with f_d alone the mean
+over the beam's cone.
 
     Testing/Studies/run.py second_reflection
 
-The rays of a beam and what they hit are those of the tracer of more_reflections.py, the same for all readings. A target of a
-hit is the hit of another ray of the beam that it faces and sees. Readings:
+The rays of a beam and what they hit are those of the tracer of more_reflections.py, the same for all readings. A target
+of a hit is the hit of another ray of the beam that it faces and sees. Readings:
 
     here   f_s along the mirror direction, f_d towards targets, mean over the cone: the rules of the echo filter
     mean   f_sur towards targets, mean over the cone
@@ -17,7 +18,6 @@ Leaves a table. Two minutes."""
 import numpy as np
 
 import more_reflections as mr
-import running
 import tools
 from running import argument, study, whole
 
@@ -25,8 +25,8 @@ READINGS = ("here", "mean", "one", "all")
 
 
 class Beam(mr.Beam):
-    """Adds `second`: what comes back after two reflections in each reading, as a share of the pulse, and `beyond`: how many rays
-    return more than they reflect in each."""
+    """Adds `second`: what comes back after two reflections in each reading, as a share of the pulse, and `beyond`: how
+    many rays return more than they reflect in each."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
@@ -93,20 +93,21 @@ def columns(beams, limit, reading):
     change = 100 * abs(second - here)[before] / (direct + here)[before]
     return [("2 (% of Qs)", mr.percent(*mr.Measured.mean(second))),
             ("2, % of all received", f"{100 * second.sum() / (direct + second).sum():.2f}"),
-            ("beams above Qlow", f"{now.sum()} of {len(beams)}"), ("gained", (now & ~before).sum()), ("lost", (before & ~now).sum()),
-            ("of those above: changed by 1 %", (change > 1).sum()),
+            ("beams above Qlow", f"{now.sum()} of {len(beams)}"), ("gained", (now & ~before).sum()),
+            ("lost", (before & ~now).sum()), ("of those above: changed by 1 %", (change > 1).sum()),
             ("most change (%)", f"{change.max(initial=0):.1f}"),
             ("rays that return more than kd + ks", sum(beam.beyond[reading] for beam in beams))]
 
 
-@study(argument("--beams", type=whole(2, 1000000), default=2000, help="of the corridor, default 2000; four times as many of the airport"),
+@study(argument("--beams", type=whole(2, 1000000), default=2000,
+                help="of the corridor, default 2000; four times as many of the airport"),
        argument("--rays", type=whole(2, 100000), default=30, help="rays per beam, default 30"),
        argument("--seed", type=whole(0, 2**31 - 1), default=0, help="of the random numbers, default 0"))
 def main(options):
     rows = []
-    airport = mr.outdoors("Hongqiao, 16 channels", running.AIRPORT, "Airport16")
+    airport = mr.outdoors("Hongqiao, 16 channels", "airport", "Airport16")
     for count, subject in ((options.beams, mr.corridor()), (4 * options.beams, airport)):
         beams, limit = measure(subject, count, options.rays, options.seed)
         rows += [{"": f"{subject.name}: {reading}", **dict(columns(beams, limit, reading))} for reading in READINGS]
-    tools.leave(options.out, "table", list(rows[0]), [list(row.values()) for row in rows])
+    tools.leave(options.out, "second-reflection", list(rows[0]), [list(row.values()) for row in rows])
     return rows

@@ -7,8 +7,8 @@ place with its real beams, and compared with what it saw. Leaves tables (.csv, .
     Testing/Studies/run.py room --no-pictures --sensors xt32 --only-main
     Testing/Studies/run.py room --no-pictures --scans a.pcd b.las c.bin --poses poses.json --desk 0
 
-A scan is a file of one turn in the sensor's frame, or with the sensor's place in its header. Poses are
-{"a": {"T": [4 rows of 4 numbers]}, ...}, from the coordinates of the file to common ones; without one they are the same.
+A scan is a file of one turn in the sensor's frame, or with the sensor's place in its header. Poses are {"a": {"T": [4
+rows of 4 numbers]}, ...}, from the coordinates of the file to common ones; without one they are the same.
 
 Documentation/evidence/real-scans.md says what they are and what comes out.
 """
@@ -23,42 +23,32 @@ import room_data
 import room_surface as surface
 import running
 import tools
+from running import argument
 
 DESK = 1.2  # m around the middle of the sensors: what lay there differs from scan to scan
 SAME = 0.1  # m: a beam met the same thing in both scans
 FARTHEST = 9.0  # m, of the colours of the room's ranges
 
 
-def arguments(argv=None):
-    parser = tools.Parser(prog="run.py room", description=__doc__.split("\n\n")[0])
-    parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("AVIANLIDAR_DATA_DIR"),
-                        help="the data folder; it holds lidar_room")
-    parser.add_argument("--scans", nargs="+", type=running.file, help="files to take instead of the room's: .pcd, .las, .bin")
-    parser.add_argument("--poses", type=running.file, help="JSON, where the scans' coordinates lie in common ones")
-    parser.add_argument("--desk", type=running.finite, default=DESK,
-                        help=f"m around the middle of the sensors that are left out, default {DESK}")
-    parser.add_argument("--sensors", nargs="+", metavar="SCAN", help="which are simulated, by name of file, default all")
-    parser.add_argument("--only-main", action="store_true", help="no other surfaces and beamwidths to compare with")
-    tools.add_arguments(parser, "build/room")
-    options = parser.parse_args(argv)
+def complete(options):
+    """Adds the room's scans and poses, unless other scans are given, and the names of the scans to simulate."""
     options.published = None
     if options.scans:
         options.poses = room_data.read_poses(options.poses) if options.poses else {}
     else:
-        folder = pathlib.Path(options.data or "") / "lidar_room"
-        if not options.data or not folder.is_dir():
-            parser.error(f"there is no folder lidar_room in the data folder '{options.data or ''}'")
+        folder = pathlib.Path(options.data) / "lidar_room"
+        if not folder.is_dir():
+            raise ValueError(f"there is no folder lidar_room in the data folder '{options.data}'")
         options.scans, options.poses = room_data.room_files(folder)
         options.published = folder / room_data.MESH
     names = [file.stem for file in options.scans]
     if len(set(names)) < len(names):
-        parser.error(f"scans of the same name: {' '.join(names)}")
+        raise ValueError(f"scans of the same name: {' '.join(names)}")
     for wanted, what in ((options.sensors or [], "--sensors"), (options.poses, "--poses")):
         for name in wanted:
             if name not in names:
-                parser.error(f"{what}: there is no scan {name} among {' '.join(names)}")
+                raise ValueError(f"{what}: there is no scan {name} among {' '.join(names)}")
     options.sensors = options.sensors or names
-    return options
 
 
 class Room:
@@ -114,7 +104,8 @@ def other_runs(room, sensor, options):
         return rows
     distance = room.far_from_desk(surface.distance_surface([room.scans[n] for n in others],
                                                            [room.used[n] for n in others]))
-    return rows + [("VTK's signed distance", distance, half), ("the published mesh of all four", room.as_published(), half)]
+    return rows + [("VTK's signed distance", distance, half),
+                   ("the published mesh of all four", room.as_published(), half)]
 
 
 def fitted_row(room, sensor, options):
@@ -242,9 +233,9 @@ def leave_tables(result, names, folder):
         return lambda row: share(row[key], row["beyond the desk"])
 
     leave("summary", result.summary, ("", lambda row: ""), *keys(str, beams="beams"),
-          ("answered", lambda row: share(row["answered"], row["beams"])), *keys(str, **{"beyond the desk": "from beyond the desk"}),
-          ("with an echo in both", beyond("with both")), ("missed", beyond("missed")),
-          ("without surface on the axis", beyond("no surface on the axis")),
+          ("answered", lambda row: share(row["answered"], row["beams"])),
+          *keys(str, **{"beyond the desk": "from beyond the desk"}), ("with an echo in both", beyond("with both")),
+          ("missed", beyond("missed")), ("without surface on the axis", beyond("no surface on the axis")),
           ("missed from its own scan", beyond("missed from its own scan")), *keys(str, false="false"))
     leave("errors", result.errors, *keys(str, what="run", beams="beams"),
           *keys(cm, median="median (cm)", spread="spread (cm)", p05="5 % (cm)", p95="95 % (cm)"),
@@ -254,11 +245,14 @@ def leave_tables(result, names, folder):
           *keys("{:.2f}".format, hausdorff="Hausdorff (m)", density_aware_chamfer="density-aware Chamfer"))
     leave("parts", result.summary, ("", lambda row: ""), *keys(cm, **{
         "from the surface, median": "real points from the surface: median (cm)", "from the surface, 90 %": "90 % (cm)",
-        "beam against axis, spread": "beam against its axis: spread (cm)", "range noise": "range noise of the sensor (cm)",
+        "beam against axis, spread": "beam against its axis: spread (cm)",
+        "range noise": "range noise of the sensor (cm)",
         "moved": "fitted pose: moved (cm)"}), *keys("{:.2f}".format, turned="turned (deg)"))
     models = [key[5:] for key in result.intensity[0] if key.startswith("rank ")]
-    leave("intensity", [row for row in result.intensity if row["beams"] >= 100], *keys(str, region="region", beams="beams"),
-          *keys(lambda value: "-" if np.isnan(value) else f"{value:.2f}", **{f"rank {m}": f"rank correlation, {m}" for m in models},
+    leave("intensity", [row for row in result.intensity if row["beams"] >= 100],
+          *keys(str, region="region", beams="beams"),
+          *keys(lambda value: "-" if np.isnan(value) else f"{value:.2f}",
+                **{f"rank {m}": f"rank correlation, {m}" for m in models},
                 **{f"factor {m}": f"factor, {m}" for m in models}))
 
 
@@ -273,16 +267,27 @@ def draw(room, result, sensor, file):
     with tools.figure(file, 3, 1, figsize=(13, 8), dpi=90, sharex=True) as axes:
         for axis, (values, title, colors, low, high, label) in zip(axes, shown):
             there = np.isfinite(values)
-            dots = axis.scatter(scan.azimuth[there] % 360, scan.elevation[there], c=values[there], s=2.5, marker="s", linewidths=0, cmap=colors,
-                                vmin=low, vmax=high, rasterized=True)
+            dots = axis.scatter(scan.azimuth[there] % 360, scan.elevation[there], c=values[there], s=2.5, marker="s",
+                                linewidths=0, cmap=colors, vmin=low, vmax=high, rasterized=True)
             axis.set(facecolor="0.93", ylabel="elevation (deg)", xlim=(0, 360))
             axis.set_title(f"{room.names[sensor]}: {title}", loc="left", fontsize=12)
             axis.figure.colorbar(dots, ax=axis, label=label, pad=0.01)
         axis.set_xlabel("azimuth in the sensor's frame (deg)")
 
 
-def main(argv=None):
-    options = arguments(argv)
+@running.study(
+    argument("--data", default=os.environ.get("AVIANLIDAR_DATA_DIR", ""), help="the data folder; it holds lidar_room"),
+    argument("--scans", nargs="+", type=running.file, help="files to take instead of the room's: .pcd, .las, .bin"),
+    argument("--poses", type=running.file, help="JSON, where the scans' coordinates lie in common ones"),
+    argument("--desk", type=running.finite, default=DESK,
+             help=f"m around the middle of the sensors that are left out, default {DESK}"),
+    argument("--sensors", nargs="+", metavar="SCAN", help="which are simulated, by name of file, default all"),
+    argument("--only-main", action="store_true", help="no other surfaces and beamwidths to compare with"),
+    argument("--rays", type=running.whole(1, 1000000), default=100, help="rays per beam, default 100"),
+    argument("--threads", type=running.whole(0, 4096), default=0, help="default 0: all cores"),
+    argument("--no-pictures", action="store_true", help="tables alone"))
+def main(options):
+    complete(options)
     room, result = Room(options), Result()
     for sensor in options.sensors:
         study(room, sensor, options, result)
