@@ -65,7 +65,7 @@ OutputFile::OutputFile(const std::string& name)
   {
     this->Name = fs::path(this->Name).parent_path() / fs::read_symlink(this->Name);
   }
-  this->Name = fs::weakly_canonical(this->Name);
+  this->Name = fs::weakly_canonical(fs::absolute(this->Name));
   constexpr int mostParts = 16; // greatest number of writers of one file at the same time
   for (int i = 0; i < mostParts; ++i)
   {
