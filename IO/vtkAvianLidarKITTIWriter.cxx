@@ -29,7 +29,7 @@ Point PlaceOf(vtkPointSet* input, const fields::SensorPose& pose, vtkIdType i)
 {
   Point p;
   input->GetPoint(i, p.data());
-  failIf(!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]), "point ", i,
+  failIf(!avianlidar::isFinite({ p[0], p[1], p[2] }), "point ", i,
     " has a coordinate that is not finite");
   p = pose.toSensor(p);
   failIf(std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) >

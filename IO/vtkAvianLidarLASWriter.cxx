@@ -303,14 +303,9 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   notes.notes.push_back({ "las_rounding_bound", "m", { bound }, {} });
   std::vector<std::string> left;
   output.description = formats::toText(notes, formats::LasLongestVlr, left);
-  std::string list;
-  for (const std::string& name : left)
-  {
-    list += (list.empty() ? "'" : ", '") + name + "'";
-  }
   if (!left.empty())
   {
-    warn(" is without the field data " + list +
+    warn(" is without the field data " + fields::Quoted(left) +
       ": they do not fit into the 65535 bytes of a text area.");
   }
   formats::writeLas(file, output, measure, keepGoing);

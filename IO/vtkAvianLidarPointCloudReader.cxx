@@ -60,10 +60,8 @@ bool MoveToOrigin(Cloud& cloud, int zone)
   for (std::size_t i = 0; i < cloud.size(); ++i)
   {
     double* at = cloud.points.data() + 3 * i;
-    const formats::Point p{ at[0], at[1], at[2] };
-    const std::string wrong = GeodeticFrame::checkPoint(from, p);
-    avianlidar::failIf(!wrong.empty(), "point ", i, ": ", wrong);
-    const formats::Point moved = geodesy.convert(from, Frame::ENU, p);
+    const formats::Point moved =
+      fields::Carry(geodesy, from, Frame::ENU, { at[0], at[1], at[2] }, static_cast<vtkIdType>(i));
     std::copy(moved.begin(), moved.end(), at);
   }
   return true;

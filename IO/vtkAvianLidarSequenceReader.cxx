@@ -22,6 +22,11 @@
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,15 +40,14 @@ namespace formats = avianlidar::formats;
 namespace fs = std::filesystem;
 namespace names = vtkAvianLidarArrays;
 using avianlidar::failIf;
-using formats::Point;
 
 namespace
 {
 constexpr char TimesFile[] = "times.txt";
 constexpr char Label[] = "semantic_label";
 
-/// Rows of the 3 x 4 matrix from the sensor's frame (x forward, y left, z up) to the poses' frame.
-using Pose = std::array<double, 12>;
+/// Matrix from the sensor's frame (x forward, y left, z up) to the poses' frame.
+using Pose = glm::dmat4x3;
 
 /// Words of a line, at least one.
 struct Line
@@ -101,31 +105,11 @@ Pose PoseOf(const Line& line, std::size_t first)
   failIf(line.words.size() != first + 12, line.where, " has ", line.words.size() - first,
     " numbers, expected the 12 of a pose");
   Pose pose;
-  for (std::size_t i = 0; i < 12; ++i)
+  for (int i = 0; i < 12; ++i)
   {
-    pose[i] = line.NumberAt(first + i);
+    pose[i % 4][i / 4] = line.NumberAt(first + i); // rows one after the other
   }
   return pose;
-}
-
-Point Carry(const Pose& pose, const Point& p)
-{
-  Point carried;
-  for (std::size_t r = 0; r < 3; ++r)
-  {
-    const double* row = &pose[4 * r];
-    carried[r] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
-  }
-  return carried;
-}
-
-/// Applies the inverse of a pose that is a rotation and a translation.
-Point CarryBack(const Pose& pose, const Point& p)
-{
-  const Point d = { p[0] - pose[3], p[1] - pose[7], p[2] - pose[11] };
-  return { pose[0] * d[0] + pose[4] * d[1] + pose[8] * d[2],
-    pose[1] * d[0] + pose[5] * d[1] + pose[9] * d[2],
-    pose[2] * d[0] + pose[6] * d[1] + pose[10] * d[2] };
 }
 
 /// Transformation of a scan by the pose and calibration of the sequence, or, without a file of
@@ -154,18 +138,20 @@ public:
   }
 
   /// Transforms a point of KITTI's frame.
-  Point operator()(const Point& p) const
+  glm::dvec3 operator()(const glm::dvec3& p) const
   {
     if (!this->Of)
     {
-      return { -p[1], p[0], p[2] };
+      return { -p.y, p.x, p.z };
     }
-    return CarryBack(this->Calibration, Carry(*this->Of, Carry(this->Calibration, p)));
+    const Pose& c = this->Calibration; // a rotation and a translation
+    const glm::dvec3 placed = *this->Of * glm::dvec4(c * glm::dvec4(p, 1), 1);
+    return (placed - c[3]) * glm::dmat3(c);
   }
 
 private:
   std::optional<Pose> Of;
-  Pose Calibration{ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
+  Pose Calibration{ 1 };
 };
 
 /// Adds the eight corners and six sides of each box to `boxes`.
@@ -196,9 +182,9 @@ void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* box
       const double up = ((corner & 4) ? 0.5 : -0.5) * v[8];
       const double c = std::cos(v[9]);
       const double s = std::sin(v[9]);
-      const Point at =
+      const glm::dvec3 at =
         place({ v[3] + c * along - s * across, v[4] + s * along + c * across, v[5] + up });
-      points->InsertNextPoint(at.data());
+      points->InsertNextPoint(&at[0]);
     }
     constexpr int Sides[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
       { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
@@ -248,12 +234,13 @@ void ReadScan(vtkAlgorithm* self, const fs::path& folder, std::size_t scan, vtkP
   for (std::size_t i = 0; i < cloud.size(); ++i)
   {
     double* at = cloud.points.data() + 3 * i;
-    const Point moved = place({ at[1], -at[0], at[2] }); // KITTI's axes
-    std::copy(moved.begin(), moved.end(), at);
+    const glm::dvec3 moved = place({ at[1], -at[0], at[2] }); // KITTI's axes
+    std::copy_n(&moved[0], 3, at);
   }
   if (cloud.sensor)
   {
-    cloud.sensor = place({ 0.0, 0.0, 0.0 });
+    const glm::dvec3 sensor = place({ 0.0, 0.0, 0.0 });
+    cloud.sensor = formats::Point{ sensor.x, sensor.y, sensor.z };
   }
   vtkAvianLidarCloudFields::ToPolyData(cloud, points);
   vtkPointData* data = points->GetPointData();

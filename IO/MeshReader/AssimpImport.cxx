@@ -3,6 +3,7 @@
 
 #include "FormatFacts.h"
 #include "MeshFormats.h"
+#include "Vector.h"
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
@@ -13,6 +14,9 @@
 #include <assimp/metadata.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+
+#include <glm/mat4x3.hpp>
+#include <glm/mat4x4.hpp>
 
 #include <minizip/unzip.h>
 
@@ -151,43 +155,27 @@ private:
   Vec3 Offset{};
 };
 
-// 4 x 4 matrix of a node of the scene graph, rows one after the other. Assimp multiplies matrices
-// in single precision.
-using Transform = std::array<double, 16>;
-
-Transform operator*(const Transform& a, const aiMatrix4x4& m)
+// Returns a matrix in double precision. Assimp multiplies matrices in single precision.
+glm::dmat4 ToDouble(const aiMatrix4x4& m)
 {
-  const double b[16] = { m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4,
-    m.d1, m.d2, m.d3, m.d4 };
-  Transform c{};
-  for (int i = 0; i < 4; ++i)
-  {
-    for (int j = 0; j < 4; ++j)
-    {
-      for (int k = 0; k < 4; ++k)
-      {
-        c[4 * i + j] += a[4 * i + k] * b[4 * k + j];
-      }
-    }
-  }
-  return c;
+  return { { m.a1, m.b1, m.c1, m.d1 }, { m.a2, m.b2, m.c2, m.d2 }, { m.a3, m.b3, m.c3, m.d3 },
+    { m.a4, m.b4, m.c4, m.d4 } };
 }
 
-void AddMesh(const aiMesh& source, const Transform& t, Mesh& mesh)
+void AddMesh(const aiMesh& source, const glm::dmat4x3& t, Mesh& mesh)
 {
   const auto first = static_cast<std::int64_t>(mesh.points.size());
   double farthest = 0.0;
   for (unsigned int i = 0; i < source.mNumVertices; ++i)
   {
-    const double x = source.mVertices[i].x, y = source.mVertices[i].y, z = source.mVertices[i].z;
-    farthest = std::max({ farthest, std::abs(x), std::abs(y), std::abs(z) });
-    mesh.points.push_back({ t[0] * x + t[1] * y + t[2] * z + t[3],
-      t[4] * x + t[5] * y + t[6] * z + t[7], t[8] * x + t[9] * y + t[10] * z + t[11] });
+    const aiVector3D& v = source.mVertices[i];
+    farthest = std::max<double>({ farthest, std::abs(v.x), std::abs(v.y), std::abs(v.z) });
+    const glm::dvec3 p = t * glm::dvec4(v.x, v.y, v.z, 1);
+    mesh.points.push_back({ p.x, p.y, p.z });
   }
-  const double scale = std::max(
-    { std::hypot(t[0], t[4], t[8]), std::hypot(t[1], t[5], t[9]), std::hypot(t[2], t[6], t[10]) });
-  mesh.rounding = std::max({ mesh.rounding, scale * SpacingAt(farthest), SpacingAt(t[3]),
-    SpacingAt(t[7]), SpacingAt(t[11]) });
+  const double scale = std::max({ safeLength(t[0]), safeLength(t[1]), safeLength(t[2]) });
+  mesh.rounding = std::max({ mesh.rounding, scale * SpacingAt(farthest), SpacingAt(t[3].x),
+    SpacingAt(t[3].y), SpacingAt(t[3].z) });
   for (unsigned int i = 0; i < source.mNumFaces; ++i)
   {
     const aiFace& face = source.mFaces[i];
@@ -202,12 +190,12 @@ void AddMesh(const aiMesh& source, const Transform& t, Mesh& mesh)
   }
 }
 
-void AddNode(const aiScene& scene, const aiNode& node, const Transform& parent, Mesh& mesh)
+void AddNode(const aiScene& scene, const aiNode& node, const glm::dmat4& parent, Mesh& mesh)
 {
-  const Transform transform = parent * node.mTransformation;
+  const glm::dmat4 transform = parent * ToDouble(node.mTransformation);
   for (unsigned int i = 0; i < node.mNumMeshes; ++i)
   {
-    AddMesh(*scene.mMeshes[node.mMeshes[i]], transform, mesh);
+    AddMesh(*scene.mMeshes[node.mMeshes[i]], glm::dmat4x3(transform), mesh);
   }
   for (unsigned int i = 0; i < node.mNumChildren; ++i)
   {
@@ -508,7 +496,7 @@ Mesh ReadAssimpMesh(const std::string& file)
     unit *= FbxUnit(*scene);
     mesh.upAxis = TurnFbx(*scene);
   }
-  AddNode(*scene, *scene->mRootNode, { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, mesh);
+  AddNode(*scene, *scene->mRootNode, glm::dmat4(1), mesh);
   const Vec3& moved = files->GetOffset();
   for (Vec3& p : mesh.points)
   {

@@ -13,9 +13,9 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <iostream>
 #include <new>
+#include <string_view>
 #include <unordered_map>
 
 #include <signal.h>
@@ -31,17 +31,8 @@ struct PointHash
 {
   std::size_t operator()(const Vec3& p) const
   {
-    std::uint64_t hash = 0;
-    for (double value : p)
-    {
-      std::uint64_t bits;
-      // The sum makes -0 and 0 the same coordinate.
-      value += 0.0;
-      std::memcpy(&bits, &value, sizeof bits);
-      hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 32;
-    }
-    return static_cast<std::size_t>(hash);
+    const Vec3 sums{ p[0] + 0.0, p[1] + 0.0, p[2] + 0.0 }; // -0 becomes 0
+    return std::hash<std::string_view>()({ reinterpret_cast<const char*>(&sums), sizeof sums });
   }
 };
 
@@ -51,15 +42,12 @@ void MergePoints(Mesh& mesh)
   std::unordered_map<Vec3, std::int64_t, PointHash> index;
   index.reserve(mesh.points.size());
   std::vector<Vec3> points;
-  std::vector<std::int64_t> target(mesh.points.size());
-  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+  std::vector<std::int64_t> target;
+  for (const Vec3& point : mesh.points)
   {
-    const auto inserted = index.emplace(mesh.points[i], static_cast<std::int64_t>(points.size()));
-    if (inserted.second)
-    {
-      points.push_back(mesh.points[i]);
-    }
-    target[i] = inserted.first->second;
+    const auto [known, isNew] = index.emplace(point, static_cast<std::int64_t>(points.size()));
+    points.insert(points.end(), isNew ? 1 : 0, point);
+    target.push_back(known->second);
   }
   for (auto& triangle : mesh.triangles)
   {

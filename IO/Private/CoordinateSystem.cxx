@@ -21,17 +21,25 @@ namespace
 std::string wktOf(int code, bool ellipsoidalHeights)
 {
   OGRSpatialReference system;
-  char* text = nullptr;
-  // Without the second option GDAL cannot write heights above the ellipsoid as WKT 1.
-  const char* const options[] = { "FORMAT=WKT1_GDAL",
-    "ALLOW_ELLIPSOIDAL_HEIGHT_AS_VERTICAL_CRS=YES", nullptr };
-  const bool done = system.importFromEPSG(code) == OGRERR_NONE &&
-    (!ellipsoidalHeights || system.PromoteTo3D(nullptr) == OGRERR_NONE) &&
-    system.exportToWkt(&text, options) == OGRERR_NONE && text && *text;
-  const std::string wkt = done ? text : "";
-  CPLFree(text);
-  failIf(!done, "GDAL does not know EPSG:", code, " (is PROJ's database proj.db installed?)");
+  const bool isKnown = system.importFromEPSG(code) == OGRERR_NONE &&
+    (!ellipsoidalHeights || system.PromoteTo3D(nullptr) == OGRERR_NONE);
+  // Without the option GDAL cannot write heights above the ellipsoid as WKT 1.
+  constexpr const char* option = "ALLOW_ELLIPSOIDAL_HEIGHT_AS_VERTICAL_CRS=YES";
+  const std::string wkt = isKnown ? scene::WktOf(system, "FORMAT=WKT1_GDAL", option) : "";
+  failIf(wkt.empty(), "GDAL does not know EPSG:", code, " (is PROJ's database proj.db installed?)");
   return wkt;
+}
+
+/// Returns the system of a WKT, or an empty system if GDAL cannot read the text.
+OGRSpatialReference systemOf(const std::string& wkt)
+{
+  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  OGRSpatialReference system;
+  if (!wkt.empty() && system.importFromWkt(wkt.c_str()) != OGRERR_NONE)
+  {
+    system.Clear();
+  }
+  return system;
 }
 
 using Bytes = std::vector<unsigned char>;
@@ -114,13 +122,7 @@ std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& t
     const OGRSpatialReference* system = data ? data->GetSpatialRef() : nullptr;
     for (const char* format : { "FORMAT=WKT1_GDAL", "FORMAT=WKT2_2019" })
     {
-      char* text = nullptr;
-      const char* const options[] = { format, nullptr };
-      if (wkt.empty() && system && system->exportToWkt(&text, options) == OGRERR_NONE && text)
-      {
-        wkt = text;
-      }
-      CPLFree(text);
+      wkt = wkt.empty() && system ? scene::WktOf(*system, format) : wkt;
     }
   }
   VSIUnlink(name.c_str());
@@ -129,9 +131,8 @@ std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& t
 
 std::string foreignUnitOf(const std::string& wkt)
 {
-  OGRSpatialReference system;
-  CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
-  if (wkt.empty() || system.importFromWkt(wkt.c_str()) != OGRERR_NONE)
+  const OGRSpatialReference system = systemOf(wkt);
+  if (system.IsEmpty())
   {
     return {};
   }
@@ -147,12 +148,7 @@ std::string foreignUnitOf(const std::string& wkt)
 
 int utmZoneOf(const std::string& wkt)
 {
-  OGRSpatialReference system, world;
-  CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
-  if (wkt.empty() || system.importFromWkt(wkt.c_str()) != OGRERR_NONE)
-  {
-    return 0;
-  }
+  const OGRSpatialReference system = systemOf(wkt);
   const char* datum = system.GetAttrValue("DATUM");
   int north = 0;
   const int zone = system.GetUTMZone(&north);

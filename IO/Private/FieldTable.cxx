@@ -54,6 +54,61 @@ void appendValue(std::string& text, Scalar type, double value)
     : std::to_chars(digits, digits + sizeof digits, static_cast<std::int64_t>(stored));
   text.append(digits, end.ptr);
 }
+
+std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
+  const TableTargets& targets, const KeepGoing& keepGoing)
+{
+  TextLines lines(source, table.begin);
+  std::string line;
+  unsigned char bytes[8];
+  for (std::uint64_t i = 0; i < table.points; ++i)
+  {
+    do
+    {
+      failIf(!lines.get(line), "it is cut short: it says that it has ", table.points,
+        " points, and has ", i);
+    } while (line.find_first_not_of(" \t") == std::string::npos);
+    std::istringstream words(line);
+    std::string word;
+    for (std::size_t f = 0; f < table.fields.size(); ++f)
+    {
+      for (std::uint64_t c = 0; c < table.fields[f].count; ++c)
+      {
+        failIf(!(words >> word), "point ", i, " has too few values");
+        wordToBytes(word, table.fields[f].type, bytes);
+        targets[f](i * table.fields[f].count + c, bytes);
+      }
+    }
+    failIf(bool(words >> word), "point ", i, " has too many values");
+    goOn(keepGoing, i, table.points);
+  }
+  return lines.position();
+}
+
+std::uint64_t readBinaryRows(ByteSource& source, const FieldTable& table,
+  const TableTargets& targets, const KeepGoing& keepGoing)
+{
+  unsigned char turned[8];
+  forEachRecord(source, table.begin, table.length(), table.points,
+    [&](std::uint64_t i, const unsigned char* bytes)
+    {
+      for (std::size_t f = 0; f < table.fields.size(); ++f)
+      {
+        const std::size_t size = sizeOf(table.fields[f].type);
+        for (std::uint64_t c = 0; c < table.fields[f].count; ++c)
+        {
+          if (table.bigEndian)
+          {
+            std::reverse_copy(bytes, bytes + size, turned);
+          }
+          targets[f](i * table.fields[f].count + c, table.bigEndian ? turned : bytes);
+          bytes += size;
+        }
+      }
+      goOn(keepGoing, i, table.points);
+    });
+  return table.begin + table.length() * table.points;
+}
 }
 
 std::uint64_t FieldTable::length() const
@@ -66,11 +121,11 @@ std::uint64_t FieldTable::length() const
   return bytes;
 }
 
-void FieldTable::checkLength(ByteSource& source, bool ascii) const
+void FieldTable::checkLength(ByteSource& source) const
 {
   std::uint64_t room = source.size() - this->begin;
   std::uint64_t least = this->length();
-  if (ascii)
+  if (this->ascii)
   {
     // Every value has a digit and a separator, and only the last separator may be missing.
     room += 1;
@@ -122,58 +177,19 @@ TableTargets targetsOf(const FieldTable& table, Cloud& to)
   return targets;
 }
 
-std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
-  const TableTargets& targets, const KeepGoing& keepGoing)
-{
-  TextLines lines(source, table.begin);
-  std::string line;
-  unsigned char bytes[8];
-  for (std::uint64_t i = 0; i < table.points; ++i)
-  {
-    do
-    {
-      failIf(!lines.get(line), "it is cut short: it says that it has ", table.points,
-        " points, and has ", i);
-    } while (line.find_first_not_of(" \t") == std::string::npos);
-    std::istringstream words(line);
-    std::string word;
-    for (std::size_t f = 0; f < table.fields.size(); ++f)
-    {
-      for (std::uint64_t c = 0; c < table.fields[f].count; ++c)
-      {
-        failIf(!(words >> word), "point ", i, " has too few values");
-        wordToBytes(word, table.fields[f].type, bytes);
-        targets[f](i * table.fields[f].count + c, bytes);
-      }
-    }
-    failIf(bool(words >> word), "point ", i, " has too many values");
-    goOn(keepGoing, i, table.points);
-  }
-  return lines.position();
-}
-
-void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
+std::uint64_t readRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
   const KeepGoing& keepGoing)
 {
-  unsigned char turned[8];
-  forEachRecord(source, table.begin, table.length(), table.points,
-    [&](std::uint64_t i, const unsigned char* bytes)
-    {
-      for (std::size_t f = 0; f < table.fields.size(); ++f)
-      {
-        const std::size_t size = sizeOf(table.fields[f].type);
-        for (std::uint64_t c = 0; c < table.fields[f].count; ++c)
-        {
-          if (table.bigEndian)
-          {
-            std::reverse_copy(bytes, bytes + size, turned);
-          }
-          targets[f](i * table.fields[f].count + c, table.bigEndian ? turned : bytes);
-          bytes += size;
-        }
-      }
-      goOn(keepGoing, i, table.points);
-    });
+  return table.ascii ? readAsciiRows(source, table, targets, keepGoing)
+                     : readBinaryRows(source, table, targets, keepGoing);
+}
+
+void addComments(const FieldTable& table, Cloud& cloud)
+{
+  for (const std::string& comment : table.comments)
+  {
+    cloud.notes.push_back({ "comment", "", {}, { comment } });
+  }
 }
 
 void dropEmptyCells(Cloud& cloud)

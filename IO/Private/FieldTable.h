@@ -28,14 +28,16 @@ struct FieldTable
   std::vector<TableField> fields;
   std::uint64_t points = 0;
   std::uint64_t begin = 0; ///< offset of the rows, bytes
+  bool ascii = false;
   bool bigEndian = false;
+  std::vector<std::string> comments;
 
   /// Returns the size of a point in binary rows, bytes.
   std::uint64_t length() const;
 
   /// Throws FormatError unless the file is long enough for the points. Must be called before memory
   /// for the points is allocated.
-  void checkLength(ByteSource& source, bool ascii) const;
+  void checkLength(ByteSource& source) const;
 };
 
 /// For each field, a function that stores one value from its little-endian bytes. `index` counts
@@ -47,16 +49,17 @@ using TableTargets = std::vector<std::function<void(std::uint64_t index, const u
 /// missing.
 TableTargets targetsOf(const FieldTable& table, Cloud& to);
 
-/// Reads the rows. Throws FormatError if rows are missing, or if a row is too short or too long or
-/// has a word that is not a number.
+/// Reads the rows, text or binary. Throws FormatError if rows are missing, or if a row of text is
+/// too short or too long or has a word that is not a number.
 /// @return offset of the end of the rows in the file, bytes
-std::uint64_t readAsciiRows(ByteSource& source, const FieldTable& table,
-  const TableTargets& targets, const KeepGoing& keepGoing);
-void readBinaryRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
+std::uint64_t readRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
   const KeepGoing& keepGoing);
 
 /// Leaves out the points whose coordinates are not finite.
 void dropEmptyCells(Cloud& cloud);
+
+/// Adds the comments of a file to the notes of its cloud.
+void addComments(const FieldTable& table, Cloud& cloud);
 
 /// Rows to be written.
 struct TableOutput

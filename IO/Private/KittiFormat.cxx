@@ -77,7 +77,7 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
   if (points.size() % PointSize != 0)
   {
     fail("its length is ", points.size(), " bytes, expected a multiple of 16: four float32 a point",
-      mayHaveFive(points) ? "; it has " : "", mayHaveFive(points) ? LongPoints : "");
+      mayHaveFive(points) ? std::string("; it has ") + LongPoints : "");
   }
   const std::uint64_t n = points.size() / PointSize;
   const std::uint64_t labelBytes = labels ? labels->size() : n * LabelSize;

@@ -152,10 +152,6 @@ void writeLas(
 /// Returns a name of at most LasLongestName bytes: whole UTF-8 characters of `name`, then `ending`.
 std::string cutName(const std::string& name, const std::string& ending = {});
 
-/// Returns the description of an array for the extra bytes of a file: words and [unit], at most 31
-/// bytes.
-std::string describeExtraBytes(const Field& field);
-
 /// Reads a cloud. Throws FormatError if the file is not a LAS file, has another version or format,
 /// or is cut short.
 Cloud readLas(ByteSource& source, const KeepGoing& keepGoing);

@@ -52,17 +52,6 @@ std::string textOf(const unsigned char* bytes, std::size_t length)
   return std::string(bytes, end);
 }
 
-void readAxes(const Bytes& h, Header& header)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    header.axes[axis].scale = load<double>(h.data() + 131 + 8 * axis);
-    header.axes[axis].offset = load<double>(h.data() + 155 + 8 * axis);
-    failIf(!std::isfinite(header.axes[axis].scale) || !std::isfinite(header.axes[axis].offset),
-      "a scale or an offset of its coordinates is not finite");
-  }
-}
-
 Header readHeader(ByteSource& source)
 {
   const Bytes h = source.bytes(
@@ -80,7 +69,6 @@ Header readHeader(ByteSource& source)
   header.compressed = (h[104] & 0xC0) != 0;
   header.layout = layoutOf(h[104] & 0x3F, load<std::uint16_t>(h.data() + 105));
   header.points = load<std::uint32_t>(h.data() + 107);
-  readAxes(h, header);
   if (header.minor >= 4 && h.size() == LasHeaderSize && header.size >= LasHeaderSize)
   {
     header.evlrsAt = load<std::uint64_t>(h.data() + 235);
@@ -89,8 +77,13 @@ Header readHeader(ByteSource& source)
     const auto points = load<std::uint64_t>(h.data() + 247);
     header.points = points > 0 ? points : header.points;
   }
-  for (const LasAxis& axis : header.axes)
+  for (int i = 0; i < 3; ++i)
   {
+    LasAxis& axis = header.axes[i];
+    axis.scale = load<double>(h.data() + 131 + 8 * i);
+    axis.offset = load<double>(h.data() + 155 + 8 * i);
+    failIf(!std::isfinite(axis.scale) || !std::isfinite(axis.offset),
+      "a scale or an offset of its coordinates is not finite");
     failIf(header.points > 0 && axis.scale == 0.0, "a scale of its coordinates is 0");
   }
   if (header.compressed)
@@ -432,7 +425,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   {
     checkLaz(source, laz);
   }
-  requireMemoryFor(header.points, header.layout.length);
+  requireMemoryFor(header.points, length);
   Columns columns(header, records.fields, cloud);
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
@@ -445,7 +438,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   }
   else
   {
-    forEachRecord(source, header.data, header.layout.length, header.points, take);
+    forEachRecord(source, header.data, length, header.points, take);
   }
   columns.finish();
   return cloud;

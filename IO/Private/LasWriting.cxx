@@ -67,6 +67,31 @@ int typeCode(Scalar type)
   return codes[static_cast<int>(type)];
 }
 
+/// Returns a description of an array of this project in a few words.
+const char* wordsFor(const std::string& name)
+{
+  for (const vtkAvianLidarArrays::Name& known : vtkAvianLidarArrays::CloudArrays)
+  {
+    if (name == known.name)
+    {
+      return known.words;
+    }
+  }
+  return "";
+}
+
+/// Returns the description of an array for the extra bytes of a file: words and [unit], at most 31
+/// bytes.
+std::string describeExtraBytes(const Field& field)
+{
+  constexpr std::size_t room = 31;
+  const std::string unit = field.unit.empty() ? "" : "[" + field.unit + "]";
+  std::string words = wordsFor(field.name);
+  const std::size_t space = unit.size() + 1 < room ? room - unit.size() - 1 : 0;
+  words = words.substr(0, space);
+  return cutText(words.empty() || unit.empty() ? words + unit : words + " " + unit, room);
+}
+
 Bytes describeAll(const std::vector<Field>& fields)
 {
   Bytes all(fields.size() * LasExtraBytesSize);
@@ -116,23 +141,18 @@ void encodePoint(const LasOutput& output, const std::array<LasAxis, 3>& axes, st
   }
 }
 
-int formatOf(const LasOutput& output)
-{
-  return output.colour ? 7 : 6;
-}
-
-std::size_t recordLength(const LasOutput& output)
+LasLayout layoutFor(const LasOutput& output)
 {
   std::size_t length = output.colour ? 36 : 30;
   for (const Field& field : output.extra)
   {
     length += sizeOf(field.type);
   }
-  return length;
+  return layoutOf(output.colour ? 7 : 6, length);
 }
 
-Bytes makeHeader(
-  const LasOutput& output, const LasMeasure& measure, std::size_t vlrs, std::size_t vlrBytes)
+Bytes makeHeader(const LasOutput& output, const LasMeasure& measure, const LasLayout& layout,
+  std::size_t vlrs, std::size_t vlrBytes)
 {
   const auto& axes = measure.axes;
   Bytes header(LasHeaderSize);
@@ -152,8 +172,8 @@ Bytes makeHeader(
   put(header, 94, static_cast<std::uint16_t>(LasHeaderSize));
   put(header, 96, static_cast<std::uint32_t>(LasHeaderSize + vlrBytes));
   put(header, 100, static_cast<std::uint32_t>(vlrs));
-  header[104] = static_cast<unsigned char>(formatOf(output) | (output.compressed ? LazFlag : 0));
-  put(header, 105, static_cast<std::uint16_t>(recordLength(output)));
+  header[104] = static_cast<unsigned char>(layout.format | (output.compressed ? LazFlag : 0));
+  put(header, 105, static_cast<std::uint16_t>(layout.length));
   for (int axis = 0; axis < 3; ++axis)
   {
     put(header, 131 + 8 * axis, axes[axis].scale);
@@ -168,34 +188,11 @@ Bytes makeHeader(
   }
   return header;
 }
-
-/// Returns a description of an array of this project in a few words.
-const char* wordsFor(const std::string& name)
-{
-  for (const vtkAvianLidarArrays::Name& known : vtkAvianLidarArrays::CloudArrays)
-  {
-    if (name == known.name)
-    {
-      return known.words;
-    }
-  }
-  return "";
-}
 }
 
 std::string cutName(const std::string& name, const std::string& ending)
 {
   return cutText(name, LasLongestName - ending.size()) + ending;
-}
-
-std::string describeExtraBytes(const Field& field)
-{
-  constexpr std::size_t room = 31;
-  const std::string unit = field.unit.empty() ? "" : "[" + field.unit + "]";
-  std::string words = wordsFor(field.name);
-  const std::size_t space = unit.size() + 1 < room ? room - unit.size() - 1 : 0;
-  words = words.substr(0, space);
-  return cutText(words.empty() || unit.empty() ? words + unit : words + " " + unit, room);
 }
 
 std::int32_t LasAxis::encode(double coordinate) const
@@ -276,12 +273,12 @@ void writeLas(
     add(3, "LASF_Spec", "Text area description",
       Bytes(output.description.begin(), output.description.end()));
   }
-  const LasLayout layout = layoutOf(formatOf(output), recordLength(output));
+  const LasLayout layout = layoutFor(output);
   if (output.compressed)
   {
     add(LazRecord, LazUser, "LASzip", lazRecordOf(layout));
   }
-  file.write(makeHeader(output, measure, count, vlrs.size()));
+  file.write(makeHeader(output, measure, layout, count, vlrs.size()));
   file.write(vlrs);
   if (output.compressed)
   {
@@ -294,15 +291,14 @@ void writeLas(
     return;
   }
 
-  const std::size_t length = layout.length;
   Bytes block;
   for (std::int64_t first = 0; first < output.size; first += PointsPerBlock)
   {
     const std::int64_t end = std::min(output.size, first + PointsPerBlock);
-    block.assign(static_cast<std::size_t>(end - first) * length, 0);
+    block.assign(static_cast<std::size_t>(end - first) * layout.length, 0);
     for (std::int64_t i = first; i < end; ++i)
     {
-      encodePoint(output, measure.axes, i, block.data() + (i - first) * length);
+      encodePoint(output, measure.axes, i, block.data() + (i - first) * layout.length);
     }
     file.write(block);
     goOn(keepGoing, first, output.size, 0.3, 1.0);

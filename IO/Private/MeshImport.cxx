@@ -185,11 +185,7 @@ private:
   std::string HowItEnded()
   {
     int status = 0;
-    pid_t ended = 0;
-    do
-    {
-      ended = waitpid(this->Pid, &status, 0);
-    } while (ended < 0 && errno == EINTR);
+    const pid_t ended = TEMP_FAILURE_RETRY(waitpid(this->Pid, &status, 0));
     this->Pid = -1;
     // The program's status is unknown if this process ignores SIGCHLD.
     if (ended <= 0 || !WIFSIGNALED(status))

@@ -18,17 +18,14 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// Greatest number of writers of one file at the same time. The writer that ends last gives the
-/// contents.
-constexpr int MostParts = 16;
+constexpr const char* Unopened = "cannot be opened for writing";
 constexpr const char* Unwritten = "cannot be written to its end";
 
 /// Opens and locks a part. Returns the descriptor, or -1 on failure or if another writer holds the
 /// part.
 int hold(const std::string& part, int flags, unsigned int mode)
 {
-  const int file =
-    open(part.c_str(), flags | O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, mode & ALLPERMS);
+  const int file = open(part.c_str(), flags | O_RDWR | O_CLOEXEC | O_NOFOLLOW, mode & ALLPERMS);
   if (file < 0)
   {
     return -1;
@@ -47,12 +44,6 @@ int hold(const std::string& part, int flags, unsigned int mode)
   return -1;
 }
 
-/// Exchanges the names of two files. Returns false if the file system cannot exchange names.
-bool exchangeNames(const std::string& one, const std::string& two)
-{
-  return renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, two.c_str(), RENAME_EXCHANGE) == 0;
-}
-
 /// Throws FormatError with the reason of the system if a call failed.
 void requireDone(bool isDone, const char* problem)
 {
@@ -66,19 +57,17 @@ void requireDone(bool isDone, const char* problem)
 OutputFile::OutputFile(const std::string& name)
   : Name(name)
 {
-  std::error_code ignored;
-  // The target of a symbolic link is replaced, not the link.
-  constexpr int mostLinks = 40;
-  for (int i = 0; i < mostLinks && fs::is_symlink(this->Name, ignored); ++i)
-  {
-    const fs::path target = fs::read_symlink(this->Name, ignored);
-    this->Name = (fs::path(this->Name).parent_path() / target).string();
-  }
   struct stat old = {};
-  failIf(stat(this->Name.c_str(), &old) == 0 && !S_ISREG(old.st_mode),
-    "it exists and is not a regular file");
+  requireDone(stat(name.c_str(), &old) == 0 || errno == ENOENT, Unopened);
+  failIf(old.st_mode && !S_ISREG(old.st_mode), "it exists and is not a regular file");
   this->Mode = old.st_mode;
-  for (int i = 0; i < MostParts; ++i)
+  while (fs::is_symlink(this->Name)) // the target of a link is replaced, not the link
+  {
+    this->Name = fs::path(this->Name).parent_path() / fs::read_symlink(this->Name);
+  }
+  this->Name = fs::weakly_canonical(fs::absolute(this->Name));
+  constexpr int mostParts = 16; // greatest number of writers of one file at the same time
+  for (int i = 0; i < mostParts; ++i)
   {
     const std::string part = this->Name + ".avianpart" + std::to_string(i);
     const int abandoned = hold(part, 0, 0);
@@ -95,16 +84,13 @@ OutputFile::OutputFile(const std::string& name)
       this->Part = part;
     }
   }
-  requireDone(this->File, "cannot be opened for writing");
+  requireDone(this->File, Unopened);
 }
 
 OutputFile::~OutputFile()
 {
-  if (this->File)
-  {
-    std::remove(this->Part.c_str());
-    std::fclose(this->File);
-  }
+  std::remove(this->Part.c_str());
+  std::fclose(this->File);
 }
 
 void OutputFile::write(const void* bytes, std::size_t count)
@@ -117,11 +103,6 @@ void OutputFile::seek(std::uint64_t at)
   requireDone(fseeko(this->File, static_cast<off_t>(at), SEEK_SET) == 0, Unwritten);
 }
 
-bool OutputFile::isSameAs(const OutputFile& other) const
-{
-  return fs::weakly_canonical(this->Name) == fs::weakly_canonical(other.Name);
-}
-
 void OutputFile::commit()
 {
   this->finish();
@@ -132,10 +113,12 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 {
   first.finish();
   second.finish();
-  // The old file is kept under the name of the part.
-  const bool isKept = exchangeNames(first.Part, first.Name);
-  std::error_code ignored;
-  const bool isNew = !isKept && !fs::exists(first.Name, ignored);
+  const auto exchange = [&]
+  {
+    return renameat2(AT_FDCWD, first.Part.c_str(), AT_FDCWD, first.Name.c_str(), RENAME_EXCHANGE) ==
+      0;
+  };
+  const bool isKept = exchange(); // whether the part is now the old file
   if (!isKept)
   {
     first.takeName();
@@ -146,29 +129,29 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
   }
   catch (const FormatError& error)
   {
-    if (isKept ? exchangeNames(first.Part, first.Name)
-               : isNew && std::remove(first.Name.c_str()) == 0)
-    {
-      throw;
-    }
-    fail(error.what(), "; the old ", first.Name, " is replaced already");
+    const bool isUndone = isKept ? exchange() : !first.Mode && std::remove(first.Name.c_str()) == 0;
+    failIf(!isUndone, error.what(), "; the old ", first.Name, " is replaced already");
+    throw;
   }
 }
 
+/// Writes the contents of the part to the disk.
 void OutputFile::finish()
 {
-  // Writing of buffered bytes may fail here or, on some file systems, when a descriptor is closed.
-  requireDone(std::fflush(this->File) == 0 && close(dup(fileno(this->File))) == 0, Unwritten);
+  requireDone(std::fflush(this->File) == 0 && fsync(fileno(this->File)) == 0, Unwritten);
   if (this->Mode)
   {
     fchmod(fileno(this->File), this->Mode & ALLPERMS);
   }
 }
 
+/// Renames the part and writes the names of the folder to the disk.
 void OutputFile::takeName()
 {
   requireDone(std::rename(this->Part.c_str(), this->Name.c_str()) == 0, "cannot be given its name");
-  std::fclose(this->File);
-  this->File = nullptr;
+  this->Part.clear();
+  const int folder = open(fs::path(this->Name).parent_path().c_str(), O_RDONLY | O_CLOEXEC);
+  fsync(folder);
+  close(folder);
 }
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OutputFile.h
- * @brief Writes a file as a whole or not at all.
+ * @brief Writes a file as a whole or not at all. Python's _disk.py does the same.
  *
  * Bytes are written to a temporary file in the same folder, called the part. The name of the part
- * is the name of the file with .avianpart and a number. commit() gives the part the name of the
- * file. Without commit() the part is removed and an older file of that name is unchanged. A part is
- * locked (flock) while it is written. The part of a killed process is not locked. The next
- * OutputFile of the same name removes such a part.
+ * is the name of the file with .avianpart and a number. commit() writes the part to the disk and
+ * gives it the name of the file. Without commit() the part is removed and an older file of that
+ * name is unchanged. A part is locked (flock) while it is written. The part of a killed process is
+ * not locked. The next OutputFile of the same name removes such a part.
  */
 #ifndef AvianLidarOutputFile_h
 #define AvianLidarOutputFile_h
@@ -40,25 +40,24 @@ public:
   void seek(std::uint64_t at);
 
   /// Returns whether the other file has the same name.
-  bool isSameAs(const OutputFile& other) const;
+  bool isSameAs(const OutputFile& other) const { return this->Name == other.Name; }
 
   /// Ends the part and gives the part the name of the file, and the permissions of the file that
   /// the part replaces.
   void commit();
 
-  /// Commits two files, or throws FormatError and commits no file. If the file system cannot
-  /// exchange two names, the first file may already be replaced. The error then names the replaced
-  /// file.
+  /// Commits two files of one folder, or throws FormatError and commits no file. If the file system
+  /// cannot exchange two names, the first file may already be replaced. The error then names the
+  /// replaced file.
   static void commitBoth(OutputFile& first, OutputFile& second);
 
 private:
-  /// Writes the bytes that are still in the buffer.
   void finish();
   void takeName();
 
-  std::string Name;
-  std::string Part;
-  std::FILE* File = nullptr; ///< stream of the part, locked until the part is renamed or removed
+  std::string Name;          ///< absolute name of the file, without links
+  std::string Part;          ///< name of the part; empty when the part has the name of the file
+  std::FILE* File = nullptr; ///< stream of the part, which is locked until this object is destroyed
   unsigned int Mode = 0;     ///< st_mode of the file that is replaced; 0 without such a file
 };
 }

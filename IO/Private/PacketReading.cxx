@@ -39,8 +39,7 @@ unsigned bigEndian16(const unsigned char* bytes)
 std::uint32_t load32(const unsigned char* bytes, bool turned)
 {
   const auto value = load<std::uint32_t>(bytes);
-  return !turned ? value
-                 : value >> 24 | (value >> 8 & 0xFF00) | (value << 8 & 0xFF0000) | value << 24;
+  return turned ? __builtin_bswap32(value) : value;
 }
 
 std::uint32_t load16(const unsigned char* bytes, bool turned)

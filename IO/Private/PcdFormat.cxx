@@ -3,9 +3,9 @@
 #include "TextLines.h"
 
 #include <lzf.h>
+#include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -18,15 +18,12 @@ namespace avianlidar::formats
 {
 namespace
 {
+using vtksys::SystemTools;
+
 constexpr std::uint64_t GreatestCount = 65536;
 
 /// Words of each key of a header, before they are checked.
 using Words = std::map<std::string, std::vector<std::string>>;
-
-char upper(unsigned char c)
-{
-  return static_cast<char>(std::toupper(c));
-}
 
 std::uint64_t oneOf(Words& words, const char* key, std::uint64_t otherwise)
 {
@@ -46,8 +43,8 @@ void understandFields(Words& words, PcdHeader& header)
     TableField field;
     field.name = words["FIELDS"][i];
     const auto size = numberOf<std::uint64_t>(sizes[i], "SIZE");
-    const std::string& type = types[i];
-    const auto scalar = type.size() == 1 ? scalarOf(upper(type[0]), size) : std::nullopt;
+    const std::string type = SystemTools::UpperCase(types[i]);
+    const auto scalar = type.size() == 1 ? scalarOf(type[0], size) : std::nullopt;
     failIf(!scalar, "the field ", shown(field.name), " has TYPE ", shown(types[i]), " and SIZE ",
       shown(sizes[i]), ", expected I or U with 1, 2, 4, 8 or F with 4, 8");
     field.type = *scalar;
@@ -62,13 +59,12 @@ void understandFields(Words& words, PcdHeader& header)
 
 void understandSize(Words& words, PcdHeader& header)
 {
-  header.width = oneOf(words, "WIDTH", 0);
-  header.height = oneOf(words, "HEIGHT", 1);
+  const std::uint64_t width = oneOf(words, "WIDTH", 0), height = oneOf(words, "HEIGHT", 1);
   const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  failIf(header.width > most || header.height > most, "WIDTH or HEIGHT is above 4294967295");
-  header.points = oneOf(words, "POINTS", header.width * header.height);
-  failIf(!words["WIDTH"].empty() && header.points != header.width * header.height, "POINTS is ",
-    header.points, ", expected WIDTH times HEIGHT, ", header.width * header.height);
+  failIf(width > most || height > most, "WIDTH or HEIGHT is above 4294967295");
+  header.points = oneOf(words, "POINTS", width * height);
+  failIf(!words["WIDTH"].empty() && header.points != width * height, "POINTS is ", header.points,
+    ", expected WIDTH times HEIGHT, ", width * height);
   const std::vector<std::string>& viewpoint = words["VIEWPOINT"];
   failIf(!viewpoint.empty() && viewpoint.size() != header.viewpoint.size(),
     "VIEWPOINT does not have seven values");
@@ -79,15 +75,13 @@ void understandSize(Words& words, PcdHeader& header)
   }
 }
 
-PcdData understandData(std::string kind)
+void understandData(const std::string& word, PcdHeader& header)
 {
-  std::transform(kind.begin(), kind.end(), kind.begin(),
-    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr const char* kinds[] = { "ascii", "binary", "binary_compressed" }; // as in PcdData
-  const auto* found = std::find(std::begin(kinds), std::end(kinds), kind);
-  failIf(found == std::end(kinds), "DATA is ", shown(kind),
+  const std::string kind = SystemTools::LowerCase(word);
+  header.ascii = kind == "ascii";
+  header.compressed = kind == "binary_compressed";
+  failIf(!header.ascii && !header.compressed && kind != "binary", "DATA is ", shown(kind),
     ", expected ascii, binary or binary_compressed");
-  return static_cast<PcdData>(found - kinds);
 }
 
 using Bytes = std::vector<unsigned char>;
@@ -133,11 +127,20 @@ void takeCompressed(const Bytes& data, const PcdHeader& header, const TableTarge
   }
 }
 
-/// Returns whether a row follows the last row of a binary file. PCL fills the last page of a file
-/// with zeros.
-bool hasOneMoreRow(ByteSource& source, const PcdHeader& header)
+/// Returns whether a row follows the last row, which ends at the offset `end`. PCL fills the last
+/// page of a binary file with zeros.
+bool hasOneMoreRow(ByteSource& source, const PcdHeader& header, std::uint64_t end)
 {
-  const std::uint64_t end = header.begin + header.points * header.length();
+  if (header.ascii)
+  {
+    TextLines rest(source, end);
+    bool hasWords = false;
+    for (std::string line; !hasWords && rest.get(line);)
+    {
+      hasWords = line.find_first_not_of(" \t") != std::string::npos;
+    }
+    return hasWords;
+  }
   if (!source.holds(end, header.length()))
   {
     return false;
@@ -188,10 +191,14 @@ PcdHeader readPcdHeader(ByteSource& source)
     std::istringstream text(line);
     std::string key, word;
     text >> key;
-    std::transform(key.begin(), key.end(), key.begin(), upper);
+    key = SystemTools::UpperCase(key);
     if (!key.empty() && key[0] == '#')
     {
-      header.comments.push_back(line.substr(line.find('#') + 1));
+      const std::string comment = line.substr(line.find('#') + 1);
+      if (comment.find(".PCD v") > 1) // not the first line of every PCD file
+      {
+        header.comments.push_back(comment);
+      }
       continue;
     }
     key = key == "COLUMNS" ? "FIELDS" : key; // key of version 0.5
@@ -207,12 +214,12 @@ PcdHeader readPcdHeader(ByteSource& source)
     }
   }
   header.begin = lines.position();
-  header.data = understandData(words["DATA"][0]);
+  understandData(words["DATA"][0], header);
   understandFields(words, header);
   understandSize(words, header);
-  if (header.data != PcdData::Compressed) // decompress() checks compressed files
+  if (!header.compressed) // decompress() checks compressed files
   {
-    header.checkLength(source, header.data == PcdData::Ascii);
+    header.checkLength(source);
   }
   return header;
 }
@@ -220,34 +227,18 @@ PcdHeader readPcdHeader(ByteSource& source)
 Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
 {
   const PcdHeader header = readPcdHeader(source);
-  if (header.data != PcdData::Compressed)
+  if (!header.compressed)
   {
     requireMemoryFor(header.points, header.length());
   }
-  const Bytes plain = header.data == PcdData::Compressed ? decompress(source, header) : Bytes();
+  const Bytes plain = header.compressed ? decompress(source, header) : Bytes();
   Cloud cloud;
   const TableTargets targets = targetsOf(header, cloud);
-  bool hasMore = false;
-  std::string line;
-  switch (header.data)
+  if (header.compressed)
   {
-    case PcdData::Ascii:
-    {
-      TextLines rest(source, readAsciiRows(source, header, targets, keepGoing));
-      while (!hasMore && rest.get(line))
-      {
-        hasMore = line.find_first_not_of(" \t") != std::string::npos;
-      }
-      break;
-    }
-    case PcdData::Binary:
-      readBinaryRows(source, header, targets, keepGoing);
-      hasMore = hasOneMoreRow(source, header);
-      break;
-    default:
-      takeCompressed(plain, header, targets, keepGoing);
+    takeCompressed(plain, header, targets, keepGoing);
   }
-  if (hasMore)
+  else if (hasOneMoreRow(source, header, readRows(source, header, targets, keepGoing)))
   {
     cloud.warnings.push_back("its header says that it has " + std::to_string(header.points) +
       " points, and more follow, which are left out");
@@ -256,14 +247,7 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
   cloud.sensor = { { header.viewpoint[0], header.viewpoint[1], header.viewpoint[2] } };
   // A later note of this project's writers replaces this position.
   cloud.notes.push_back({ "position", "m", { cloud.sensor->begin(), cloud.sensor->end() }, {} });
-  for (const std::string& comment : header.comments)
-  {
-    if (comment.find(".PCD v") < 2)
-    {
-      continue; // first line of every PCD file
-    }
-    cloud.notes.push_back({ "comment", "", {}, { comment } });
-  }
+  addComments(header, cloud);
   return cloud;
 }
 

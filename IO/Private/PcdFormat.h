@@ -14,20 +14,10 @@
 
 namespace avianlidar::formats
 {
-enum class PcdData
-{
-  Ascii,
-  Binary,
-  Compressed
-};
-
 struct PcdHeader : FieldTable
 {
-  std::uint64_t width = 0;
-  std::uint64_t height = 1;
   std::array<double, 7> viewpoint{ { 0, 0, 0, 1, 0, 0, 0 } }; ///< x y z, m, then quaternion w x y z
-  std::vector<std::string> comments;
-  PcdData data = PcdData::Ascii;
+  bool compressed = false;
 };
 
 /// Reads and checks the header up to DATA. Throws FormatError if the declared points do not fit the

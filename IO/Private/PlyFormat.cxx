@@ -238,7 +238,7 @@ PlyHeader readPlyHeader(ByteSource& source)
     header.begin = header.ascii ? endOfLines(source, *element, header.begin)
                                 : endOf(source, *element, header.begin, header.bigEndian);
   }
-  header.checkLength(source, header.ascii);
+  header.checkLength(source);
   return header;
 }
 
@@ -247,20 +247,9 @@ Cloud readPly(ByteSource& source, const KeepGoing& keepGoing)
   const PlyHeader header = readPlyHeader(source);
   requireMemoryFor(header.points, header.length());
   Cloud cloud;
-  const TableTargets targets = targetsOf(header, cloud);
-  if (header.ascii)
-  {
-    readAsciiRows(source, header, targets, keepGoing);
-  }
-  else
-  {
-    readBinaryRows(source, header, targets, keepGoing);
-  }
+  readRows(source, header, targetsOf(header, cloud), keepGoing);
   dropEmptyCells(cloud);
-  for (const std::string& comment : header.comments)
-  {
-    cloud.notes.push_back({ "comment", "", {}, { comment } });
-  }
+  addComments(header, cloud);
   return cloud;
 }
 

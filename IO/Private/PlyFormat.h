@@ -18,8 +18,6 @@ namespace avianlidar::formats
 /// Header of the element `vertex`. The member `begin` is the end of the elements before `vertex`.
 struct PlyHeader : FieldTable
 {
-  std::vector<std::string> comments;
-  bool ascii = false;
   bool hasFaces = false; ///< whether the file has an element `face` that is not empty
 };
 

@@ -58,14 +58,10 @@ public:
 
   GEOSCoordSequence* Sequence(const Ring& ring, bool close) const
   {
-    const auto n = static_cast<unsigned int>(ring.size());
-    GEOSCoordSequence* sequence = GEOSCoordSeq_create_r(this->Get(), n + close, 2);
-    for (unsigned int i = 0; i < n + close; ++i)
-    {
-      const Vec2& p = ring[i % n];
-      GEOSCoordSeq_setXY_r(this->Get(), sequence, i, p[0], p[1]);
-    }
-    return sequence;
+    Ring all(ring);
+    all.insert(all.end(), close ? 1 : 0, ring[0]);
+    return GEOSCoordSeq_copyFromBuffer_r(
+      this->Get(), all.data()->data(), static_cast<unsigned int>(all.size()), 0, 0);
   }
 
   Geometry MakePolygon(const Polygon& polygon) const
@@ -84,12 +80,9 @@ public:
     const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(this->Get(), ring);
     unsigned int n = 0;
     GEOSCoordSeq_getSize_r(this->Get(), sequence, &n);
-    Ring points(n > 0 ? n - 1 : 0);
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-      GEOSCoordSeq_getXY_r(
-        this->Get(), sequence, static_cast<unsigned int>(i), &points[i][0], &points[i][1]);
-    }
+    Ring points(n);
+    GEOSCoordSeq_copyToBuffer_r(this->Get(), sequence, points.data()->data(), 0, 0);
+    points.pop_back();
     return points;
   }
 

@@ -10,9 +10,11 @@
 #include "Vector.h"
 #include "vtkAvianLidarNames.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -174,41 +176,36 @@ void addPolar(Cloud& cloud)
   add("azimuth", "0.01 deg", std::move(azimuth));
   add("vertical_angle", "deg", std::move(elevation));
 }
+
+Cloud readFirstTurn(ByteSource& file, const KeepGoing& keepGoing)
+{
+  return readTurn(file, indexPackets(file, {}, keepGoing), 0, keepGoing);
+}
+
+template <Cloud (*Read)(ByteSource&, const KeepGoing&)>
+Cloud withoutLabels(ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
+{
+  return Read(file, keepGoing);
+}
 }
 
 std::string endingOf(const std::string& fileName)
 {
-  std::string ending = fs::path(fileName).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return vtksys::SystemTools::LowerCase(fs::path(fileName).extension().string());
 }
 
 const std::vector<CloudFormat>& cloudFormats()
 {
   static const std::vector<CloudFormat> all = {
     { { ".las", ".laz" },
-      [](ByteSource& file) {
-        return file.bytes(0, 4) == std::vector<unsigned char>{ 'L', 'A', 'S', 'F' };
-      },
-      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
-      { return readLas(file, keepGoing); } },
-    { { ".pcd" },
-      [](ByteSource& file)
-      {
-        readPcdHeader(file);
-        return true;
-      },
-      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
-      { return readPcd(file, keepGoing); } },
+      [](ByteSource& file) { return std::memcmp(file.at(0, 4), "LASF", 4) == 0; },
+      withoutLabels<readLas> },
+    { { ".pcd" }, [](ByteSource& file) { return !readPcdHeader(file).fields.empty(); },
+      withoutLabels<readPcd> },
     { { ".ply" }, [](ByteSource& file) { return !readPlyHeader(file).hasFaces; },
-      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
-      { return readPly(file, keepGoing); } },
+      withoutLabels<readPly> },
     { { ".bin" }, [](ByteSource& file) { return file.size() % 16 == 0; }, readKitti, true },
-    { { ".pcap", ".pcapng" }, hasPackets,
-      [](ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
-      { return readTurn(file, indexPackets(file, {}, keepGoing), 0, keepGoing); },
-      false, true },
+    { { ".pcap", ".pcapng" }, hasPackets, withoutLabels<readFirstTurn>, false, true },
   };
   return all;
 }

@@ -446,35 +446,22 @@ Object ParseObject(const JsonNode& node, Scene& scene)
 
 bool MatchesPattern(const std::string& pattern, const std::string& name)
 {
-  // The match is greedy and steps back only to the last star. Recursion is not needed.
-  std::size_t p = 0, n = 0, star = std::string::npos, mark = 0;
-  while (n < name.size())
+  // Whether the characters of the pattern so far fit the first i characters of the name.
+  std::vector<bool> fits(name.size() + 1);
+  fits[0] = true;
+  for (const char c : pattern)
   {
-    if (p < pattern.size() && pattern[p] == '*')
+    for (std::size_t i = 1; c == '*' && i < fits.size(); ++i)
     {
-      star = p++;
-      mark = n;
+      fits[i] = fits[i] || fits[i - 1];
     }
-    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+    for (std::size_t i = name.size(); c != '*' && i > 0; --i)
     {
-      ++p;
-      ++n;
+      fits[i] = fits[i - 1] && (c == '?' || c == name[i - 1]);
     }
-    else if (star != std::string::npos)
-    {
-      p = star + 1;
-      n = ++mark;
-    }
-    else
-    {
-      return false;
-    }
+    fits[0] = fits[0] && c == '*';
   }
-  while (p < pattern.size() && pattern[p] == '*')
-  {
-    ++p;
-  }
-  return p == pattern.size();
+  return fits.back();
 }
 
 Scene ReadDescription(const std::string& file, const std::string& text)

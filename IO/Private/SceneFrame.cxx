@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneFrame.h"
 
-#include <cpl_conv.h>
+#include "VirtualFiles.h"
 
 #include <regex>
 
@@ -32,16 +32,6 @@ void RequireGridsOfProj(const std::string& text)
     "that PROJ has");
 }
 
-std::string TextOf(const OGRSpatialReference& crs)
-{
-  const char* const options[] = { "FORMAT=WKT2_2019", nullptr };
-  char* text = nullptr;
-  crs.exportToWkt(&text, options);
-  const std::string wkt = text ? text : "";
-  CPLFree(text);
-  return wkt;
-}
-
 OGRSpatialReference FromText(const std::string& crs)
 {
   RequireGridsOfProj(crs); // before PROJ reads the text
@@ -55,7 +45,7 @@ OGRSpatialReference FromText(const std::string& crs)
 
 GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs)
 {
-  RequireGridsOfProj(TextOf(crs));
+  RequireGridsOfProj(WktOf(crs, "FORMAT=WKT2_2019"));
   this->Frame.setOrigin(origin.latitude, origin.longitude, origin.height);
   OGRSpatialReference source(crs);
   source.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SemanticLabels.h"
 
+#include <vtksys/SystemTools.hxx>
+
 #include <algorithm>
-#include <cctype>
 
 namespace avianlidar::formats
 {
@@ -51,9 +52,7 @@ constexpr Entry Table[] = {
 
 SemanticLabel labelOfClass(const std::string& objectClass)
 {
-  std::string word = objectClass;
-  std::transform(word.begin(), word.end(), word.begin(),
-    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string word = vtksys::SystemTools::LowerCase(objectClass);
   const auto found = std::find_if(std::begin(Table), std::end(Table),
     [&](const Entry& entry) { return word == entry.objectClass; });
   return found == std::end(Table) ? SemanticLabel{ 1, 0 } : found->label;

@@ -16,25 +16,20 @@ std::string shown(const std::string& text)
 
 bool TextLines::get(std::string& line)
 {
-  constexpr std::size_t longest = 1 << 24;
-  const bool isFirst = this->Next == 0;
+  constexpr std::uint64_t longest = 1 << 24, block = 1 << 16;
+  const std::uint64_t first = this->Next, size = this->Source.size();
   line.clear();
-  bool any = false;
-  while (this->fill())
+  for (bool ends = false; !ends && this->Next < size;)
   {
-    any = true;
-    const auto from = this->Block.begin() + static_cast<std::ptrdiff_t>(this->At);
-    const auto end = std::find(from, this->Block.end(), '\n');
-    line.append(from, end);
-    this->At += static_cast<std::size_t>(end - from);
+    const std::uint64_t count = std::min(block, size - this->Next);
+    const unsigned char* const begin = this->Source.at(this->Next, count);
+    const unsigned char* const end = std::find(begin, begin + count, '\n');
+    line.append(reinterpret_cast<const char*>(begin), end - begin);
     failIf(line.size() > longest, "a line is longer than 16 MiB");
-    if (end != this->Block.end())
-    {
-      ++this->At;
-      break;
-    }
+    ends = end < begin + count;
+    this->Next += static_cast<std::uint64_t>(end - begin) + ends;
   }
-  if (isFirst && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte-order mark
+  if (first == 0 && line.compare(0, 3, "\xEF\xBB\xBF") == 0) // byte-order mark
   {
     line.erase(0, 3);
   }
@@ -42,20 +37,6 @@ bool TextLines::get(std::string& line)
   {
     line.pop_back();
   }
-  return any;
-}
-
-bool TextLines::fill()
-{
-  if (this->At < this->Block.size())
-  {
-    return true;
-  }
-  constexpr std::uint64_t blockSize = 1 << 16;
-  const std::uint64_t left = this->Source.size() - this->Next;
-  this->Block = this->Source.bytes(this->Next, std::min(blockSize, left));
-  this->Next += this->Block.size();
-  this->At = 0;
-  return !this->Block.empty();
+  return first < size;
 }
 }

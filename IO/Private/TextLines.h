@@ -17,7 +17,7 @@ namespace avianlidar::formats
 /// Returns the first 40 characters of a word or line of the file, for a message.
 std::string shown(const std::string& text);
 
-/// Lines of a source, read block by block.
+/// Lines of a source.
 class TextLines
 {
 public:
@@ -32,15 +32,11 @@ public:
   bool get(std::string& line);
 
   /// Returns the offset of the next line in the source, bytes.
-  std::uint64_t position() const { return this->Next - (this->Block.size() - this->At); }
+  std::uint64_t position() const { return this->Next; }
 
 private:
-  bool fill();
-
   ByteSource& Source;
   std::uint64_t Next;
-  std::vector<unsigned char> Block;
-  std::size_t At = 0;
 };
 
 /// Converts a word to a number, in the C locale. Throws FormatError, which names the key, if the

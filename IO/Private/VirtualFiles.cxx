@@ -55,6 +55,16 @@ std::string VirtualName(const std::string& file)
   return EndingOf(file) == ".gz" ? "/vsigzip/" + file : file;
 }
 
+std::string WktOf(const OGRSpatialReference& system, const char* format, const char* option)
+{
+  const char* const options[] = { format, option, nullptr };
+  char* text = nullptr;
+  const bool isDone = system.exportToWkt(&text, options) == OGRERR_NONE && text;
+  const std::string wkt = isDone ? text : "";
+  CPLFree(text);
+  return wkt;
+}
+
 OfflineGdal::OfflineGdal()
 {
   const std::lock_guard<std::mutex> lock(ProjMutex);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VirtualFiles.h
- * @brief Lets GDAL read compressed files, without the network, and keeps GDAL's errors as text.
+ * @brief Lets GDAL read compressed files, without the network, and keeps GDAL's errors and
+ * reference systems as text.
  */
 #ifndef AvianLidarVirtualFiles_h
 #define AvianLidarVirtualFiles_h
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <ogr_spatialref.h>
 
 #include <string>
 
@@ -16,6 +18,10 @@ namespace avianlidar::scene
 /// Returns the name under which GDAL reads a file: "/vsigzip/..." for a name that ends in ".gz",
 /// else the name itself.
 std::string VirtualName(const std::string& file);
+
+/// Returns a system as WKT, or an empty text if GDAL cannot write it with these options.
+std::string WktOf(
+  const OGRSpatialReference& system, const char* format, const char* option = nullptr);
 
 /// While an object exists, GDAL does not use the network in this thread, and PROJ does not use the
 /// network in any thread. PROJ has one switch for the whole process. This switch is set back when

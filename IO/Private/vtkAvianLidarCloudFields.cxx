@@ -250,17 +250,24 @@ void Append(const std::string& array, const std::vector<Field>& fields, std::vec
 }
 
 //------------------------------------------------------------------------------
+std::string Quoted(const std::vector<std::string>& names)
+{
+  std::string list;
+  for (const std::string& name : names)
+  {
+    list += (list.empty() ? "'" : ", '") + name + "'";
+  }
+  return list;
+}
+
+//------------------------------------------------------------------------------
 void WarnOfTaken(
   const std::vector<std::string>& left, const std::function<void(const std::string&)>& warn)
 {
-  std::string names;
-  for (const std::string& array : left)
-  {
-    names += (names.empty() ? "'" : ", '") + array + "'";
-  }
   if (!left.empty())
   {
-    warn(" is without the point arrays " + names + ": another field of the file has the name.");
+    warn(
+      " is without the point arrays " + Quoted(left) + ": another field of the file has the name.");
   }
 }
 
@@ -463,15 +470,9 @@ SensorPose::SensorPose(const Point& position, const Point& orientation)
 //------------------------------------------------------------------------------
 Point SensorPose::toSensor(const Point& point) const
 {
-  const Point d{ point[0] - this->Position[0], point[1] - this->Position[1],
-    point[2] - this->Position[2] };
-  Point local;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    local[axis] =
-      this->Axes[axis][0] * d[0] + this->Axes[axis][1] * d[1] + this->Axes[axis][2] * d[2];
-  }
-  return local;
+  const Point& p = this->Position;
+  const avianlidar::Vec3 d(point[0] - p[0], point[1] - p[1], point[2] - p[2]);
+  return { dot(this->Axes[0], d), dot(this->Axes[1], d), dot(this->Axes[2], d) };
 }
 
 //------------------------------------------------------------------------------

@@ -89,6 +89,9 @@ std::vector<Field> ToFields(vtkDataArray* array);
 void Append(const std::string& array, const std::vector<Field>& fields, std::vector<Field>& all,
   std::vector<std::string>& left);
 
+/// Returns a list such as "'energy', 'azimuth'".
+std::string Quoted(const std::vector<std::string>& names);
+
 /// Gives a warning that names the arrays that Append() left out, if any.
 void WarnOfTaken(
   const std::vector<std::string>& left, const std::function<void(const std::string&)>& warn);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // File system calls of a process that preloads this library: before a file gets a name that ends
 // with RENAMED_TO, the command BEFORE_RENAME runs, once; where it fails, so does the renaming.
-// Names cannot be exchanged if NO_EXCHANGE is set.
+// Names cannot be exchanged if NO_EXCHANGE is set. Files cannot be synchronized if NO_SYNC is set.
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 namespace
 {
@@ -16,6 +17,16 @@ Function* next(Function*, const char* name)
 {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
+}
+
+extern "C" int fsync(int file)
+{
+  if (std::getenv("NO_SYNC"))
+  {
+    errno = EIO;
+    return -1;
+  }
+  return next(fsync, "fsync")(file);
 }
 
 extern "C" int renameat2(

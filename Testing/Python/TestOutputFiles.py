@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are written: whole or not at all, in pairs too, with an error that names the file; permissions, links and what is no
-file stay; what a killed process leaves goes with the next writing."""
+"""Files that are written: whole or not at all, in pairs too, with an error that names the file. Permissions, links, and
+folders and devices stay. Parts of a killed process are removed at the next writing."""
 import contextlib
+import errno
 import os
 import pathlib
 import resource
@@ -10,6 +11,7 @@ import socket
 import stat
 import subprocess
 import sys
+from unittest import mock
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, _writers, vtkAvianLidar as wrapped
@@ -69,8 +71,8 @@ class Written(InFolder):
     def run_child(self, name, **environment):
         """Writes in a process of its own with that environment."""
         al.save(self.data, "data.pcd")
-        ended = subprocess.run([sys.executable, "-c", WRITE, name], env={**os.environ, **environment}, capture_output=True, text=True,
-                               timeout=120, check=False)
+        ended = subprocess.run([sys.executable, "-c", WRITE, name], env={**os.environ, **environment},
+                               capture_output=True, text=True, timeout=120, check=False)
         os.remove("data.pcd")
         return ended
 
@@ -188,7 +190,8 @@ class Single(Written):
         for name in NAMES:
             self.refused(os.path.join("none", name), "No such file or directory")
         os.symlink("b.label", "b.bin")
-        for name in (None, "x.label", str(self.folder / "x.label"), "./x.label", "b.bin"):  # points that are their own labels
+        # Points that are their own labels.
+        for name in (None, "x.label", str(self.folder / "x.label"), "./x.label", "b.bin"):
             writer, heard = self.kitti(name)
             self.assertEqual((writer.Write(), len(heard.errors)), (0, 1), name)
             self.assertIn(".label" if name else "FileName is not set", heard.errors[0])
@@ -207,6 +210,19 @@ class Single(Written):
                         self.refused(name, "File too large|too large|cannot be written to its end")
                     self.assertEqual(pathlib.Path(name).read_text(), "old")
                     self.assertEqual(set(os.listdir()), before)
+
+    def test_a_disk_that_fails_at_the_end(self):
+        """A file gets its name only when its bytes are on the disk."""
+        names = ("echoes.las", "echoes.bin", "echoes.label", "echoes.csv")
+        for name in names:
+            (self.folder / name).write_text("old")
+        for name in names[:2]:
+            ended = self.run_child(name, LD_PRELOAD=os.environ["AVIANLIDAR_FAILING_FILES"], NO_SYNC="1")
+            self.assertEqual(ended.returncode, 3, ended.stderr)
+            self.assertIn("cannot be written to its end: Input/output error", ended.stderr)
+        with mock.patch.object(os, "fsync", side_effect=OSError(errno.EIO, "Input/output error")):
+            self.refused("echoes.csv", "Input/output error")
+        self.assertEqual({name: (self.folder / name).read_text() for name in os.listdir()}, dict.fromkeys(names, "old"))
 
     def test_what_a_killed_process_leaves(self):
         for name in ("echoes.las", "echoes.bin", "echoes.csv"):
@@ -266,9 +282,10 @@ class Pairs(Written):
         self.assert_old()
 
     def test_names_that_cannot_be_exchanged(self):
-        """The points get no name after the labels got theirs: these are the old ones again, or the error says that they are not."""
+        """The points get no name after the labels: the old labels are back, or the error says that they are gone."""
         failing = {"RENAMED_TO": "echoes.bin", "BEFORE_RENAME": "false"}
-        for environment, code, words in (({"NO_EXCHANGE": "1"}, 0, ""), (failing, 3, "cannot be given its name: Input/output error"),
+        for environment, code, words in (({"NO_EXCHANGE": "1"}, 0, ""),
+                                         (failing, 3, "cannot be given its name: Input/output error"),
                                          ({"NO_EXCHANGE": "1", **failing}, 3, "echoes.label is replaced already")):
             with self.subTest(environment):
                 for name, content in (("echoes.label", b"old"), ("echoes.bin", b"older")):
