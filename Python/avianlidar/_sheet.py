@@ -4,15 +4,12 @@
 A data sheet gives the range at which a board of a reflectance is detected with some probability in some light. One
 fitted number cannot reproduce all points: with 1/r^2 a board of 80 % is detected 2.83 times as far as a board of 10 %;
 data sheets give ratios of 1.7 to 2.5. The model: a board of width w at the range R fills f = min(1, w^2/(Omega R^2)) of
-a round beam, and (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian beam with the truncation k. The filled part
-returns n = eta E rho A exp(-2 mu R)/(pi R^2 h nu) electrons, with mu of clear air (a visibility of 23 km). Sky and sun
-add background: daylight from the board, and the sky beside the board, which is the sensor's `background_radiance` in
-100 klx and less in less light. The board is detected with the probability that n and Gaussian noise exceed the
-threshold (Documentation/reference/sensor-files.md). Up to three numbers are fitted, as far as the points determine
-them:
-- the aperture A, which sets how much light is received;
-- the filter's bandwidth (at most BANDWIDTH), which sets how much daylight is received, including daylight of a view
-  wider than the beam;
+a round beam, and (1 - exp(-2 k^2 f))/(1 - exp(-2 k^2)) of a Gaussian beam with the truncation k. Signal, noise and
+threshold are those of Documentation/method/receiver.md in clear air (a visibility of 23 km). Daylight comes from the
+board, and from the sky beside the board, which is the sensor's `background_radiance` in 100 klx and less in less light.
+Up to three numbers are fitted, as far as the points determine them:
+- the aperture, which sets how much light is received;
+- the filter's bandwidth (at most BANDWIDTH), which sets the received daylight, also of a view wider than the beam;
 - the width of boards without a given width, which belongs to the test and not to the receiver.
 The fit is SciPy's least squares over logarithms of ranges.
 """
@@ -129,7 +126,7 @@ def share_on_board(sensor, tangent):
 
 
 class Receiver:
-    """The numbers of a sensor that the fit needs (formulas: Documentation/reference/sensor-files.md)."""
+    """The numbers of a sensor that the fit needs (formulas: Documentation/method/receiver.md)."""
 
     def __init__(self, sensor):
         from scipy.special import erfcinv
@@ -181,7 +178,7 @@ class Receiver:
 def _told(points, spare: int = 1) -> list[str]:
     """Names of the numbers that these points determine. @param spare number of surplus points for fitting boards"""
     found = ["aperture"]
-    if len({point.get("light", 0.0) for point in points}) > 1 and len(points) > 1:
+    if len({point.get("light", 0.0) for point in points}) > 1:
         found.append("bandwidth")
     unknown = [point for point in points if "board" not in point]
     if len({point["reflectance"] for point in unknown}) > 1 and len(points) > len(found) + spare:
@@ -189,18 +186,18 @@ def _told(points, spare: int = 1) -> list[str]:
     return found
 
 
-def _fitted(receiver: Receiver, points, start: tuple[float, float], frees: list[str]) -> tuple[float, float, float]:
-    """Aperture (m2), bandwidth (nm), board (m). @param start two numbers before the fit @param frees fitted numbers"""
+def _fitted(receiver: Receiver, points, bandwidth: float, frees: list[str]) -> list[float]:
+    """Aperture (m2), bandwidth (nm), board (m). @param bandwidth value if not fitted @param frees fitted numbers"""
     from scipy.optimize import least_squares
     farthest = max(point["range"] for point in points)
     size = farthest * np.sqrt(receiver.solid_angle)  # width of a board that just fills the beam at the farthest range
-    best: tuple[float, tuple[float, float, float]] = (np.inf, (start[0], start[1], np.nan))
     # Starts do not depend on the fitted numbers, so a fit of a fitted sensor gives the same numbers.
     widths = (0.3 * size, 0.6 * size, 1.2 * size) if "board" in frees else (np.nan,)
-    bandwidths = (1.0, 10.0, 0.9 * BANDWIDTH) if "bandwidth" in frees else (start[1],)
+    bandwidths = (1.0, 10.0, 0.9 * BANDWIDTH) if "bandwidth" in frees else (bandwidth,)
     most = {"bandwidth": np.log(BANDWIDTH)}
-    for width, bandwidth in itertools.product(widths, bandwidths):
-        value = {"aperture": APERTURE, "bandwidth": bandwidth, "board": width}
+    fits = []
+    for board, bandwidth in itertools.product(widths, bandwidths):
+        value = {"aperture": APERTURE, "bandwidth": bandwidth, "board": board}
 
         def off(x, names):
             at = {**value, **dict(zip(names, np.exp(x)))}
@@ -210,9 +207,8 @@ def _fitted(receiver: Receiver, points, start: tuple[float, float], frees: list[
             found = least_squares(off, [np.log(value[name]) for name in names], args=(names,), diff_step=1e-4,
                                   bounds=(-np.inf, [most.get(name, np.inf) for name in names]))
             value = {**value, **dict(zip(names, np.exp(found.x)))}
-        if found.cost < best[0]:
-            best = found.cost, (float(value["aperture"]), float(value["bandwidth"]), float(value["board"]))
-    return best[1]
+        fits.append((found.cost, [float(number) for number in value.values()]))
+    return min(fits, key=lambda one: one[0])[1]
 
 
 def fit(sensor, points: Sequence[dict[str, Any]] | None = None) -> Fit:
@@ -227,8 +223,7 @@ def fit(sensor, points: Sequence[dict[str, Any]] | None = None) -> Fit:
             raise ValueError(f"sheet.points[{i}].range is {point['range']!r}, expected at most range_gate, "
                              f"{sensor.range_gate:g} m")
     receiver = Receiver(sensor)
-    start = sensor.receiver_aperture, max(sensor.filter_bandwidth, 1e-3)
-    frees = _told(points)
+    start, frees = max(sensor.filter_bandwidth, 1e-3), _told(points)
     aperture, bandwidth, board = _fitted(receiver, points, start, frees)
     numbers, limit = {"receiver_aperture": aperture}, ""
     if "bandwidth" in frees:
