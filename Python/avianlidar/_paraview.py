@@ -67,8 +67,7 @@ class Advisor(VTKPythonAlgorithmBase):
         controller = vtkMultiProcessController.GetGlobalController()
         if controller and controller.GetLocalProcessId() > 0:
             return 1
-        data = [vtkDataObject.GetData(port.GetInformationObject(0)) if port.GetNumberOfInformationObjects() else None
-                for port in inputs]
+        data = [vtkDataObject.GetData(port) for port in inputs]  # None where an optional input is missing
         asked = {kind: value for kind, value in self._asked.items() if kind != "beams"}
         try:
             advice = measure(self._like, data, asked, self._asked["beams"], lambda share, _: self.UpdateProgress(share))
