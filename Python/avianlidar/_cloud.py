@@ -234,11 +234,17 @@ class Cloud(Mapping):
         """
         if frame == "enu":
             return self.points
-        if frame == "sensor":
-            return self._to_sensor()
         if frame not in FRAMES:
             raise ValueError(f"frame {frame!r} is unknown, expected one of {', '.join(FRAMES)}")
-        if "geodetic_origin" not in self.fields:
+        fields = self.fields
+        if frame == "sensor":
+            if "position" not in fields or "orientation" not in fields:
+                raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
+            from scipy.spatial.transform import Rotation
+            yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
+            turn = Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
+            return turn.apply(self.points - fields["position"], inverse=True)
+        if "geodetic_origin" not in fields:
             raise ValueError(f"the frame {frame!r} needs field data 'geodetic_origin'; the scene has no origin")
         transform = _wrapped.vtkAvianLidarGeodeticTransform()
         transform.SetInputData(self.data)
@@ -246,15 +252,6 @@ class Cloud(Mapping):
         set_property(transform, "TargetFrame", frame)
         update(transform)
         return Cloud(transform.GetOutputDataObject(0)).points
-
-    def _to_sensor(self) -> np.ndarray:
-        fields = self.fields
-        if "position" not in fields or "orientation" not in fields:
-            raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
-        from scipy.spatial.transform import Rotation
-        yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
-        turn = Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
-        return turn.apply(self.points - fields["position"], inverse=True)
 
     plot_map = _plot.plot_map
     save = _writers.write

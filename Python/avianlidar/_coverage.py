@@ -98,8 +98,8 @@ class Coverage(SceneAndSensor):
 
     @staticmethod
     def strike_height_density(heights) -> np.ndarray:
-        """Density of bird strikes over height, 1/m, with which `strike_height_weights` weights the table. @param
-        heights n heights, m above ground"""
+        """Density of bird strikes over height, 1/m, with which `strike_height_weights` weights the table.
+        @param heights n heights, m above ground"""
         return np.array([_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity(height)
                          for height in np.asarray(heights, dtype=float)])
 

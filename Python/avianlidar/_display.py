@@ -17,8 +17,8 @@ MOST = 20000  # number of triangles or beams in a picture, at most
 
 def page(thing, rows: Callable[[Any], dict[str, Any]], draw: Callable[[Any], None] | None = None,
          size=(4.0, 3.0)) -> str:
-    """HTML of a table and a picture; after an exception, its message. @param draw draws into axes of Matplotlib @param
-    size size of the picture, inches"""
+    """HTML of a table and a picture; after an exception, its message.
+    @param draw draws into axes of Matplotlib @param size size of the picture, inches"""
     try:
         lines = "".join(f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>"
                         f"{html.escape(str(value))}</td></tr>" for key, value in rows(thing).items())

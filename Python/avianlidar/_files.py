@@ -5,7 +5,6 @@ import csv
 import gzip
 import io
 import math
-import os
 import pathlib
 import re
 import unicodedata
@@ -161,6 +160,7 @@ def save(cloud, file, **properties: Any) -> None:
 
     The file is replaced completely or not at all. An unknown suffix is a ValueError that names the known suffixes.
     """
+    file_name(pathlib.Path(file))  # before a scan runs
     write(Cloud(getattr(cloud, "echoes", cloud)), file, **properties)
 
 

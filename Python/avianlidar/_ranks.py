@@ -63,9 +63,8 @@ class Ranks:
         return bool(least.GetValue(0))
 
     def agree(self, folder, known: Callable[[], Any]) -> None:
-        """`Error` on all ranks unless all ranks would write the same. @param folder the folder for the files @param
-        known everything that decides what is written, with equal text (`repr`) for equal values; called only in a job
-        of several ranks"""
+        """`Error` on all ranks unless all ranks would write the same files to a folder. @param known everything that
+        decides what is written, with equal text (`repr`) for equal values; called only in a job of several ranks"""
         if self.size == 1:
             return
         with self.together():

@@ -146,10 +146,8 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
 
 def info(options) -> None:
     file, name = options.file, options.file.name.lower()
-    if not file.is_file():
-        raise FileNotFoundError(f"no such file: {file}")
     chosen = _of_packets(options, file)
-    warnings_: Iterable[str] = ()
+    hints: Iterable[str] = ()
     if name.endswith(".lidarsensor.json"):
         what, rows = "a sensor", _display.sensor_rows(Sensor(file))
     elif name.endswith(".coverage.json"):
@@ -168,10 +166,10 @@ def info(options) -> None:
     else:
         scene, what = Scene(file), "a scene"
         rows = _display.scene_rows(scene)
-        warnings_ = of_scene(scene.bounds) if scene.number_of_triangles else ()
+        hints = of_scene(scene.bounds) if scene.number_of_triangles else ()
     print(f"{file}: {what}")
     table((key, _words(value)) for key, value in rows.items())
-    for text in warnings_:
+    for text in hints:
         warn(text)
 
 

@@ -25,7 +25,7 @@ def weather(words: Iterable[str] | None) -> dict[str, Any]:
             value = float(number)
         except ValueError:
             value = math.nan
-        if kind not in ("fog", "haze", "rain") or not value > 0 or not math.isfinite(value):
+        if kind not in ("fog", "haze", "rain") or not 0 < value < math.inf:
             raise ValueError(f"weather {word!r}, expected {WEATHER.partition(';')[0]}")
         name = "rain rate" if kind == "rain" else "visibility"
         if name in known:
