@@ -146,6 +146,8 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
 
 def info(options) -> None:
     file, name = options.file, options.file.name.lower()
+    if not file.exists():
+        raise FileNotFoundError(f"no such file: {file}")
     chosen = _of_packets(options, file)
     hints: Iterable[str] = ()
     if name.endswith(".lidarsensor.json"):
