@@ -11,8 +11,8 @@
     scan.save("echoes.vtp")
     scan.plot_range_image()                                    # with Matplotlib
 
-These helpers are built on wrapped VTK classes. `Sensor.algorithm`, `Scan.algorithm`, `Scene.tree` and `Cloud.data` give the
-VTK objects:
+These helpers are built on wrapped VTK classes. `Sensor.algorithm`, `Scan.algorithm`, `Scene.tree` and `Cloud.data` give
+the VTK objects:
 
     from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
 """
@@ -31,5 +31,6 @@ from .apps._design_page import Designs
 from .apps._sequence import Sequence
 from .apps._tracks import BirdTracks
 
-__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence", "hue_colors", "load_cloud", "load_scene",
-           "materials", "mesh", "mover", "places_of", "plot_map", "plot_range_image", "save", "vtkAvianLidar"]
+__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence",
+           "hue_colors", "load_cloud", "load_scene", "materials", "mesh", "mover", "places_of", "plot_map",
+           "plot_range_image", "save", "vtkAvianLidar"]

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The settings that a scene requires of a scan, as measured on the scene."""
-from __future__ import annotations
-
 import dataclasses
 import io
 import json
 import os
 import pathlib
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,7 +17,7 @@ SETTINGS = ("BeamSamples", "RaysPerBeam", "Sampling", "NumberOfReflections", "Nu
 KINDS = ("energy", "range", "missed")  # kinds of errors
 VERDICTS = ("not met", "undecided", "met")
 NOT_MET, UNDECIDED, MET = range(3)
-UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # units of columns; the other columns have the unit "1"
+UNITS = {"seconds_per_beam": "s", "range_error": "m", "range_error_most": "m"}  # of columns; others have the unit "1"
 MOST_ROWS = 12  # number of settings that a reader sees beside the scan's own
 SUFFIXES = (".json", ".csv", ".png")
 
@@ -33,22 +32,22 @@ class Setting(NamedTuple):
     connections: int
 
     def words(self) -> str:
-        said = f"{self.rays} {('Cells', 'Rays')[self.samples]}" + ("" if self.sampling else ", MonteCarlo")
-        return said + (f", 2 reflections, {self.connections} connections" if self.reflections > 1 else ", 1 reflection")
+        paths = f"2 reflections, {self.connections} connections" if self.reflections > 1 else "1 reflection"
+        return f"{self.rays} {('Cells', 'Rays')[self.samples]}{'' if self.sampling else ', MonteCarlo'}, {paths}"
 
-    def properties(self) -> Dict[str, Any]:
+    def properties(self) -> dict[str, Any]:
         """The settings as keywords of `Scan.set`."""
         samples, sampling = ("Cells", "Rays")[self.samples], ("MonteCarlo", "Stratified")[self.sampling]
         values = (samples, self.rays, sampling, self.reflections, self.connections)
         return {"preset": "Custom", **dict(zip(map(snake, SETTINGS), values))}
 
-    def as_commands(self) -> List[str]:
+    def as_commands(self) -> list[str]:
         """The settings as options of the command, in Python and for ParaView's panel."""
-        values = self.properties()
-        return ["Command: " + " ".join(f"--scan-set {name}={value}" for name, value in values.items()),
-                "Python: scan.set(" + ", ".join(f'{name}="{value}"' if isinstance(value, str) else f"{name}={value}"
-                                                for name, value in values.items()) + ")",
-                "ParaView: " + ", ".join(f"{name.replace('_', ' ').title()} {value}" for name, value in values.items())]
+        values = self.properties().items()
+        quoted = [(name, f'"{value}"' if isinstance(value, str) else value) for name, value in values]
+        return ["Command: " + " ".join(f"--scan-set {name}={value}" for name, value in values),
+                f"Python: scan.set({', '.join(f'{name}={value}' for name, value in quoted)})",
+                "ParaView: " + ", ".join(f"{name.replace('_', ' ').title()} {value}" for name, value in values)]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,20 +55,21 @@ class Advice:
     """The measurements of a scene, and the advice.
 
     settings  properties of a Scan, for `scan.set(**advice.settings)`; None if no setting surely keeps the limits
-    lines     sentences on what is advised and why; the last lines give the settings as options of the command, in Python and
-              for ParaView's panel
+    lines     sentences on what is advised and why; the last lines give the settings as options of the command, in
+              Python and for ParaView's panel
     asked     largest allowed errors: `energy` (rms, relative), `range` (m, rms), `missed` (share)
     row       number of the advised row of the table, -1 if no row is advised
-    table     columns with one value for each setting that was tried, the scan's own setting first: `beam_samples` (0 cells, 1 rays),
-              `rays_per_beam`, ..., `seconds_per_beam` (s of one core), `energy_error`, `energy_error_most` (upper bound, 95 %),
-              `range_error` (m), `missed_share`, `verdict` (0 limits exceeded, 1 undecided, 2 limits kept)
+    table     columns with one value for each setting that was tried, the scan's own setting first: `beam_samples`
+              (0 cells, 1 rays), `rays_per_beam`, ..., `seconds_per_beam` (s of one core), `energy_error`,
+              `energy_error_most` (upper bound, 95 %), `range_error` (m), `missed_share`, `verdict` (0 limits exceeded,
+              1 undecided, 2 limits kept)
     """
 
-    settings: Optional[Dict[str, Any]]
-    lines: Tuple[str, ...]
-    asked: Dict[str, float]
+    settings: dict[str, Any] | None
+    lines: tuple[str, ...]
+    asked: dict[str, float]
     row: int
-    table: Dict[str, np.ndarray]
+    table: dict[str, np.ndarray]
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
@@ -82,8 +82,8 @@ class Advice:
         """The setting in a row of the table."""
         return Setting(*(int(self.table[snake(name)][row]) for name in SETTINGS))
 
-    def save(self, file: Union[str, os.PathLike]) -> None:
-        """Writes the advice: .json holds everything, .csv the table, .png a picture of errors over time (needs Matplotlib)."""
+    def save(self, file: str | os.PathLike) -> None:
+        """Writes the advice: .json holds everything, .csv the table, .png a picture of errors (needs Matplotlib)."""
         from ._disk import write_whole
         from ._writers import as_csv
         target, content = pathlib.Path(file), io.BytesIO()
@@ -91,30 +91,33 @@ class Advice:
         if target.suffix.lower() == ".png":
             self.plot().figure.savefig(content, format="png", dpi=150)
         elif target.suffix.lower() == ".json":
-            table = {key: [value if np.isfinite(value) else None for value in values.tolist()] for key, values in self.table.items()}
+            table = {key: [value if np.isfinite(value) else None for value in values.tolist()]
+                     for key, values in self.table.items()}
             content.write((json.dumps({**dataclasses.asdict(self), "table": table}, indent=1) + "\n").encode())
         else:
-            content.write(as_csv([list(self.table), *([f"{value:.9g}" for value in row] for row in zip(*self.table.values()))]))
+            rows = ([f"{value:.9g}" for value in row] for row in zip(*self.table.values()))
+            content.write(as_csv([list(self.table), *rows]))
         write_whole(target, content.getvalue())
 
     def plot(self, axes=None):
-        """Draws the error of energy over time with Matplotlib, one point for each setting. A filled point keeps all limits.
-        Returns the axes."""
+        """Draws the error of energy over time with Matplotlib, one point for each setting. A filled point keeps all
+        limits. Returns the axes."""
         from matplotlib.figure import Figure
         axes = axes or Figure(figsize=(7, 4.5), layout="constrained").add_subplot()
-        table = self.table
-        for samples, reflections, marker, colour, name in (
+        samples, reflections, verdicts = (self.table[key] for key in
+                                          ("beam_samples", "number_of_reflections", "verdict"))
+        times, errors = 1e6 * self.table["seconds_per_beam"], 100 * np.maximum(self.table["energy_error"], 1e-5)
+        for kind, paths, marker, colour, name in (
                 (0, 1, "s", "tab:orange", "Cells, 1 reflection"), (0, 2, "o", "tab:blue", "Cells, 2 reflections"),
                 (1, 1, "v", "tab:olive", "Rays, 1 reflection"), (1, 2, "^", "tab:gray", "Rays, 2 reflections")):
-            these = (table["beam_samples"] == samples) & (table["number_of_reflections"] == reflections)
             for met in (False, True):
-                some = these & ((table["verdict"] == 2) == met)
-                axes.scatter(1e6 * table["seconds_per_beam"][some], 100 * np.maximum(table["energy_error"][some], 1e-5), marker=marker, s=30,
-                             edgecolors=colour, facecolors=colour if met else "none", label=name if met else None)
+                some = (samples == kind) & (reflections == paths) & ((verdicts == MET) == met)
+                axes.scatter(times[some], errors[some], marker=marker, s=30, edgecolors=colour,
+                             facecolors=colour if met else "none", label=name if met else None)
         axes.axhline(100 * self.asked["energy"], color="black", linewidth=0.8, linestyle=":")
         if self.row >= 0:
-            axes.scatter(1e6 * table["seconds_per_beam"][self.row], 100 * max(table["energy_error"][self.row], 1e-5), s=160,
-                         facecolors="none", edgecolors="tab:red", label="advised")
+            axes.scatter(times[self.row], errors[self.row], s=160, facecolors="none", edgecolors="tab:red",
+                         label="advised")
         axes.set(xscale="log", yscale="log", xlabel="time of a beam, one core (µs)", ylabel="error of energy (% rms)")
         axes.legend(fontsize="small")
         return axes
@@ -122,37 +125,39 @@ class Advice:
 
 def check_suffix(file: pathlib.Path) -> None:
     if file.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"{file}: advice is not written as {file.suffix or 'a file without suffix'}, expected {', '.join(SUFFIXES)}")
+        kind = file.suffix or "a file without suffix"
+        raise ValueError(f"{file}: advice is not written as {kind}, expected {', '.join(SUFFIXES)}")
 
 
-def table_rows(advice: Advice) -> List[Tuple[Any, ...]]:
-    """Rows for a reader: the scan's own settings, then the fastest settings that are not surely too inaccurate, then others."""
+def table_rows(advice: Advice) -> list[tuple[Any, ...]]:
+    """Rows for a reader: the scan's own settings, then the fastest settings, with those that exceed limits last."""
     table = advice.table
-    order = sorted(range(1, len(table["verdict"])), key=lambda t: (table["verdict"][t] == 0, table["seconds_per_beam"][t]))
-    shown = [0, *order[:MOST_ROWS]]
+    order = np.lexsort((table["seconds_per_beam"][1:], table["verdict"][1:] == NOT_MET)) + 1
+    rows: list[tuple[Any, ...]] = [("setting", "us a beam", "energy, % (at most)", "range, m (at most)",
+                                    "wrong echoes, % (at most)", "")]
+    for row in (0, *order[:MOST_ROWS]):
+        errors = [f"{scale * table[name][row]:.3g} ({scale * table[name + '_most'][row]:.3g})"
+                  for name, scale in (("energy_error", 100), ("range_error", 1), ("missed_share", 100))]
+        verdict = "advised" if row == advice.row else VERDICTS[table["verdict"][row]]
+        name, time = ("" if row else "now: ") + advice.words(row), f"{1e6 * table['seconds_per_beam'][row]:.3g}"
+        rows.append((name, time, *errors, verdict))
+    return rows
 
-    def error(name: str, t: int, scale: float) -> str:
-        return f"{scale * table[name][t]:.3g} ({scale * table[name + '_most'][t]:.3g})"
 
-    return [("setting", "us a beam", "energy, % (at most)", "range, m (at most)", "wrong echoes, % (at most)", ""),
-            *((("now: " if t == 0 else "") + advice.words(t), f"{1e6 * table['seconds_per_beam'][t]:.3g}", error("energy_error", t, 100),
-               error("range_error", t, 1), error("missed_share", t, 100),
-               "advised" if t == advice.row else VERDICTS[table["verdict"][t]]) for t in shown)]
-
-
-def notes_of(fields: Mapping[str, Any]) -> List[str]:
-    """Sentences on what was modelled of a scan and what was left out, from field data of the echoes; empty without such data."""
+def notes_of(fields: Mapping[str, Any]) -> list[str]:
+    """Sentences on what was modelled of a scan and what was left out, from the field data of the echoes, if known."""
     def note(name: str) -> str:
         return " ".join(fields.get("note_" + name, ()))
 
     if not note("two_reflections") or "rays_per_beam" not in fields:
         return []
     samples = ("Cells", "Rays")[int(fields.get("beam_samples", 0))]
-    air = f"air of {float(fields.get('attenuation_coefficient', 0)):.3g} 1/m" + \
-        (", which sends light back" if fields.get("air_backscatter") else "") + \
-        (f", rain of {float(fields['rain_rate']):g} mm/h" if fields.get("rain_rate") else "")
+    back = ", which sends light back" if fields.get("air_backscatter") else ""
+    rain = f", rain of {float(fields['rain_rate']):g} mm/h" if fields.get("rain_rate") else ""
+    air = f"air of {float(fields.get('attenuation_coefficient', 0)):.3g} 1/m{back}{rain}"
+    connections = f"{int(fields.get('number_of_connections', 0))} connections"
     return [f"modelled  {int(fields['rays_per_beam'])} rays per beam ({samples}); {air}",
-            f"          paths with two reflections: {note('two_reflections')}; {int(fields.get('number_of_connections', 0))} connections",
+            f"          paths with two reflections: {note('two_reflections')}; {connections}",
             f"          noise: {note('noise')}",
             f"left out  {note('all_left_out')}; {note('further_reflections').replace('not modelled: ', '')}",
             f"perceived {note('perceivable_range')}",

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sentences on the settings of the echo filter that a scene requires, from what `_measurement` has measured."""
-from __future__ import annotations
-
-from typing import Any, Dict, List, Optional, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,23 +20,22 @@ def errors_in_words(errors: np.ndarray) -> str:
     words = []
     for kind, name in enumerate(("energy {} rms", "range {} rms", "echoes missed or invented {}")):
         value, most = (f"{one:.3g} m" if kind == 1 else per_cent(one) for one in np.atleast_1d(errors[kind])[[0, -1]])
+        bound = f"at most {most}"
         if errors.ndim > 1 and np.isinf(errors[kind, 2]):
-            value += " (undecided: fewer than 30 beams have an echo of twice the limit)"
-        elif errors.ndim > 1:
-            value += f" (at most {most})"
-        words.append(name.format(value))
+            bound = "undecided: fewer than 30 beams have an echo of twice the limit"
+        words.append(name.format(f"{value} ({bound})" if errors.ndim > 1 else value))
     return ", ".join(words)
 
 
 def cost(trial: Trial, other: Trial) -> str:
     """The time of a trial compared with the time of another trial, in words."""
-    share = round(100 * (trial.seconds / other.seconds - 1))
     if trial.is_as_fast_as(other):
         return "about the same time"
+    share = round(100 * (trial.seconds / other.seconds - 1))
     return f"{abs(share):.3g} % {'less' if share < 0 else 'more'} time"
 
 
-def lines_of(m: Measurement, advised: Optional[Trial]) -> List[str]:
+def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
     """Sentences on what is advised and why."""
     number = m.beams.GetNumberOfPoints()
     sure = sum(len(truth.sure) for _, truth in m.batches)
@@ -47,22 +45,23 @@ def lines_of(m: Measurement, advised: Optional[Trial]) -> List[str]:
     of = {trial.setting: trial for trial in m.trials[1:]}
     seconds = number * (advised or of[DEFAULT]).seconds
     if advised:
-        faster = f"{m.trials[0].seconds / advised.seconds:.3g} times as fast as"
+        times = "" if advised.is_as_fast_as(m.trials[0]) else f"{m.trials[0].seconds / advised.seconds:.3g} times "
         lines.append(f"Advised: {advised.setting.words()}: {errors_in_words(advised.errors)}; "
                      f"{1e6 * advised.seconds:.3g} us a beam of one core, {seconds:.3g} s the scan, "
-                     f"{'as fast as' if advised.is_as_fast_as(m.trials[0]) else faster} the present settings")
+                     f"{times}as fast as the present settings")
     else:
         best = min(m.trials, key=lambda trial: trial.parts(m.asked))
-        unclear = sum(trial.verdict == UNDECIDED for trial in m.trials)
-        more = f"; for {unclear} settings these beams do not decide: measure more beams, or allow larger errors" if unclear else ""
         lines.append(f"Advised: none of {len(m.trials)} settings surely keeps the limits. The best setting, "
-                     f"{best.setting.words()}, has {errors_in_words(best.errors)}{more}")
+                     f"{best.setting.words()}, has {errors_in_words(best.errors)}")
+        unclear = sum(trial.verdict == UNDECIDED for trial in m.trials)
+        if unclear:
+            lines[-1] += (f"; for {unclear} settings these beams do not decide: measure more beams, "
+                          "or allow larger errors")
 
     second, one, unconnected = cost(of[DEFAULT], of[DIRECT]), *m.without
     if not m.reflects_twice:
-        why = ": the scene is one convex body, seen from outside, and a convex body cannot light itself"
         lines.append(f"One reflection is enough: second reflections return {'less than 1e-6' if m.secondary else '0'} "
-                     f"of the light (measured over {len(m.sample)} beams){why if m.convex else ''}. Two reflections take {second}")
+                     f"of the light (measured over {len(m.sample)} beams). Two reflections take {second}")
     else:
         enough = advised and advised.setting.reflections == 1
         start = "One reflection is enough for the limits: second reflections" if enough else "Second reflections"
@@ -82,25 +81,25 @@ def lines_of(m: Measurement, advised: Optional[Trial]) -> List[str]:
     lines.append(f"Density of rays: {per_cent(polygons)} of the beams are integrated over polygons, {per_cent(cells)} "
                  f"need cells, {per_cent(nothing)} meet nothing. To keep the limits, {', '.join(needs)}")
 
-    if not m.scatters and not m.fields["attenuation_coefficient"] > 0:
-        lines.append("Weather: none")
-    else:
+    weather, (light, echoes) = "none", map(per_cent, m.lost)
+    if m.scatters or m.fields["attenuation_coefficient"] > 0:
         back = "the air sends no light back and costs no time"
         if m.scatters:
             back = f"{per_cent(m.of_air)} of the points are echoes of the air; the air takes {cost(m.hazy, m.clear)}"
-        light, echoes = map(per_cent, m.lost)
-        lines.append(f"Weather: the air takes {light} of the light and {echoes} of the echoes; {back}")
+        weather = f"the air takes {light} of the light and {echoes} of the echoes; {back}"
     two, eight = (f"{(m.tree_seconds + seconds) / (m.tree_seconds + seconds / n):.2g}" for n in (2, 8))
-    return [*lines, f"Processes: the collision tree ({m.tree_seconds:.2g} s of one core) is built by every process, and the scan "
-                    f"({seconds:.2g} s) is divided. The speed-up is at most {two} with 2 processes and {eight} with 8. Later scans keep "
-                    "the tree",
+    return [*lines, f"Weather: {weather}",
+            f"Processes: the collision tree ({m.tree_seconds:.2g} s of one core) is built by every process, and the "
+            f"scan ({seconds:.2g} s) is divided. The speed-up is at most {two} with 2 processes and {eight} with 8. "
+            "Later scans keep the tree",
             f"The reference's own error: {errors_in_words(m.own())}"]
 
 
-def measure(like: Any, inputs: Sequence[Any], asked: Dict[str, float], beams: int,
-            progress: Optional[Progress] = None) -> Advice:
-    """Measures which settings a scene requires. @param like an echo filter with the properties of the scan @param inputs beams,
-    surfaces, and movers or None @param asked largest allowed errors by kind @param beams number of beams that are measured"""
+def measure(like: Any, inputs: Sequence[Any], asked: dict[str, float], beams: int,
+            progress: Progress | None = None) -> Advice:
+    """Measures which settings a scene requires.
+    @param like an echo filter with the properties of the scan @param inputs beams, surfaces, and movers or None
+    @param asked largest allowed errors by kind @param beams number of beams that are measured"""
     for kind, value in asked.items():
         if not 0 < value <= 1e30:
             raise ValueError(f"{kind} is {value!r}, expected an allowed error above 0")
@@ -122,7 +121,7 @@ def measure(like: Any, inputs: Sequence[Any], asked: Dict[str, float], beams: in
     numbers = np.array([(*trial.setting, len(trial.times), trial.verdict) for trial in m.trials], np.int32)
     table = dict(zip((*map(snake, SETTINGS), "turns", "verdict"), numbers.T.copy()))
     table["seconds_per_beam"] = np.array([trial.seconds for trial in m.trials])
+    errors = np.array([trial.errors for trial in m.trials])
     for i, name in enumerate(("energy_error", "range_error", "missed_share")):
-        table[name] = np.array([trial.errors[i, 0] for trial in m.trials])
-        table[name + "_most"] = np.array([trial.errors[i, 2] for trial in m.trials])
+        table[name], table[name + "_most"] = errors[:, i, 0].copy(), errors[:, i, 2].copy()
     return Advice(settings, tuple(lines), dict(asked), row, table)

@@ -1,44 +1,42 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Point clouds of VTK as NumPy arrays, without copies."""
-from __future__ import annotations
-
-from typing import Any, Dict, Iterator, List, Mapping, Tuple
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPointSet, vtkPolyData
 
+from . import _plot, _writers
 from . import vtkAvianLidar as _wrapped
 from ._pipeline import update
-from ._plot import plot_map
 from ._properties import set_property, unknown
-from ._writers import columns_of, write
 
 FRAMES = ("enu", "sensor", "geodetic", "utm", "ecef")
 
 
 def as_numpy(array) -> np.ndarray:
-    """The memory of a VTK array as a read-only NumPy array that keeps the VTK array alive. Filters reuse such arrays in their next
-    execution, so change a copy."""
+    """The memory of a VTK array as a read-only NumPy array that keeps the VTK array alive. Filters reuse such arrays in
+    their next execution, so change a copy."""
     view = vtk_to_numpy(array).view()
     view.flags.writeable = False
     return view
 
 
 def unit_of(array) -> str:
-    """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" for arrays without a unit, such as identifiers."""
+    """The unit of a VTK array (UNITS_LABEL): "1" for pure numbers, "" for arrays without a unit such as identifiers."""
     return array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or ""
 
 
-def _field_arrays(data) -> List[Any]:
+def _field_arrays(data) -> list[Any]:
     fields = data.GetFieldData()
     return [fields.GetAbstractArray(i) for i in range(fields.GetNumberOfArrays())]
 
 
-def field_values(data) -> Dict[str, Any]:
-    """The field data of a VTK data set by name: texts as a list, a single number as a number, several numbers as a NumPy array."""
-    found: Dict[str, Any] = {}
+def field_values(data) -> dict[str, Any]:
+    """The field data of a VTK data set by name: a list of texts, a number, or a NumPy array of several numbers."""
+    found: dict[str, Any] = {}
     for array in _field_arrays(data):
         if isinstance(array, vtkStringArray):
             found[array.GetName()] = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
@@ -57,7 +55,7 @@ def leaves_of(data) -> Iterator[Any]:
         nodes.GoToNextItem()
 
 
-def array_names(data) -> List[str]:
+def array_names(data) -> list[str]:
     """Names of the numeric point arrays."""
     arrays = data.GetPointData()
     return [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays()) if arrays.GetArray(i)]
@@ -71,13 +69,13 @@ def point_array(data, name: str) -> np.ndarray:
     return as_numpy(array)
 
 
-def triangles_of(surface) -> Tuple[np.ndarray, np.ndarray]:
+def triangles_of(surface) -> tuple[np.ndarray, np.ndarray]:
     """Points (n x 3) of vtkPolyData, and the point numbers of the triangles' corners (m x 3)."""
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     return vtk_to_numpy(surface.GetPoints().GetData()), corners
 
 
-def rows_of(what: str, values, row: Tuple[int, ...]) -> np.ndarray:
+def rows_of(what: str, values, row: tuple[int, ...]) -> np.ndarray:
     """Numbers as an array in double precision whose rows have the shape `row`."""
     rows = np.asarray(values)
     if rows.dtype.kind not in "biuf":
@@ -120,8 +118,9 @@ def vertices(points) -> vtkPolyData:
 class Cloud(Mapping):
     """A vtkPointSet as a read-only mapping from the names of its point arrays to NumPy arrays.
 
-    The arrays are VTK's own memory, stay valid as long as you hold them, and cannot be written to. `points` are the coordinates, in
-    metres east, north and up unless the data have another frame. `units` and `fields` describe the data.
+    The arrays are VTK's own memory, stay valid as long as you hold them, and cannot be written to. `points` are the
+    coordinates, in metres east, north and up unless the data have another frame. `units` and `fields` describe the
+    data.
 
     >>> scene = Scene(([(-5, 9, -5), (5, 9, -5), (0, 9, 5)], [(0, 1, 2)]), material="Wood")
     >>> scan = Scan(scene, Sensor(azimuth_step=6))
@@ -137,9 +136,9 @@ class Cloud(Mapping):
     __hash__ = object.__hash__
 
     def __init__(self, data):
-        """`data` is a vtkPointSet (also a PolyData of PyVista), of which the Cloud holds a shallow copy: arrays are shared, and later
-        changes of the point set do not show. A point cloud of Open3D, or any object with `points` that NumPy reads as n rows of
-        x, y, z, is copied."""
+        """`data` is a vtkPointSet (also a PolyData of PyVista), of which the Cloud holds a shallow copy: arrays are
+        shared, and later changes of the point set do not show. A point cloud of Open3D, or any object with `points`
+        that NumPy reads as n rows of x, y, z, is copied."""
         if isinstance(data, Cloud):
             data = data.data
         elif not isinstance(data, vtkDataObject) and hasattr(data, "points"):  # VTK 9.4 gives images `points`, too
@@ -169,23 +168,23 @@ class Cloud(Mapping):
 
     @property
     def points(self) -> np.ndarray:
-        """Coordinates as n rows of x, y, z, in the frame of the data. The frame of scans is metres east, north and up."""
+        """Coordinates as n rows of x, y, z, in the frame of the data, which for scans is metres east, north and up."""
         if not self.data.GetNumberOfPoints():
             return np.zeros((0, 3))
         return as_numpy(self.data.GetPoints().GetData())
 
     @property
-    def units(self) -> Dict[str, str]:
+    def units(self) -> dict[str, str]:
         """The unit of every point array: "1" for pure numbers, "" for identifiers."""
         return {name: unit_of(self.data.GetPointData().GetArray(name)) for name in self}
 
     @property
-    def fields(self) -> Dict[str, Any]:
+    def fields(self) -> dict[str, Any]:
         """Field data: sensor, settings and names, in SI units and degrees (`field_units`)."""
         return field_values(self.data)
 
     @property
-    def field_units(self) -> Dict[str, str]:
+    def field_units(self) -> dict[str, str]:
         """The unit of every array of the field data."""
         return {array.GetName(): unit_of(array) for array in _field_arrays(self.data)}
 
@@ -198,8 +197,8 @@ class Cloud(Mapping):
         return result
 
     def annotated(self) -> "Cloud":
-        """A copy of an echo cloud with arrays for maps and viewers: `hue` (deg) and `rgb` (paper, Eq. 13). With an origin on
-        the Earth, also `longitude`, `latitude` (deg) and `height` (m above the ellipsoid WGS84)."""
+        """A copy of an echo cloud with arrays for maps and viewers: `hue` (deg) and `rgb` (paper, Eq. 13). With an
+        origin on the Earth, also `longitude`, `latitude` (deg) and `height` (m above the ellipsoid WGS84)."""
         last: Any = _wrapped.vtkAvianLidarHSBColorMap()
         last.SetInputData(self.data)
         if "geodetic_origin" in self.fields:
@@ -209,20 +208,18 @@ class Cloud(Mapping):
         return Cloud(last.GetOutputDataObject(0))
 
     def to_pandas(self):
-        """A copy as a pandas DataFrame with one row for each point: `x`, `y`, `z` (m) and every point array. An array of several
-        components becomes `name_0`, `name_1`, ...; `attrs` holds `units` and `fields`. Raises ImportError without pandas."""
+        """A copy as a pandas DataFrame with one row for each point: `x`, `y`, `z` (m) and every point array. An array
+        of several components becomes `name_0`, `name_1`, ...; `attrs` holds `units` and `fields`. Needs pandas."""
         try:
             import pandas
         except ImportError:
-            raise ImportError("a table needs pandas, which is not installed: install python3-pandas, or pandas with pip") from None
-        frame = pandas.DataFrame({name: values.copy() for name, _, values in columns_of(self)})
-        fields = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in self.fields.items()}
-        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares these values
+            raise ImportError("a table needs pandas, which is not installed: install python3-pandas, "
+                              "or pandas with pip") from None
+        frame = pandas.DataFrame({name: values.copy() for name, _, values in _writers.columns_of(self)})
+        fields = {name: value.tolist() if isinstance(value, np.ndarray) else value
+                  for name, value in self.fields.items()}
+        frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares them
         return frame
-
-    def plot_map(self, array: str = "energy", axes=None, **options):
-        """Draws the points from above with Matplotlib; see `plot_map`."""
-        return plot_map(self, array, axes, **options)
 
     def coordinates(self, frame: str = "enu") -> np.ndarray:
         """Coordinates of an echo cloud or a cloud of beams in another frame, as n rows of three numbers.
@@ -237,11 +234,17 @@ class Cloud(Mapping):
         """
         if frame == "enu":
             return self.points
-        if frame == "sensor":
-            return self._to_sensor()
         if frame not in FRAMES:
             raise ValueError(f"frame {frame!r} is unknown, expected one of {', '.join(FRAMES)}")
-        if "geodetic_origin" not in self.fields:
+        fields = self.fields
+        if frame == "sensor":
+            if "position" not in fields or "orientation" not in fields:
+                raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
+            from scipy.spatial.transform import Rotation
+            yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
+            turn = Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
+            return turn.apply(self.points - fields["position"], inverse=True)
+        if "geodetic_origin" not in fields:
             raise ValueError(f"the frame {frame!r} needs field data 'geodetic_origin'; the scene has no origin")
         transform = _wrapped.vtkAvianLidarGeodeticTransform()
         transform.SetInputData(self.data)
@@ -250,14 +253,5 @@ class Cloud(Mapping):
         update(transform)
         return Cloud(transform.GetOutputDataObject(0)).points
 
-    def _to_sensor(self) -> np.ndarray:
-        fields = self.fields
-        if "position" not in fields or "orientation" not in fields:
-            raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
-        from scipy.spatial.transform import Rotation
-        yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
-        return (self.points - fields["position"]) @ Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True).as_matrix()
-
-    def save(self, file, **properties) -> None:
-        """Writes the cloud; see `save`."""
-        write(self, file, **properties)
+    plot_map = _plot.plot_map
+    save = _writers.write

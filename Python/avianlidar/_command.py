@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The arguments and the exit codes of the command `avianlidar` (also `python3 -m avianlidar`). `_verbs` does the work."""
-from __future__ import annotations
-
+"""The arguments and the exit codes of the command `avianlidar` (also `python3 -m avianlidar`). `_verbs` does the
+work."""
 import argparse
 import math
 import os
@@ -10,105 +9,115 @@ import re
 import sys
 import traceback
 import warnings
-from typing import Any, List, Optional
+from typing import Any
 
 from ._suffixes import READERS, WRITERS, listed
 from ._weather import WEATHER
 
 WRITTEN, READ = listed(WRITERS), listed(READERS)
-PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.07 s; 9.2 %%, 0.08 s", "Draft": "0.41 %%, 0.13 s; 0.97 %%, 0.52 s",
-           "Standard": "0.21 %%, 0.24 s; 0.40 %%, 0.94 s", "Reference": "0.12 %%, 0.85 s; 0.14 %%, 4.4 s",
+PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.07 s; 9.2 %%, 0.08 s",
+           "Draft": "0.41 %%, 0.13 s; 0.97 %%, 0.52 s", "Standard": "0.21 %%, 0.24 s; 0.40 %%, 0.94 s",
+           "Reference": "0.12 %%, 0.85 s; 0.14 %%, 4.4 s",
            "Paper": "the paper's method, its noise of 100 rays: 16 %%, 0.11 s; 16 %%, 0.16 s"}
-SCENE = "a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file"
+SENSOR = "a name that `avianlidar sensors` lists, or a .lidarsensor.json file"
+MANY = "may be given many times"
+RESUMES = "The same command continues a stopped run. `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work."
 
 # For each verb: a few words, a description and examples.
 VERBS = {
-    "scan": ("one scan of a scene", "Scans a scene once and writes the echoes to one file or several.", """\
+    "scan": ("one scan of a scene",
+        "Scans a scene once and writes the echoes to one file or several.", """\
   avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
   avianlidar scan hangar.stl --scale 0.001 --material Metal --position 0 -60 2 -o echoes.pcd -o range.png
-  avianlidar scan airport.glb --sensor mine.lidarsensor.json --sensor-set range_gate=800 --scan-set rays_per_beam=400 -o echoes.csv
+  avianlidar scan airport.glb --sensor mine.lidarsensor.json --sensor-set range_gate=800 \
+--scan-set rays_per_beam=400 -o echoes.csv
 """),
-    "advise": ("the fastest settings for an error", "Measures on some beams of a scan which settings a scene requires. The advice is the "
-               "fastest settings whose error bounds stay below the limits that you set, as options of the command, in Python and for "
-               "ParaView. The advice also gives the share and the cost of second reflections, connections, "
-               "density of rays, weather and processes.", """\
+    "advise": ("the fastest settings for an error",
+        "Measures on some beams of a scan which settings a scene requires. The advice is the fastest settings whose "
+        "error bounds stay below the limits that you set, as options of the command, in Python and for ParaView. The "
+        "advice also gives the share and the cost of second reflections, connections, density of rays, weather and "
+        "processes.", """\
   avianlidar advise airport.lidarscene.json --sensor Search905 --position 0 0 3 --energy 0.02
   avianlidar advise hangar.stl --position 0 -60 2 --missed 0.005 --beams 4000 -o advice.json -o advice.png
 """),
-    "info": ("what is in a file", "Shows what a file holds: a scene, a mesh, a cloud, a sensor, a plan or a scenario.", """\
+    "info": ("what is in a file",
+        "Shows what a file holds: a scene, a mesh, a cloud, a sensor, a plan or a scenario.", """\
   avianlidar info hangar.stl
   avianlidar info echoes.las
 """),
-    "compare": ("how far two clouds are apart", "Computes distances between the nearest points of two clouds: the "
-                "Hausdorff distance, the root mean square (paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
+    "compare": ("how far two clouds are apart",
+        "Computes distances between the nearest points of two clouds: the Hausdorff distance, the root mean square "
+        "(paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
   avianlidar compare simulated.las measured.pcd
   avianlidar compare simulated.las measured.pcd -o distances.vtp
 """),
-    "convert": ("a cloud in another format", "Writes a cloud in another format. Names and units of arrays are kept as far as both "
-                "formats have them. A labelled sequence becomes one file of ROS 2 messages (MCAP).", """\
+    "convert": ("a cloud in another format",
+        "Writes a cloud in another format. Names and units of arrays are kept as far as both formats have them. A "
+        "labelled sequence becomes one file of ROS 2 messages (MCAP).", """\
   avianlidar convert echoes.las echoes.pcd
   avianlidar convert drive.pcap revolution.ply --sensor-address 192.168.1.201 --time 12.5
   avianlidar convert sequences/sequences/00 sequence.mcap
 """),
-    "airport": ("a scene and plans of an airport from a map", "Writes a scene file, plans of coverage and "
-                "siting, a scenario and a picture of an airport, from an extract of OpenStreetMap or another map. A second "
-                "run keeps files that you have edited.", """\
+    "airport": ("a scene and plans of an airport from a map",
+        "Writes a scene file, plans of coverage and siting, a scenario and a picture of an airport, from an extract "
+        "of OpenStreetMap or another map. A second run keeps files that you have edited.", """\
   avianlidar airport extract.osm.pbf --heights terrain.tif -o my-airport
   avianlidar airport county.geojson --icao EDBN -o edbn
 """),
-    "sequence": ("labelled scans of birds, to train on", "Writes labelled scans of a scenario in the layout "
-                 "of SemanticKITTI. The same command continues a stopped run. "
-                 "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+    "sequence": ("labelled scans of birds, to train on",
+        f"Writes labelled scans of a scenario in the layout of SemanticKITTI. {RESUMES}", """\
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """),
-    "track": ("tracks of birds in labelled scans, with scores", "Writes a report card (HTML, CSV) of tracks in sequences: share "
-              "of birds tracked, delay, identity switches, false tracks an hour, warning time. Sequences of a scenario "
-              "are made first. Several inputs are compared. The same command continues a stopped run. "
-              "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+    "track": ("tracks of birds in labelled scans, with scores",
+        "Writes a report card (HTML, CSV) of tracks in sequences: share of birds tracked, delay, identity switches, "
+        "false tracks an hour, warning time. Sequences of a scenario are made first. Several inputs are compared. "
+        f"{RESUMES}", """\
   avianlidar track sequences -o tracks --runways hongqiao.geojson
   avianlidar track hongqiao.scenario.json -o tracks --sensor Search905 --sensor Search1550 --scans 500
 """),
-    "bench": ("clutter filters compared with labels", "Compares predictions for labelled sequences (in SemanticKITTI's format) "
-              "with the labels: a page (HTML) and tables (CSV) with recall at one false point a scan, IoU, curves and tracks "
-              "lost, by subset, range and species.", """\
+    "bench": ("clutter filters compared with labels",
+        "Compares predictions for labelled sequences (in SemanticKITTI's format) with the labels: a page (HTML) and "
+        "tables (CSV) with recall at one false point a scan, IoU, curves and tracks lost, by subset, range and "
+        "species.", """\
   avianlidar bench sequences --predictions mine -o scores
   avianlidar bench airport airport-rain --predictions trees network --first 8 -o scores
 """),
-    "coverage": ("maps of where a bird would be detected", "Writes maps of where a bird would be detected and why it is missed elsewhere "
-                 "(GeoTIFF, GeoJSON), shares (CSV) and clutter (VTP) for a plan. A plan that compares sensors makes a folder for each "
-                 "sensor.", """\
+    "coverage": ("maps of where a bird would be detected",
+        "Writes maps of where a bird would be detected and why it is missed elsewhere (GeoTIFF, GeoJSON), shares "
+        "(CSV) and clutter (VTP) for a plan. A plan that compares sensors makes a folder for each sensor.", """\
   avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
 """),
-    "siting": ("where lidars should stand", "Writes candidates by rank (CSV, GeoJSON, VTP), the best networks and "
-               "what changes these networks, for a plan. The same command continues a stopped run. "
-               "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+    "siting": ("where lidars should stand",
+        "Writes candidates by rank (CSV, GeoJSON, VTP), the best networks and what changes these networks, for a "
+        f"plan. {RESUMES}", """\
   avianlidar siting hongqiao.coverage.json -o sites --siting-set spacing=100
 """),
-    "design": ("the cheapest lidar design for a share of birds", "Finds, within the bounds of a plan, the cheapest design that detects or "
-               "tracks the required share of birds (HTML, CSV). The same command continues a stopped run. "
-               "`mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work.", """\
+    "design": ("the cheapest lidar design for a share of birds",
+        "Finds, within the bounds of a plan, the cheapest design that detects or tracks the required share of birds "
+        f"(HTML, CSV). {RESUMES}", """\
   avianlidar design hongqiao-design.coverage.json -o design --design-set share=0.4
 """),
-    "report": ("maps, sections, shares and sites as one page of HTML", "Writes one page of HTML for a plan. "
-               "The page needs no internet. Tables and pictures are in a folder beside it.", """\
+    "report": ("maps, sections, shares and sites as one page of HTML",
+        "Writes one page of HTML for a plan. The page needs no internet. Tables and pictures are in a folder beside "
+        "it.", """\
   avianlidar report hongqiao.coverage.json -o report.html
 """),
-    "reach": ("how far birds are seen", "Computes how far one scan of a sensor detects birds within its beams, in free air. In brackets "
-              "stand the ranges that the fit of the receiver leaves open.", """\
+    "reach": ("how far birds are seen",
+        "Computes how far one scan of a sensor detects birds within its beams, in free air. In brackets stand the "
+        "ranges that the fit of the receiver leaves open.", """\
   avianlidar reach --sensor OS1_64 --species "herring gull"
   avianlidar reach --sensor Search905 --sensor VLP16 --species crow --weather fog:1000
 """),
     "sensors": ("sensors that are known by name",
-                "Lists the sensors that are known by name. With a name, shows the sensor. With --fit, fits a receiver to the points of a "
-                "data sheet.", """\
+        "Lists the sensors that are known by name. With a name, shows the sensor. With --fit, fits a receiver to the "
+        "points of a data sheet.", """\
   avianlidar sensors
   avianlidar sensors VLP-16
   avianlidar sensors --fit my.lidarsensor.json -o fitted.lidarsensor.json
 """),
-    "materials": ("materials that are known by name", "Lists the materials that are known by name, with coefficients and sources.", """\
-  avianlidar materials
-"""),
+    "materials": ("materials that are known by name",
+        "Lists the materials that are known by name, with coefficients and sources.", "  avianlidar materials\n"),
 }
 
 
@@ -117,19 +126,21 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, *args: Any, **options: Any):
         super().__init__(*args, **options)
-        self._negative_number_matcher = re.compile(r"^-\d*\.?\d+([eE][-+]?\d+)?$")  # with -5e0, which argparse reads as an option
+        # With -5e0, which argparse would read as an option.
+        self._negative_number_matcher = re.compile(r"^-\d*\.?\d+([eE][-+]?\d+)?$")
 
     def error(self, message: str):
         self.exit(2, f"{self.prog}: {message} (see --help)\n")
 
 
 def _value(text: str) -> Any:
-    """Name and value of `name=value`. The value is a finite number, a switch, a word, or several of these separated by commas."""
+    """Name and value of `name=value`. The value is finite numbers, switches or words, separated by commas."""
     def one(word):
         try:
             value = float(word)
         except ValueError:
-            return {"on": True, "true": True, "yes": True, "off": False, "false": False, "no": False}.get(word.lower(), word)
+            switches = {**dict.fromkeys(("on", "true", "yes"), True), **dict.fromkeys(("off", "false", "no"), False)}
+            return switches.get(word.lower(), word)
         if not math.isfinite(value):
             raise argparse.ArgumentTypeError(f"{text} is not a finite number")
         return int(value) if value.is_integer() and abs(value) < 2**53 else value
@@ -143,26 +154,12 @@ def _value(text: str) -> Any:
 def _settings(verb, **examples: str) -> None:
     """Adds an option --PART-set for each part. @param examples one example by part, or the whole help text"""
     for part, words in examples.items():
-        help = words if " " in words else f"a property of the {part}, for example {words}; may be given many times"
+        help = words if " " in words else f"a property of the {part}, for example {words}; {MANY}"
         verb.add_argument(f"--{part}-set", action="append", default=[], type=_value, metavar="NAME=VALUE", help=help)
 
 
-def _weather(verb, threads: bool = False) -> None:
-    verb.add_argument("--weather", nargs="+", metavar="KIND:NUMBER", help=WEATHER)
-    if threads:
-        _threads(verb)
-
-
-def _threads(verb) -> None:
-    verb.add_argument("--threads", type=int, default=0, help="number of threads; default 0: one for each core")
-
-
-def _out(verb, what: str, **options: Any) -> None:
-    verb.add_argument("-o", "--out", type=pathlib.Path, help=what, **{"required": True, **options})
-
-
-SENSOR = "a name that `avianlidar sensors` lists, or a .lidarsensor.json file"
-MANY = "may be given many times"
+def _out(verb, what: str, required: bool = True, **options: Any) -> None:
+    verb.add_argument("-o", "--out", type=pathlib.Path, help=what, required=required, **options)
 
 
 def parser() -> Parser:
@@ -173,41 +170,42 @@ def parser() -> Parser:
                    epilog="examples:\n" + "".join(examples.splitlines(True)[0] for _, _, examples in VERBS.values()))
     whole.add_argument("--version", action="version", version=f"avianlidar {__version__}")
     verbs = whole.add_subparsers(dest="verb", required=True, metavar="verb", parser_class=Parser)
-    verb = {name: verbs.add_parser(name, help=words, description=sentence, epilog="examples:\n" + examples, formatter_class=raw)
-            for name, (words, sentence, examples) in VERBS.items()}
+    verb = {name: verbs.add_parser(name, help=words, description=sentence, epilog="examples:\n" + examples,
+                                   formatter_class=raw) for name, (words, sentence, examples) in VERBS.items()}
 
     for name in ("scan", "advise"):
         add = verb[name].add_argument
-        add("scene", help=SCENE)
+        add("scene", help="a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file")
         add("--sensor", default="Airport16", help=f"{SENSOR}; default Airport16")
         add("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
             help="position of the sensor, m; default: the lidar's position in the scene file, else 0 0 0")
-        add("--material",
-            help="material of the whole scene, a name that `avianlidar materials` lists; default: the materials of the file, else Wall")
-        add("--scale", type=float, help="length of the mesh's unit in metres, for example 0.001 for millimetres; default 1")
+        add("--material", help="material of the whole scene, a name that `avianlidar materials` lists; default: the "
+            "materials of the file, else Wall")
+        add("--scale", type=float,
+            help="length of the mesh's unit in metres, for example 0.001 for millimetres; default 1")
         add("--up-axis", choices=("y", "z"), help="axis of a mesh that points up; default: that of the file's format")
         if name == "scan":
             _out(verb[name], f"file: {WRITTEN}; .png gives a picture of the range image; {MANY}", action="append")
             add("--quiet", action="store_true", help="omits the lines on what was modelled and what was left out")
             add("--preset", choices=tuple(PRESETS), help=(
-                "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams, at the airport without and then "
-                f"with masts and fences: {', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; "
-                "Paper also builds the collision tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)"))
+                "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams, at the "
+                "airport without and then with masts and fences: "
+                f"{', '.join(f'{name} ({words})' for name, words in PRESETS.items())}; Paper also builds the collision "
+                "tree of the paper; default: 100 rays, 2 connections (0.23 %%, 0.15 s; 0.57 %%, 1.0 s)"))
         else:
             add("--energy", type=float, default=0.02, metavar="SHARE",
                 help="largest allowed error of energies, rms, relative; default 0.02")
-            add("--range", type=float, default=0.05, metavar="METRES", help="largest allowed error of ranges, rms, m; default 0.05")
-            add("--missed", type=float, default=0.01, metavar="SHARE",
-                help="largest allowed share of echoes that are missed or invented, relative to the true echoes; default 0.01")
+            add("--range", type=float, default=0.05, metavar="METRES",
+                help="largest allowed error of ranges, rms, m; default 0.05")
+            add("--missed", type=float, default=0.01, metavar="SHARE", help="largest allowed share of echoes that are "
+                "missed or invented, relative to the true echoes; default 0.01")
             add("--beams", type=int, default=1000, help="number of beams that are measured; default 1000")
-            _out(verb[name], "file: .json (everything), .csv (the "
-                             f"table) or .png (a picture); {MANY}", action="append", required=False, default=[])
-        _settings(verb[name], sensor="range_gate=800", scan="rays_per_beam=400")
-        _weather(verb[name], threads=True)
+            _out(verb[name], f"file: .json (everything), .csv (the table) or .png (a picture); {MANY}", required=False,
+                 action="append", default=[])
 
-    verb["info"].add_argument("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
-    verb["info"].add_argument("--quiet", action="store_true",
-                              help="omits, for a cloud, the lines on what was modelled and what was left out")
+    add = verb["info"].add_argument
+    add("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
+    add("--quiet", action="store_true", help="omits, for a cloud, the lines on what was modelled and what was left out")
     verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["compare"].add_argument("b", type=pathlib.Path, help="a second cloud, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
@@ -215,40 +213,36 @@ def parser() -> Parser:
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap")
     for name in ("info", "compare", "convert"):
         add = verb[name].add_argument
-        add("--sensor-address", metavar="ADDRESS",
-            help="address of the sensor in packets (.pcap), as 192.168.1.201 or 192.168.1.201:2368; default: the only sensor")
+        add("--sensor-address", metavar="ADDRESS", help="address of the sensor in packets (.pcap), as 192.168.1.201 or "
+            "192.168.1.201:2368; default: the only sensor")
         add("--time", type=float, metavar="S",
             help="time of the revolution in packets, seconds since the full hour; default: the first revolution")
-    verb["sensors"].add_argument("name", nargs="?", help="name of a sensor, or a .lidarsensor.json file")
-    verb["sensors"].add_argument("--fit", metavar="FILE", help="a sensor file with a data sheet, or a name of a "
-                                 "sensor, whose receiver is fitted to all points of the data sheet; needs SciPy")
+    add = verb["sensors"].add_argument
+    add("name", nargs="?", help="name of a sensor, or a .lidarsensor.json file")
+    add("--fit", metavar="FILE", help="a sensor file with a data sheet, or a name of a sensor, whose receiver is "
+        "fitted to all points of the data sheet; needs SciPy")
     _out(verb["sensors"], "file: the sensor with the fitted receiver (.lidarsensor.json)", required=False)
 
     add = verb["airport"].add_argument
     add("extract", type=pathlib.Path, help="extract of a map: .osm, .osm.pbf, .geojson, .gpkg")
     add("--heights", type=pathlib.Path, metavar="DEM",
         help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level ground")
-    add("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[],
-        help="surveyed obstacles: AIXM 5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
+    add("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[], help="surveyed obstacles: AIXM "
+        "5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
     which = verb["airport"].add_mutually_exclusive_group()
     which.add_argument("--icao", metavar="CODE", help="ICAO code of the airport, if the extract holds several airports")
     which.add_argument("--bounds", nargs=4, type=float, metavar=("W", "S", "E", "N"),
                        help="bounds of the scene, degrees; default: 2 km around the runways")
-    _out(verb["airport"], "folder")
 
     add = verb["reach"].add_argument
     add("--sensor", action="append", required=True, help=f"{SENSOR}; {MANY}")
     add("--species", action="append", help=f"species of the bird; default herring gull; {MANY}")
     _settings(verb["reach"], sensor="range_gate=800")
-    _weather(verb["reach"])
     _out(verb["reach"], "file: .csv with shares by range", required=False)
 
     add = verb["sequence"].add_argument
     add("scenario", help="a scenario file, or the manifest.json of another sequence")
     add("--scans", type=int, help="number of scans that replaces the number in the scenario")
-    _out(verb["sequence"], "folder")
-    _settings(verb["sequence"], sensor="range_gate=800", scan="rays_per_beam=400")
-    _weather(verb["sequence"], threads=True)
 
     add = verb["track"].add_argument
     add("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files")
@@ -259,42 +253,49 @@ def parser() -> Parser:
     add("--scans", type=int, help="number of scans that replaces the number in scenarios")
     add("--learn", type=int, default=20,
         help="number of scans at the beginning of a sequence from which only clutter is learned; default 20")
-    add("--cutoff", type=float, default=20.0,
-        help="distance in m from which on a track is not assigned to a bird; also the cutoff of the OSPA distance; default %(default)g")
+    add("--cutoff", type=float, default=20.0, help="distance in m from which on a track is not assigned to a bird; "
+        "also the cutoff of the OSPA distance; default %(default)g")
     add("--order", type=float, default=2.0, help="order of the OSPA distance, 1 to 20; default %(default)g")
-    _out(verb["track"], "folder")
-    _settings(verb["track"], clutter="a property of the clutter filter, for example "
-                                     "clutter_threshold=0.1; may be given many times", tracker="confirm_hits=2")
-    _weather(verb["track"], threads=True)
+    _settings(verb["track"], clutter=f"a property of the clutter filter, for example clutter_threshold=0.1; {MANY}",
+              tracker="confirm_hits=2")
 
     add = verb["bench"].add_argument
     add("folders", nargs="+", type=pathlib.Path, help="folders that `avianlidar sequence` has made")
     add("--predictions", nargs="+", type=pathlib.Path, required=True, help="folders with "
-        "sequences/NN/predictions/NNNNNN.label, and .score files (float32) if scores are known; for several sets, each set's predictions "
-        "in a folder with the name of the set")
-    add("--sequences", nargs="+", default=[], metavar="NN", help="numbers of the scored sequences, as 02; default: all sequences")
+        "sequences/NN/predictions/NNNNNN.label, and .score files (float32) if scores are known; for several sets, each "
+        "set's predictions in a folder with the name of the set")
+    add("--sequences", nargs="+", default=[], metavar="NN",
+        help="numbers of the scored sequences, as 02; default: all sequences")
     add("--first", type=int, default=0, help="number of the first scored scan of each sequence; default 0")
-    _out(verb["bench"], "folder")
 
     for name in ("coverage", "siting", "design", "report"):
         add = verb[name].add_argument
         add("plan", help="a .coverage.json file")
-        _out(verb[name], "file: .html" if name == "report" else "folder")
         _settings(verb[name], sensor="range_gate=3000", coverage="species=crow")
-        _weather(verb[name])
         if name != "coverage":
-            add("--metar", type=pathlib.Path, help="file of METAR reports, from which the year's weather is counted by the hour")
+            add("--metar", type=pathlib.Path,
+                help="file of METAR reports, from which the year's weather is counted by the hour")
         if name in ("siting", "report"):
-            _settings(
-                verb[name], siting="a part of the plan's siting, for example spacing=100; file names are relative to the plan's folder")
+            _settings(verb[name], siting="a part of the plan's siting, for example spacing=100; file names are "
+                                         "relative to the plan's folder")
         if name == "design":
             _settings(verb[name], design="a part of the plan's design, for example share=0.4 or designs=500")
-        if name != "siting":  # siting uses one thread for each site, and ranks share the sites
-            _threads(verb[name])
+
+    _out(verb["report"], "file: .html")
+    for name in ("airport", "sequence", "track", "bench", "coverage", "siting", "design"):
+        _out(verb[name], "folder")
+    for name in ("scan", "advise", "sequence"):
+        _settings(verb[name], sensor="range_gate=800", scan="rays_per_beam=400")
+    simulating = ("scan", "advise", "sequence", "track", "coverage", "design", "report")
+    for name in (*simulating, "siting", "reach"):
+        verb[name].add_argument("--weather", nargs="+", metavar="KIND:NUMBER", help=WEATHER)
+    for name in simulating:  # siting uses one thread for each site, and ranks share the sites
+        verb[name].add_argument("--threads", type=int, default=0,
+                                help="number of threads; default 0: one for each core")
     return whole
 
 
-def main(argv: Optional[List[str]] = None) -> int:
+def main(argv: list[str] | None = None) -> int:
     """Runs the command. @return 0; 2 after an error, which is printed in one line"""
     from . import _terminal, _verbs
     from ._pipeline import words_of

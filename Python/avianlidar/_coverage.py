@@ -1,24 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Coverage: the places where a bird would be detected."""
-from __future__ import annotations
-
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkImageData, vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, add_array, array_names, field_values, point_array, rows_of, with_points
+from ._cloud import Cloud, add_array, field_values, point_array, rows_of, with_points
 from ._pipeline import Progress
 from ._properties import wraps
 from ._scan import SceneAndSensor
 from ._sensor import Sensor
 
 
-def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyData:
-    """Places of a coverage. @param points n x 3, m @param regions for each name the numbers of its points; points without a
-    region belong to the region "elsewhere" """
+def places_of(points, regions: Mapping[str, Any] | None = None) -> vtkPolyData:
+    """Places of a coverage. @param points n x 3, m @param regions for each name the numbers of its points; points
+    without a region belong to the region "elsewhere" """
     points = rows_of("places", points, (3,))
     data = with_points(points)
     if regions is not None:
@@ -32,8 +31,8 @@ def places_of(points, regions: Optional[Mapping[str, Any]] = None) -> vtkPolyDat
 
 @wraps(_wrapped.vtkAvianLidarCoverage)
 class Coverage(SceneAndSensor):
-    """Where a lidar would detect a bird, and why the bird is missed elsewhere. Every property of vtkAvianLidarCoverage is an attribute,
-    in the unit of its description. Lines of sight are kept when bird, air or receiver change.
+    """Where a lidar would detect a bird, and why the bird is missed elsewhere. Every property of vtkAvianLidarCoverage
+    is an attribute, in the unit of its description. Lines of sight are kept when bird, air or receiver change.
 
     >>> wall = Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)]), material="Wall")
     >>> cover = Coverage(wall, Sensor("Search905"), places=[(0, 200, 1), (100, 200, 1)], species="crow")
@@ -41,13 +40,14 @@ class Coverage(SceneAndSensor):
     ['shadowed', 'seen']
     """
 
-    def __init__(self, scene, sensor: Optional[Sensor] = None, places=None, progress: Optional[Progress] = None,
-                 height_limits: Optional[Sequence[float]] = None, **settings: Any):
+    def __init__(self, scene, sensor: Sensor | None = None, places=None, progress: Progress | None = None,
+                 height_limits: Sequence[float] | None = None, **settings: Any):
         """Coverage, not yet computed.
 
         scene          a Scene, or any source of a Scene: a scene file, VTK data, (points, triangles)
         sensor         default: Airport16 at the scene's lidar position, else at the origin
-        places         n x 3 coordinates (m), or a vtkDataSet; None: the points of an image given by `bounds` and `spacing`
+        places         n x 3 coordinates (m), or a vtkDataSet; None: the points of an image given by `bounds` and
+                       `spacing`
         progress       called with the completed share (0 to 1) and the name of the running class
         height_limits  limits of the table's height bands, m, ascending; default 0, 15, 30, 60, 150
         settings       any property by name, for example species="crow", visibility=10e3 (m), bounds, spacing
@@ -58,7 +58,7 @@ class Coverage(SceneAndSensor):
             self.height_limits = list(height_limits)
 
     @property
-    def height_limits(self) -> List[float]:
+    def height_limits(self) -> list[float]:
         """Limits of the table's height bands, m, ascending."""
         return [self.algorithm.GetHeightLimit(i) for i in range(self.algorithm.GetNumberOfHeightLimits())]
 
@@ -69,7 +69,7 @@ class Coverage(SceneAndSensor):
             self.algorithm.AddHeightLimit(limit)
 
     @property
-    def places(self) -> Optional[vtkDataSet]:
+    def places(self) -> vtkDataSet | None:
         """The places; None for an image. May be set."""
         return self._places
 
@@ -84,34 +84,34 @@ class Coverage(SceneAndSensor):
         return self.update().algorithm.GetOutputDataObject(0)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area` (m2)
-        or `status`; the axes of an image are z, y, x. `pose_probabilities`, if switched on, have a last axis of poses."""
+        """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area`
+        (m2) or `status`; the axes of an image are z, y, x. The last axis of `pose_probabilities` are the poses."""
         data = self.data
-        if name not in array_names(data):
-            raise KeyError(f"there is no array {name!r}, expected one of {', '.join(array_names(data))}")
         values = point_array(data, name)
-        return values.reshape(data.GetDimensions()[::-1] + values.shape[1:]) if isinstance(data, vtkImageData) else values
+        rows = data.GetDimensions()[::-1] if isinstance(data, vtkImageData) else values.shape[:1]
+        return values.reshape(rows + values.shape[1:])
 
     @property
-    def status_names(self) -> List[str]:
+    def status_names(self) -> list[str]:
         """The meanings of the numbers in `status`."""
         return field_values(self.data)["status_names"]
 
     @staticmethod
     def strike_height_density(heights) -> np.ndarray:
-        """Density of bird strikes over height, 1/m, with which `strike_height_weights` weights the table. @param heights n heights, m
-        above ground"""
-        return np.array([*map(_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity, np.asarray(heights, dtype=float))])
+        """Density of bird strikes over height, 1/m, with which `strike_height_weights` weights the table.
+        @param heights n heights, m above ground"""
+        return np.array([_wrapped.vtkAvianLidarCoverage.StrikeHeightDensity(height)
+                         for height in np.asarray(heights, dtype=float)])
 
     def __repr__(self) -> str:
         return _display.line(self, _display.coverage_rows)
 
     @property
-    def table(self) -> List[Dict[str, Any]]:
-        """Shares by region, species and height band (m), with standard errors, one row each, as in vtkAvianLidarCoverage."""
+    def table(self) -> list[dict[str, Any]]:
+        """Rows of shares by region, species and height band (m), with standard errors; see vtkAvianLidarCoverage."""
         table = self.update().algorithm.GetOutputDataObject(1)
         columns = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())]
-        return [{column.GetName(): column.GetValue(row) for column in columns} for row in range(table.GetNumberOfRows())]
+        return [{column.GetName(): column.GetValue(i) for column in columns} for i in range(table.GetNumberOfRows())]
 
     @property
     def clutter_map(self) -> Cloud:

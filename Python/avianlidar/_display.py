@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Representations of scenes, sensors and scans in a notebook: a small table and, with Matplotlib, a picture."""
-from __future__ import annotations
-
 import base64
 import html
 import io
-from typing import Any, Callable, Dict, Optional
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -16,9 +15,10 @@ from ._sight import extent
 MOST = 20000  # number of triangles or beams in a picture, at most
 
 
-def page(thing, rows: Callable[[Any], Dict[str, Any]], draw: Optional[Callable[[Any], None]] = None, size=(4.0, 3.0)) -> str:
-    """HTML of a table and a picture; after an exception, its message. @param draw draws into axes of Matplotlib @param size size of the
-    picture, inches"""
+def page(thing, rows: Callable[[Any], dict[str, Any]], draw: Callable[[Any], None] | None = None,
+         size=(4.0, 3.0)) -> str:
+    """HTML of a table and a picture; after an exception, its message.
+    @param draw draws into axes of Matplotlib @param size size of the picture, inches"""
     try:
         lines = "".join(f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>"
                         f"{html.escape(str(value))}</td></tr>" for key, value in rows(thing).items())
@@ -39,7 +39,7 @@ def _picture(draw: Callable[[Any], None], size) -> str:
     return f"<img alt='picture' src='data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}'/>"
 
 
-def place_rows(scene) -> Dict[str, Any]:
+def place_rows(scene) -> dict[str, Any]:
     """The rows of a scene that need no merged surfaces."""
     rows = {"cells": scene.surfaces.GetNumberOfCells()}
     if rows["cells"]:
@@ -53,7 +53,7 @@ def place_rows(scene) -> Dict[str, Any]:
     return rows
 
 
-def scene_rows(scene) -> Dict[str, Any]:
+def scene_rows(scene) -> dict[str, Any]:
     """The rows of a scene's table."""
     rows = {"objects": len(scene.objects), "triangles": scene.number_of_triangles}
     if scene.number_of_triangles:
@@ -68,26 +68,27 @@ def draw_from_above(scene, axes) -> None:
     if not scene.number_of_triangles:
         return
     corners, triangles = triangles_of(scene.tree.GetOutput())
-    least, greatest = corners[:, 2].min(), corners[:, 2].max()
-    shades: Dict[str, Any] = {"cmap": "Greys", "clim": (1.5 * least - 0.5 * greatest - 1, 1.5 * greatest - 0.5 * least + 1)}
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    margin = 0.5 * (high[2] - low[2]) + 1
+    shades: dict[str, Any] = {"cmap": "Greys", "clim": (low[2] - margin, high[2] + margin)}
     if len(triangles) > MOST:  # draw the highest corner in each cell of a raster
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        cells = (199.999 * (corners[:, :2] - low[:2]) / np.maximum(high[:2] - low[:2], 1e-9)).astype(int)
+        column, row, _ = (199.999 * (corners - low) / np.maximum(high - low, 1e-9)).astype(int).T
         raster = np.full((200, 200), -np.inf)
-        np.maximum.at(raster, (cells[:, 1], cells[:, 0]), corners[:, 2])
+        np.maximum.at(raster, (row, column), corners[:, 2])
         axes.imshow(np.ma.masked_invalid(raster), origin="lower", extent=(low[0], high[0], low[1], high[1]), **shades)
     else:
         triangles = corners[triangles]
         heights = triangles[:, :, 2].max(axis=1)
         order = np.argsort(heights)
-        axes.add_collection(PolyCollection(triangles[order, :, :2], array=heights[order], edgecolors="face", linewidths=0.3, **shades))
+        axes.add_collection(PolyCollection(triangles[order, :, :2], array=heights[order], edgecolors="face",
+                                           linewidths=0.3, **shades))
         axes.autoscale_view()
     if scene.lidar_position:
         axes.plot(*scene.lidar_position[:2], "r+")
     axes.set(xlabel="east (m)", ylabel="north (m)", aspect="equal")
 
 
-def sensor_rows(sensor) -> Dict[str, Any]:
+def sensor_rows(sensor) -> dict[str, Any]:
     """The rows of a sensor's table."""
     beams = sensor.beams
     rows = {"beams": beams.number_of_points}
@@ -104,16 +105,13 @@ def sensor_rows(sensor) -> Dict[str, Any]:
                  "full beam width": value("half_beamwidth", "mrad", 2e3), "rate": value("rotation_rate", "Hz")})
     if sensor.half_beamwidth_across:
         rows["full beam width"] += " by " + value("half_beamwidth_across", "mrad", 2e3)
-    outline = ("", "rectangle")[sensor.algorithm.GetBeamOutline()]
-    shape = [outline, f"turned by {sensor.beam_rotation:g} deg" if sensor.beam_rotation else "",
-             f"Gaussian, cut at {sensor.gaussian_truncation:g} radii of 1/e2" if sensor.algorithm.GetBeamProfile() == 1 else ""]
-    if any(shape):
-        rows["beam"] = ", ".join(filter(None, shape))
-    if assumed:
-        rows["assumed"] = ", ".join(assumed)
-    said = sensor.description
-    rows.update({title: said[key] for title, key in (("what", "comment"), ("source", "source")) if key in said})
-    return rows
+    said, gaussian = sensor.description, sensor.algorithm.GetBeamProfile() == 1
+    shape = [("", "rectangle")[sensor.algorithm.GetBeamOutline()],
+             f"turned by {sensor.beam_rotation:g} deg" if sensor.beam_rotation else "",
+             f"Gaussian, cut at {sensor.gaussian_truncation:g} radii of 1/e2" if gaussian else ""]
+    rows.update(beam=", ".join(filter(None, shape)), assumed=", ".join(assumed), what=said.get("comment"),
+                source=said.get("source"))
+    return {key: value for key, value in rows.items() if value not in ("", None)}
 
 
 def draw_pattern(sensor, axes) -> None:
@@ -124,7 +122,7 @@ def draw_pattern(sensor, axes) -> None:
     axes.set(xlabel="azimuth (deg from north)", ylabel="elevation (deg)")
 
 
-def scan_rows(scan) -> Dict[str, Any]:
+def scan_rows(scan) -> dict[str, Any]:
     """The rows of a scan's table that need no execution."""
     if not scan.is_current():
         return {"state": "not yet run: read scan.echoes, scan[\"energy\"], scan.update()"}
@@ -135,17 +133,18 @@ def scan_rows(scan) -> Dict[str, Any]:
     return rows
 
 
-def coverage_rows(cover) -> Dict[str, Any]:
+def coverage_rows(cover) -> dict[str, Any]:
     """The rows of a coverage's table that need no execution."""
+    air = f"attenuation {cover.attenuation_coefficient:g} per metre"
     rows = {"bird": cover.species or f"target of {cover.effective_area:g} m2",
-            "air": f"visibility {cover.visibility:g} m" if cover.visibility > 0.0 else f"attenuation {cover.attenuation_coefficient:g} per metre",
+            "air": f"visibility {cover.visibility:g} m" if cover.visibility > 0.0 else air,
             "sensor": "({:g}, {:g}, {:g}) m".format(*cover.sensor.position)}
     if cover.places is None:
         return {**rows, "image": extent(cover.bounds), "spacing": "({:g}, {:g}, {:g}) m".format(*cover.spacing)}
     return {**rows, "places": cover.places.GetNumberOfPoints()}
 
 
-def line(thing, rows: Callable[[Any], Dict[str, Any]]) -> str:
+def line(thing, rows: Callable[[Any], dict[str, Any]]) -> str:
     """The text of `repr`. Never raises an exception."""
     try:
         return f"<{type(thing).__name__}: " + "; ".join(f"{key} {value}" for key, value in rows(thing).items()) + ">"

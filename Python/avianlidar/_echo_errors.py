@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors of echoes compared with a reference of the same beams: errors of energy and of range, and shares of missed or invented echoes.
-The errors have bounds, because the beams are a weighted sample.
+"""Errors of echoes compared with a reference of the same beams: errors of energy and of range, and shares of missed or
+invented echoes. The errors have bounds, because the beams are a weighted sample.
 
-Echoes are rows of numbers, in the order of beam and range. Echoes of one beam are matched: two echoes match if each is the nearest to
-the other within a tolerance. Energy and range are judged for strong echoes that are not ghosts; a ghost has more than half of its
-energy from paths with two reflections. A missed strong echo has an energy error of -1. Ghosts count only as found or missed.
-Echoes that only some scans of the reference have are not judged.
+Echoes are rows of numbers, in the order of beam and range. Echoes of one beam are matched: two echoes match if each is
+the nearest to the other within a tolerance. Energy and range are judged for strong echoes that are not ghosts; a ghost
+has more than half of its energy from paths with two reflections. A missed strong echo has an energy error of -1. Ghosts
+count only as found or missed. Echoes that only some scans of the reference have are not judged.
 
 Bounds are one-sided, 95 %, and hold for a scan of all beams with another seed. They follow from the spread among beams
 (variance of a ratio of weighted sums, linearised: Cochran, Sampling Techniques, 3rd ed., section 6, second-hand). The
-spread counts twice where all beams were taken, because both scans are random. Two terms are added: three times the share of a single
-beam, because a few wrong beams say little about the number of wrong beams, and the error of the reference. An rms of fewer than 30
-beams has no bound.
+spread counts twice where all beams were taken, because both scans are random. Two terms are added: three times the
+share of a single beam, because a few wrong beams say little about the number of wrong beams, and the error of the
+reference. An rms of fewer than 30 beams has no bound.
 """
-from __future__ import annotations
-
-from typing import NamedTuple, Optional, Sequence, Tuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes; RANGE in m, ENERGY in J, SECONDARY a share, TOTAL in J
+BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes; m, J; SECONDARY a share; TOTAL in J
 GHOST = 0.5  # least share of a ghost's energy that comes from two reflections
 SURELY = 1.645  # standard deviations of a one-sided bound of 95 %
 FEW = 3.0  # 95 % bound of a small count, beyond its square root
@@ -47,12 +46,12 @@ class Known(NamedTuple):
 
 
 class Judge:
-    """Compares echoes. @param tolerance greatest distance between matching echoes, m @param strong least judged energy, J"""
+    """Compares echoes. @param tolerance greatest distance of matching echoes, m @param strong least judged energy, J"""
 
     def __init__(self, tolerance: float, strong: float):
         self.tolerance, self.strong = tolerance, strong
 
-    def match(self, one: np.ndarray, other: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    def match(self, one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Row numbers of matching echoes in two arrays of echoes."""
         if not len(one) or not len(other):
             return np.zeros(0, int), np.zeros(0, int)
@@ -74,7 +73,7 @@ class Judge:
         return (rows[:, ENERGY] >= self.strong) & (rows[:, SECONDARY] <= GHOST)
 
     def average(self, scans: Sequence[np.ndarray], count: int) -> Known:
-        """The mean of scans of `count` beams. An echo is sure if at least seven of eight scans have the echo, or all of fewer scans."""
+        """The mean of scans of `count` beams. An echo is sure if 7 of 8 scans have the echo, or all of fewer scans."""
         values, others = np.full((len(scans), *scans[0].shape), np.nan), []
         for into, scan in zip(values, scans):
             i, j = self.match(scans[0], scan)
@@ -86,48 +85,49 @@ class Judge:
         unsure = in_order(np.concatenate((*others, mean[~sure])))
         strong = sure & self.judged(mean)
         true, off, number = mean[strong], values[:, strong], found[strong]
-        squares = [np.nansum(one**2, axis=0) / (number * (number - 1)) for one in
-                   (off[:, :, ENERGY] / true[:, ENERGY] - 1, off[:, :, RANGE] - true[:, RANGE])]
+        squares = [np.nansum(one**2, axis=0) / (number * (number - 1)) for one in errors_of(off, true)]
         x = np.stack((*(per_beam(true, count, one) for one in squares), per_beam(unsure, count)))
         return Known(mean[sure], unsure, x, np.stack([per_beam(rows, count) for rows in (true, true, mean[sure])]))
 
-    def compare(self, scans: Sequence[np.ndarray], known: Known) -> Tuple[np.ndarray, np.ndarray]:
-        """For energy and range, by beam: the product of the errors of two independent scans with other settings, and the number of
-        echoes. The mean of the product is the square of the common error of both scans."""
+    def compare(self, scans: Sequence[np.ndarray], known: Known) -> tuple[np.ndarray, np.ndarray]:
+        """For energy and range, by beam: the product of the errors of two independent scans with other settings, and
+        the number of echoes. The mean of the product is the square of the common error of both scans."""
         (i, j), (k, l) = (self.match(known.sure, scan) for scan in scans)
         common, first, second = np.intersect1d(i, k, return_indices=True)
         strong = self.judged(known.sure[common])
         true, one, other = known.sure[common[strong]], scans[0][j[first[strong]]], scans[1][l[second[strong]]]
-        count = known.x.shape[1]
-        squares = ((one[:, ENERGY] / true[:, ENERGY] - 1) * (other[:, ENERGY] / true[:, ENERGY] - 1),
-                   (one[:, RANGE] - true[:, RANGE]) * (other[:, RANGE] - true[:, RANGE]))
-        return np.stack([per_beam(true, count, square) for square in squares]), np.stack([per_beam(true, count)] * 2)
+        products, count = np.multiply(errors_of(one, true), errors_of(other, true)), known.x.shape[1]
+        return np.stack([per_beam(true, count, kind) for kind in products]), np.stack([per_beam(true, count)] * 2)
 
-    def count(self, found: np.ndarray, known: Known) -> Tuple[np.ndarray, np.ndarray]:
+    def count(self, found: np.ndarray, known: Known) -> tuple[np.ndarray, np.ndarray]:
         """The errors of a scan by kind and beam: sums and their divisors."""
         count = known.x.shape[1]
         i, j = self.match(known.sure, found)
         strong = self.judged(known.sure[i])
-        true, seen, rest = known.sure[i[strong]], found[j[strong]], np.delete(found, j, axis=0)
+        true, rest = known.sure[i[strong]], np.delete(found, j, axis=0)
         invented = np.delete(rest, self.match(rest, known.unsure)[0], axis=0)
-        energies, ranges, echoes = (per_beam(rows, count) for rows in
-                                    (known.sure[self.judged(known.sure)], true, known.sure))
-        return (np.stack((per_beam(true, count, (seen[:, ENERGY] / true[:, ENERGY] - 1) ** 2) + energies - ranges,
-                          per_beam(true, count, (seen[:, RANGE] - true[:, RANGE]) ** 2),
-                          echoes - per_beam(known.sure[i], count) + per_beam(invented, count))),
+        energies, ranges, echoes, matched, more = (per_beam(rows, count) for rows in (
+            known.sure[self.judged(known.sure)], true, known.sure, known.sure[i], invented))
+        energy, distance = (per_beam(true, count, one**2) for one in errors_of(found[j[strong]], true))
+        return (np.stack((energy + energies - ranges, distance, echoes - matched + more)),
                 np.stack((energies, ranges, echoes)))
+
+
+def errors_of(rows: np.ndarray, true: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Relative errors of energy, and errors of range, m."""
+    return rows[..., ENERGY] / true[:, ENERGY] - 1, rows[..., RANGE] - true[:, RANGE]
 
 
 def in_order(rows: np.ndarray) -> np.ndarray:
     return rows[np.lexsort((rows[:, RANGE], rows[:, BEAM]))]
 
 
-def per_beam(rows: np.ndarray, count: int, values: Optional[np.ndarray] = None) -> np.ndarray:
+def per_beam(rows: np.ndarray, count: int, values: np.ndarray | None = None) -> np.ndarray:
     """Sums over the echoes of each beam; without values, the number of echoes."""
     return np.bincount(rows[:, BEAM].astype(int), values, count).astype(float)
 
 
-def ratio_of(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Tuple[float, float]:
+def ratio_of(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
     """The ratio of weighted sums and its standard deviation; 0 without data."""
     x, y = weights * x, weights * y
     ratio = x.sum() / y.sum() if y.sum() else 0.0

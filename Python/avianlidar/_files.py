@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reading and writing of clouds, names of files, and regular files."""
-from __future__ import annotations
-
 import contextlib
 import csv
 import gzip
 import io
 import math
-import os
 import pathlib
 import re
-import stat
 import unicodedata
 import warnings
 import zlib
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any
 
 import numpy as np
 
@@ -28,30 +24,31 @@ from ._writers import refuse, suffixes, write
 LARGEST = 256 << 20  # greatest number of bytes after decompression
 LONGEST = 200  # bytes of a name; the names of files add suffixes
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
-_AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # spellings of CloudCompare, LAStools and spreadsheets
-_POINTS = [stem + mark for stem in ("Points", "Points_m_XYZ") for mark in ":_"]  # spellings of ParaView and VeloView, before a number
-# Columns of HELIOS++, which writes no line of names, and columns of any table of places.
-_HELIOS = ("x y z intensity echo_width return_number number_of_returns fullwave_index hit_object_id classification gps_time").split()
+_AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCompare, LAStools and spreadsheets
+_POINTS = ("Points:", "Points_", "Points_m_XYZ:", "Points_m_XYZ_")  # of ParaView and VeloView, before a number
+# Columns of HELIOS++, which writes no line of names.
+_HELIOS = [*"xyz", "intensity", "echo_width", "return_number", "number_of_returns", "fullwave_index", "hit_object_id",
+           "classification", "gps_time"]
 
 
 def checked_name(name: str, what: str) -> str:
     """The name, if files and folders may have this name. @param what the input that gives the name"""
     control = any(unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") for letter in name)
     if not name or name.startswith(".") or "/" in name or control or len(name.encode()) > LONGEST:
-        raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no control character, no dot "
-                    "at the beginning")
+        raise Error(f"{what} is {name!r}, expected 1 to {LONGEST} bytes of text for names of files: no / and no "
+                    "control character, no dot at the beginning")
     return name
 
 
 def read_regular(file) -> bytes:
-    """The content of a regular file, or of a link to a regular file; gzip is decompressed. A pipe may wait for ever, and a device may never
-    end: both are an error, as in the library's RegularFile.h."""
+    """The content of a regular file, or of a link to a regular file; gzip is decompressed. A pipe may wait for ever,
+    and a device may never end: both are an error, as in the library's RegularFile.h."""
     try:
-        kind = os.stat(file).st_mode
-        if not stat.S_ISREG(kind):
-            what = "it is a folder" if stat.S_ISDIR(kind) else "it is not a regular file but a pipe or a device"
+        path = pathlib.Path(file)
+        if path.exists() and not path.is_file():
+            what = "it is a folder" if path.is_dir() else "it is not a regular file but a pipe or a device"
             raise Error(f"{file}: {what}")
-        content = pathlib.Path(file).read_bytes()
+        content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError for a name that no file can have
         raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
     if not content.startswith(b"\x1f\x8b"):
@@ -65,8 +62,8 @@ def read_regular(file) -> bytes:
     return content
 
 
-def _axes(names: List[str]) -> List[str]:
-    """The names, with x, y and z in place of other programs' names of coordinates, unless x, y and z are among the names."""
+def _axes(names: list[str]) -> list[str]:
+    """The names, with x, y and z in place of other programs' names of coordinates, unless the names have x, y and z."""
     if set("xyz") <= {_NAME_AND_UNIT.fullmatch(name)[1] for name in names}:  # type: ignore[index]
         return names
     for points in _POINTS:
@@ -77,7 +74,7 @@ def _axes(names: List[str]) -> List[str]:
     return [axis[1].lower() if axis else name for axis, name in zip(found, names)]
 
 
-def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optional[str]]:
+def _names_and_rows(path: pathlib.Path) -> tuple[list[str], io.StringIO, str | None]:
     """Names of the columns, the rows below, and the separator (None: blanks)."""
     text = read_regular(path).decode("utf-8-sig")
     first = text.partition("\n")[0].strip()
@@ -92,7 +89,8 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
             raise ValueError("the first line has one word, as files of molecules have it")
         with contextlib.suppress(ValueError):
             count = len([float(word) for word in words])
-            names = _HELIOS if count == len(_HELIOS) else [*"xyz", *(f"column_{i}" for i in range(4, count + 1))][:count]
+            names = [*"xyz", *(f"column_{i}" for i in range(4, count + 1))][:count]
+            names = _HELIOS if count == len(_HELIOS) else names
             return names, io.StringIO(text), delimiter if delimiter in first else None
         if delimiter not in first:
             return _axes(first.removeprefix("//").split()), io.StringIO(text.partition("\n")[2]), None
@@ -106,11 +104,11 @@ def _names_and_rows(path: pathlib.Path) -> Tuple[List[str], io.StringIO, Optiona
     return names, stream, delimiter
 
 
-def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
+def _table(path: pathlib.Path) -> tuple[dict[str, str], np.ndarray]:
     """Units of the columns by name, and the rows."""
     try:
         names, stream, delimiter = _names_and_rows(path)
-        units: Dict[str, str] = {}
+        units: dict[str, str] = {}
         for cell in names:
             name, unit = _NAME_AND_UNIT.fullmatch(cell).groups("")  # type: ignore[union-attr]
             if name in units:
@@ -126,14 +124,15 @@ def _table(path: pathlib.Path) -> Tuple[Dict[str, str], np.ndarray]:
         if table.shape[1] != len(units):
             raise ValueError(f"rows have {table.shape[1]} cells, the first line {len(units)}")
     except (ValueError, csv.Error) as error:
-        raise ValueError(f"{path}: is not a cloud ({error}): expected a first line of names, among them x, y and z (m), some with units, as "
-                         "'energy [J]', and numbers below; of .xyz numbers alone, x, y and z (m) first") from None
+        raise ValueError(f"{path}: is not a cloud ({error}): expected a first line of names, among them x, y and z "
+                         "(m), some with units, as 'energy [J]', and numbers below; of .xyz numbers alone, x, y and z "
+                         "(m) first") from None
     return units, table
 
 
 def _read_table(path: pathlib.Path) -> Cloud:
-    """Reads what `_write_csv` writes, and tables of other programs: whole numbers become int64, columns name_0, name_1, ... (or
-    name:0, ...) become one array, and colours (rgb) become bytes."""
+    """Reads what `_write_csv` writes, and tables of other programs: whole numbers become int64, columns name_0, name_1,
+    ... (or name:0, ...) become one array, and colours (rgb) become bytes."""
     units, table = _table(path)
     columns = dict(zip(units, table.T))
     data = vertices(np.column_stack([columns.pop(axis) for axis in "xyz"]))
@@ -156,22 +155,22 @@ def save(cloud, file, **properties: Any) -> None:
 
     .vtp      VTK's format: everything, with units and field data
     .csv      15 digits, units in the header (`energy [J]`); x, y and z are in metres
-    others    if this build has the writer (Documentation/reference/formats.md); `properties` are properties of the writer, by name. LAS and
-              LAZ are in UTM, or in the scene's frame if the scene has no origin on the Earth
+    others    if this build has the writer (Documentation/reference/formats.md); `properties` are properties of the
+              writer, by name. LAS and LAZ are in UTM, or in the scene's frame if the scene has no origin on the Earth
 
     The file is replaced completely or not at all. An unknown suffix is a ValueError that names the known suffixes.
     """
-    file_name(pathlib.Path(file))
+    file_name(pathlib.Path(file))  # before a scan runs
     write(Cloud(getattr(cloud, "echoes", cloud)), file, **properties)
 
 
-def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
-    """Reads a cloud from .vtp, .csv (as `save` and other programs write it), .xyz, or another format for which this build has a reader
-    (Documentation/reference/formats.md); `properties` are properties of the reader, by name. Coordinates are metres.
-    `Cloud.units` gives the units of arrays.
+def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
+    """Reads a cloud from .vtp, .csv (as `save` and other programs write it), .xyz, or another format for which this
+    build has a reader (Documentation/reference/formats.md); `properties` are properties of the reader, by name.
+    Coordinates are metres. `Cloud.units` gives the units of arrays.
 
-    Packets (.pcap, .pcapng) give the revolution at `time` (s since the full hour); default: the first revolution, with a warning if
-    the file has several. `sensor_address` chooses among the sensors of a recording, as "192.168.1.201"."""
+    Packets (.pcap, .pcapng) give the revolution at `time` (s since the full hour); default: the first revolution, with
+    a warning if the file has several. `sensor_address` chooses among the sensors of a recording, as "192.168.1.201"."""
     path = pathlib.Path(file)
     file_name(path)
     suffix = path.suffix.lower()
@@ -199,8 +198,9 @@ def load_cloud(file, time: Optional[float] = None, **properties: Any) -> Cloud:
     reader.SetFileName(file_name(path))
     update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)
     cloud = Cloud(reader.GetOutput())
-    if time is None and suffix in PACKETS and cloud.fields["number_of_revolutions"] > 1:
-        warnings.warn(f"{path}: has {cloud.fields['number_of_revolutions']:g} revolutions, of which the first was read; "
-                      "load_cloud(file, time=...) or --time of the command reads another revolution", RuntimeWarning,
+    revolutions = cloud.fields["number_of_revolutions"] if time is None and suffix in PACKETS else 1
+    if revolutions > 1:
+        warnings.warn(f"{path}: has {revolutions:g} revolutions, of which the first was read; load_cloud(file, "
+                      "time=...) or --time of the command reads another revolution", RuntimeWarning,
                       stacklevel=callers_level())
     return cloud

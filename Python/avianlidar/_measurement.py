@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measurement of the settings that a scene requires of the echo filter: a ladder of settings is measured on some beams of a scan.
+"""Measurement of the settings that a scene requires of the echo filter: a ladder of settings on some beams of a scan.
 
-1. Up to fifty beams for each beam of the sample are scanned with default settings. The scan sorts these beams into four kinds: beams that
-   meet a mover, beams that meet nothing, beams that meet a surface without an echo, and beams with an echo. A weighted sample is
-   drawn of each kind.
-2. The reference is the mean of two scans of the sample by cells with 6400 rays. For beams whose two scans differ much, the reference is
-   the mean of eight scans with 25600 rays. The error of the reference follows from the spread of its scans, and from the additional
-   difference to two scans by plain rays.
-3. Each setting scans the same beams, and `_echo_errors` computes the errors. A limit is kept if the bound of the error is below the
-   limit.
-4. Times are processor times of one thread over runs of neighbouring beams, which share work, less the time of a scan without
-   beams. Promising settings are timed five times, with other seeds.
+1. Up to fifty beams for each beam of the sample are scanned with default settings. The scan sorts these beams into four
+   kinds: beams that meet a mover, beams that meet nothing, beams that meet a surface without an echo, and beams with an
+   echo. A weighted sample is drawn of each kind.
+2. The reference is the mean of two scans of the sample by cells with 6400 rays. For beams whose two scans differ much,
+   the reference is the mean of eight scans with 25600 rays. The error of the reference follows from the spread of its
+   scans, and from the additional difference to two scans by plain rays.
+3. Each setting scans the same beams, and `_echo_errors` computes the errors. A limit is kept if the bound of the error
+   is below the limit.
+4. Times are processor times of one thread over runs of neighbouring beams, which share work, less the time of a scan
+   without beams. Promising settings are timed five times, with other seeds.
 5. The sample is doubled, up to four times its size, if a setting is undecided only in its share of wrong echoes and is
    1.5 times as fast as all settings that surely keep every limit.
-6. Several settings may overlap in time with the fastest setting that keeps every limit. The most accurate of these is advised.
+6. The most accurate of the settings that overlap in time with the fastest one that keeps every limit is advised.
 
-Noise is off, because noise belongs to the receiver and is not an error of the model. Errors have the same bits for any number of threads.
+Noise is off, because noise belongs to the receiver and is not an error of the model. Errors have the same bits for any
+number of threads.
 """
-from __future__ import annotations
-
 import time
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -63,7 +63,7 @@ class Trial:
         self.batches = 0  # number of scanned batches of the sample
         self.errors = np.full((3, 3), np.nan)  # by kind: value, lower and upper bound
         self.verdicts = np.zeros(3, int)
-        self.times: List[float] = []  # time of a beam in each turn, s
+        self.times: list[float] = []  # time of a beam in each turn, s
 
     @property
     def verdict(self) -> int:
@@ -73,18 +73,18 @@ class Trial:
     def seconds(self) -> float:
         return float(np.median(self.times)) if self.times else np.nan
 
-    def parts(self, asked: np.ndarray) -> List[float]:
+    def parts(self, asked: np.ndarray) -> list[float]:
         """Error bounds divided by the limits, the largest first."""
         return sorted(self.errors[:, 2] / asked, reverse=True)
 
     def is_as_fast_as(self, other: "Trial") -> bool:
-        """Whether times do not differ: the middle halves of both settings' turns overlap, or the times differ by 3 % at most."""
+        """Whether times do not differ: the middle halves of the turns overlap, or the times differ by 3 % at most."""
         (low, high), (least, most) = (np.percentile(one.times, (25, 75)) for one in (self, other))
         return low <= max(most, AS_FAST * other.seconds) and least <= max(high, AS_FAST * self.seconds)
 
 
-def choose(trials: Sequence[Trial], asked: np.ndarray) -> Optional[Trial]:
-    """The most accurate of the settings that keep all limits and are as fast as the fastest such setting; None without such a setting."""
+def choose(trials: Sequence[Trial], asked: np.ndarray) -> Trial | None:
+    """The most accurate of the settings that keep all limits and are as fast as the fastest such setting, or None."""
     met = [trial for trial in trials if trial.verdict == MET]
     if not met:
         return None
@@ -106,33 +106,14 @@ def some_of(beams: vtkPolyData, which: np.ndarray) -> vtkPolyData:
     return some
 
 
-def is_convex(surfaces: vtkPolyData, place: np.ndarray) -> bool:
-    """Whether at most 20,000 triangles are one closed convex body seen from outside, so that no light returns to the body.
-    All corners lie on one side of each triangle, and the triangles' normals, with twice the area as length, sum to 0."""
-    if not 0 < surfaces.GetNumberOfPolys() <= 20000:
-        return False
-    corners = as_numpy(surfaces.GetPoints().GetData()) - place
-    a, b, c = (corners[as_numpy(surfaces.GetPolys().GetConnectivityArray())[i::3]] for i in range(3))
-    size, normals = np.linalg.norm(np.ptp(corners, axis=0)), np.cross(b - a, c - a)
-    areas = np.linalg.norm(normals, axis=1)
-    outside, total = False, np.zeros(3)
-    for i in np.flatnonzero(areas > 1e-12 * size**2):  # without the degenerate triangles at the poles of a sphere
-        heights = (corners - a[i]) @ normals[i]
-        outwards = normals[i] if heights.max() < -heights.min() else -normals[i]
-        if min(heights.max(), -heights.min()) > 1e-6 * size * areas[i]:
-            return False
-        outside, total = outside or a[i] @ outwards < 0, total + outwards
-    return bool(outside and np.linalg.norm(total) < 1e-3 * areas.sum())
-
-
 class Scanner:
     """An echo filter with the properties of another echo filter. Nothing is kept from scan to scan."""
 
-    def __init__(self, like: Any, beams: vtkPolyData, surfaces: Any, movers: Any, threads: int, **settings: Any):
-        self.filter = _wrapped.vtkAvianLidarEchoFilter()
+    def __init__(self, like: Any, beams: vtkPolyData, surfaces: Any, movers: Any, progress: Progress, **settings: Any):
+        self.filter, self.progress = _wrapped.vtkAvianLidarEchoFilter(), progress
         own = {name: get_property(like, prop) for name, prop in property_names(type(like)).items()}
-        own.update(noise=False, maximum_cache_size=0, report_movers=False, number_of_threads=threads, controller=None)
-        set_properties(self.filter, **{**own, **settings})
+        own.update(noise=False, maximum_cache_size=0, report_movers=False, controller=None, **settings)
+        set_properties(self.filter, **own)
         self.filter.SetSurfacesData(surfaces)
         self.filter.SetMoversData(movers)
         self.seconds, idle = 0.0, []  # time of this thread in the last scan, s
@@ -141,15 +122,14 @@ class Scanner:
             idle.append(self.seconds)
         self.idle = float(np.median(idle))  # time of a scan without beams, s
 
-    def scan(self, beams: vtkPolyData, setting: Optional[Setting], seed: int,
-             progress: Optional[Progress] = None) -> np.ndarray:
+    def scan(self, beams: vtkPolyData, setting: Setting | None, seed: int) -> np.ndarray:
         """The echoes as rows, with beams counted from 0. @param setting None: the filter's own setting"""
         if setting:
             set_properties(self.filter, **setting.properties())
         self.filter.SetSeed((seed + 2**31) % 2**32 - 2**31)
         self.filter.SetInputDataObject(0, beams)
         before = time.thread_time()
-        update(self.filter, progress)
+        update(self.filter, self.progress)
         self.seconds = time.thread_time() - before
         echoes, ids = Cloud(self.filter.GetOutput(0)), as_numpy(beams.GetPointData().GetArray("beam_id"))
         order = np.argsort(ids)
@@ -160,26 +140,27 @@ class Scanner:
 class Measurement:
     """The steps of the measurement, see the module."""
 
-    def __init__(self, like: Any, inputs: Sequence[Any], asked: Dict[str, float], count: int,
-                 progress: Optional[Progress]):
+    def __init__(self, like: Any, inputs: Sequence[Any], asked: dict[str, float], count: int,
+                 progress: Progress | None):
         """@param like an echo filter with the scan's properties @param inputs beams, surfaces, movers or None"""
         self.like, (self.beams, self.surfaces, self.movers) = like, inputs
         self.asked, self.count = np.array([asked[kind] for kind in KINDS]), count
         self.progress, self.done = progress or (lambda *_: None), 0.0
         self.seed, self.threads = like.GetSeed(), like.GetNumberOfThreads()
-        self.scanner = Scanner(like, self.beams, self.surfaces, self.movers, self.threads)
-        self.timer = Scanner(like, self.beams, self.surfaces, self.movers, 1)
+        self.scanner, self.timer = (self.scanner_of(number, self.surfaces, self.movers) for number in (self.threads, 1))
+        self.scan = self.scanner.scan
         self.fields = fields = Cloud(self.scanner.filter.GetOutput(0)).fields
         own = Setting(*(int(fields[snake(name)]) for name in SETTINGS))  # the values of a preset, if there is one
         self.trials = [Trial(setting) for setting in (own, *LADDER)]
         length = 0.5 * 299792458.0 * np.array((fields["sampling_interval"], fields["pulse_width"]))  # m
         self.judge = Judge(length.sum(), 2 * fields["lower_energy_limit"])
         self.sample = np.zeros(0, int)  # numbers of the sampled candidates
-        self.batches: List[Tuple[np.ndarray, Known]] = []  # batches of the sample, each with its reference
+        self.batches: list[tuple[np.ndarray, Known]] = []  # batches of the sample, each with its reference
         self.bias = np.zeros(2)  # squared error of the reference
 
-    def scan(self, beams: vtkPolyData, setting: Setting, seed: int, by: Optional[Scanner] = None) -> np.ndarray:
-        return (by or self.scanner).scan(beams, setting, seed, lambda *_: self.progress(self.done, "advise"))
+    def scanner_of(self, threads: int, surfaces: Any, movers: Any, **settings: Any) -> Scanner:
+        return Scanner(self.like, self.beams, surfaces, movers, lambda *_: self.progress(self.done, "advise"),
+                       number_of_threads=threads, **settings)
 
     # Beams.
 
@@ -196,8 +177,7 @@ class Measurement:
         # A mover (0), nothing (1), a surface without an echo (2), an echo (3).
         self.kinds = np.select((report["status"] == 1, np.isin(report["status"], (0, 3))), (1, 3), 2)
         if self.movers is not None:
-            alone = Scanner(self.like, self.beams, self.surfaces, None, self.threads)
-            still = self.scan(beams, DEFAULT, self.seed, alone)
+            still = self.scanner_of(self.threads, self.surfaces, None).scan(beams, DEFAULT, self.seed)
             for column in (RANGE, ENERGY):
                 moved, stood = (per_beam(rows, count, rows[:, column]) for rows in (echoes, still))
                 self.kinds[moved != stood] = 0
@@ -207,10 +187,11 @@ class Measurement:
         self.timed = some_of(self.beams, timed[timed < total])
 
     def grow(self, count: int) -> np.ndarray:
-        """Draws further beams, up to `count` in all, and returns their numbers among the candidates. Earlier beams are kept."""
-        numbers: List[int] = []
+        """Draws further beams, up to `count` in all, and returns their numbers among the candidates."""
+        numbers: list[int] = []
         for order, most in zip(self.orders, (count // 4, count // 8, count // 4, count)):
-            numbers.append(min(len(order), max(1, min(most, count - sum(numbers)))))  # at least one beam, so that each kind has a weight
+            # At least one beam, so that each kind has a weight.
+            numbers.append(min(len(order), max(1, min(most, count - sum(numbers)))))
         numbers[2] = min(len(self.orders[2]), numbers[2] + max(0, count - sum(numbers)))
         chosen = np.concatenate([order[:number] for order, number in zip(self.orders, numbers)])
         new = np.setdiff1d(chosen, self.sample)
@@ -249,18 +230,15 @@ class Measurement:
         self.bias = np.array([max(0.0, ratio - SURELY * deviation) for ratio, deviation in (
             ratio_of(x, y, weights) for x, y in zip(*self.judge.compare(witness, truth)))])
 
-        def light(rows):
-            return weights[rows[:, BEAM].astype(int)] * rows[:, TOTAL]
-
-        def number(rows):
-            return weights[rows[:, BEAM].astype(int)].sum()
+        def total(rows, values=1.0):
+            return (weights[rows[:, BEAM].astype(int)] * values).sum()
 
         one, unconnected = (self.scan(beams, Setting(CELLS, REFERENCE.rays, STRATIFIED, reflections, 0), SEEDS[0])
                             for reflections in (1, 2))
-        energy = max(light(first).sum(), 1e-300)
-        self.secondary = (light(first) * first[:, SECONDARY]).sum() / energy
+        energy = max(total(first, first[:, TOTAL]), 1e-300)
+        self.secondary = total(first, first[:, TOTAL] * first[:, SECONDARY]) / energy
         self.largest = first[:, SECONDARY].max(initial=0)
-        self.connected = 1 - light(unconnected).sum() / energy
+        self.connected = 1 - total(unconnected, unconnected[:, TOTAL]) / energy
         self.without = [self.errors_of(*self.judge.count(rows, truth)) for rows in (one, unconnected)]
         self.reflects_twice = self.secondary >= 1e-6 or self.without[0][0, 0] >= 1e-4 or self.without[0][2, 0] > 0
 
@@ -269,20 +247,17 @@ class Measurement:
         update(tree)
         self.tree_seconds = time.process_time() - before  # processor time of all threads
         surfaces = tree.GetOutput()
-        self.convex = self.movers is None and is_convex(surfaces, as_numpy(self.beams.GetPoints().GetData())[0])
-
         surfaces.GetFieldData().RemoveArray("media")
         vacuum = {"attenuation_coefficient": 0.0, "visibility": 0.0, "air_backscatter": False, "rain_rate": 0.0}
-        scanner, timer = (Scanner(self.like, self.beams, surfaces, self.movers, threads, **vacuum)
-                          for threads in (self.threads, 1))
-        clear = self.scan(beams, REFERENCE, SEEDS[0], scanner)
+        scanner, timer = (self.scanner_of(threads, surfaces, self.movers, **vacuum) for threads in (self.threads, 1))
+        clear = scanner.scan(beams, REFERENCE, SEEDS[0])
         self.lost = [max(0.0, 1 - part / max(all_, 1e-300)) for part, all_ in
-                     ((energy, light(clear).sum()), (number(first), number(clear)))]
-        self.of_air = number(first[first[:, OBJECT] == OF_AIR]) / max(number(first), 1e-300)
+                     ((energy, total(clear, clear[:, TOTAL])), (total(first), total(clear)))]
+        self.of_air = total(first, first[:, OBJECT] == OF_AIR) / max(total(first), 1e-300)
         self.scatters = bool(self.fields.get("media") or self.fields["air_backscatter"] or self.fields["rain_rate"])
         self.hazy, self.clear = Trial(DEFAULT), Trial(DEFAULT)
         for turn in range(TURNS if self.scatters else 0):
-            self.time(self.hazy, turn)
+            self.time(self.hazy, turn, self.timer)
             self.time(self.clear, turn, timer)
 
     def own(self) -> np.ndarray:
@@ -306,23 +281,23 @@ class Measurement:
         _, low, high = trial.errors.T
         trial.verdicts = np.where(high <= self.asked, MET, np.where(low > self.asked, NOT_MET, UNDECIDED))
 
-    def time(self, trial: Trial, turn: int, scanner: Optional[Scanner] = None) -> None:
-        scanner = scanner or self.timer
-        self.scan(self.timed, trial.setting, self.seed + 1 + turn, scanner)
+    def time(self, trial: Trial, turn: int, scanner: Scanner) -> None:
+        scanner.scan(self.timed, trial.setting, self.seed + 1 + turn)
         trial.times.append(max(1e-12, scanner.seconds - scanner.idle) / self.timed.GetNumberOfPoints())
 
     def try_all(self) -> None:
         for place, trial in enumerate(self.trials):
             self.done = 0.55 + 0.25 * place / len(self.trials)
             self.measure(trial)
-            self.time(trial, 0)
+            self.time(trial, 0, self.timer)
+        always = (DEFAULT, UNCONNECTED, DIRECT)
         for turn in range(1, TURNS):
             self.done = 0.8 + 0.02 * turn
             limit = SLOW * (self.fastest(MET) if self.fastest(MET) < np.inf else self.fastest(UNDECIDED))
             for trial in self.trials:
-                if trial is self.trials[0] or trial.setting in (DEFAULT, UNCONNECTED, DIRECT) or \
+                if trial is self.trials[0] or trial.setting in always or \
                         trial.verdict != NOT_MET and trial.seconds < limit:
-                    self.time(trial, turn)
+                    self.time(trial, turn, self.timer)
         while len(self.sample) < MOST_BEAMS * self.count and self.wants_more():
             new = self.grow(2 * len(self.sample))
             if not len(new):
@@ -332,7 +307,7 @@ class Measurement:
                 if trial.verdict != NOT_MET:
                     self.measure(trial)
 
-    def eligible(self) -> List[Trial]:
+    def eligible(self) -> list[Trial]:
         """Trials without second reflections, if the scene has no second reflections; else all trials."""
         return [trial for trial in self.trials if self.reflects_twice or trial.setting.reflections == 1]
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The advisor that ParaView's button Advise runs on the server. Plugin/Filters/AvianLidarAdvisor.xml makes the proxy."""
-from __future__ import annotations
-
-from typing import Any, Dict, Optional
+"""The advisor that ParaView's button Advise runs on the server. Plugin/Filters/AvianLidarAdvisor.xml makes the
+proxy."""
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -21,14 +20,15 @@ ASKED = {"SetEnergyError": "energy", "SetRangeError": "range", "SetMissedShare":
 
 
 class Advisor(VTKPythonAlgorithmBase):
-    """Inputs and properties are those of the echo filter, and the limits of the errors. The output is the table of an Advice,
-    with the number of the `advised` row and the `advice` in words as field data. In a job of several ranks, each rank requests
-    all inputs, and the first rank measures. After an error the table is empty, and its field data `error` give the message."""
+    """Inputs and properties are those of the echo filter, and the limits of the errors. The output is the table of an
+    Advice, with the number of the `advised` row and the `advice` in words as field data. In a job of several ranks,
+    each rank requests all inputs, and the first rank measures. After an error the table is empty, and its field data
+    `error` give the message."""
 
     def __init__(self) -> None:
         self._like = _wrapped.vtkAvianLidarEchoFilter()
-        self._asked: Dict[str, Any] = {"energy": 0.02, "range": 0.05, "missed": 0.01, "beams": 1000}
-        self._advice: Optional[Advice] = None
+        self._asked: dict[str, Any] = {"energy": 0.02, "range": 0.05, "missed": 0.01, "beams": 1000}
+        self._advice: Advice | None = None
         super().__init__(nInputPorts=3, nOutputPorts=1, outputType="vtkTable")
 
     def __getattr__(self, name: str) -> Any:
@@ -67,8 +67,7 @@ class Advisor(VTKPythonAlgorithmBase):
         controller = vtkMultiProcessController.GetGlobalController()
         if controller and controller.GetLocalProcessId() > 0:
             return 1
-        data = [vtkDataObject.GetData(port.GetInformationObject(0)) if port.GetNumberOfInformationObjects() else None
-                for port in inputs]
+        data = [vtkDataObject.GetData(port) for port in inputs]  # None where an optional input is missing
         asked = {kind: value for kind, value in self._asked.items() if kind != "beams"}
         try:
             advice = measure(self._like, data, asked, self._asked["beams"], lambda share, _: self.UpdateProgress(share))

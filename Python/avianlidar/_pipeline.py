@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs VTK algorithms with Python's conventions: errors are exceptions, warnings are Python warnings, Ctrl-C stops a run."""
-from __future__ import annotations
-
+"""Runs VTK algorithms with Python's conventions: errors are exceptions, warnings are Python warnings, Ctrl-C stops a
+run."""
 import contextlib
 import os
 import re
@@ -9,7 +8,8 @@ import signal
 import sys
 import threading
 import warnings
-from typing import Any, Callable, Dict, Iterator, List, Optional
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from vtkmodules.vtkCommonCore import vtkObject
 
@@ -27,7 +27,7 @@ def words_of(error: BaseException) -> str:
     return str(error.args[0] if isinstance(error, KeyError) and error.args else error) or type(error).__name__
 
 
-def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
+def upstream(algorithm, found: list[Any] | None = None) -> list[Any]:
     """The algorithm and all algorithms that it depends on, sources first."""
     found = [] if found is None else found
     if algorithm is not None and algorithm not in found:
@@ -39,7 +39,7 @@ def upstream(algorithm, found: Optional[List[Any]] = None) -> List[Any]:
 
 
 def text_of(value: str) -> str:
-    """A text that VTK can take. ValueError for a NUL, which would cut the text, and for text without UTF-8, which would end the process."""
+    """A text that VTK can take. ValueError for a NUL, which cuts it, and if it is not UTF-8, which ends the process."""
     if not isinstance(value, str):
         raise TypeError(f"{value!r} is not a text")
     value.encode()
@@ -63,11 +63,12 @@ def plain(message: str) -> str:
 
 
 @contextlib.contextmanager
-def signals_kept() -> Iterator[List[BaseException]]:
-    """Keeps in a list the exceptions that signal handlers raise in the main thread while the block runs, and raises the first at the end.
-    If a handler raises while the old handlers are restored, some handlers of this function may remain; these call the old handlers."""
-    kept: List[BaseException] = []
-    handlers: Dict[int, Any] = {}
+def signals_kept() -> Iterator[list[BaseException]]:
+    """Keeps in a list the exceptions that signal handlers raise in the main thread while the block runs, and raises the
+    first at the end. If a handler raises while the old handlers are restored, some handlers of this function may
+    remain; these call the old handlers."""
+    kept: list[BaseException] = []
+    handlers: dict[int, Any] = {}
     inside = True
 
     def handle(number, frame):
@@ -105,37 +106,31 @@ def callers_level() -> int:
 class Updates:
     """Brings an algorithm up to date repeatedly, and observes the algorithm and its sources from enter to exit.
 
-    VTK never frees an observer from Python, and searches all observers at each removal. A loop of thousands of updates must
-    therefore not add new observers each time.
+    VTK never frees an observer from Python, and searches all observers at each removal. A loop of thousands of updates
+    must therefore not add new observers each time.
     """
 
-    def __init__(self, algorithm, progress: Optional[Progress] = None):
+    def __init__(self, algorithm, progress: Progress | None = None):
         self._algorithm, self._progress = algorithm, progress
-        self._tags: List[Any] = []
-        self._errors: List[str] = []
-        self._warnings: List[str] = []
-        self._failures: List[str] = []  # messages of executives
-        self._unfinished: List[Any] = []  # algorithms that failed or were stopped
-        self._stops: List[BaseException] = []  # exceptions of the caller's progress or of a signal's handler
+        self._observers = contextlib.ExitStack()
+        self._errors: list[str] = []
+        self._warnings: list[str] = []
+        self._failures: list[str] = []  # messages of executives
+        self._unfinished: list[Any] = []  # algorithms that failed or were stopped
+        self._stops: list[BaseException] = []  # exceptions of the caller's progress or of a signal's handler
 
     def __enter__(self) -> "Updates":
-        try:
+        with contextlib.ExitStack() as observers:  # removes them after an exception
             for one in upstream(self._algorithm):
-                for event in ("ErrorEvent", "WarningEvent"):
-                    self._observe(one, event, self._heard)
-                self._observe(one, "ProgressEvent", self._advanced)
-                self._observe(one.GetExecutive(), "ErrorEvent", self._heard)
-        except BaseException:
-            self.__exit__()
-            raise
+                for caller, event, heard in ((one, "ErrorEvent", self._heard), (one, "WarningEvent", self._heard),
+                                             (one, "ProgressEvent", self._advanced),
+                                             (one.GetExecutive(), "ErrorEvent", self._heard)):
+                    observers.callback(caller.RemoveObserver, caller.AddObserver(event, heard))
+            self._observers = observers.pop_all()
         return self
 
     def __exit__(self, *_) -> None:
-        for caller, tag in self._tags:
-            caller.RemoveObserver(tag)
-
-    def _observe(self, caller, event, heard):
-        self._tags.append((caller, caller.AddObserver(event, heard)))
+        self._observers.close()
 
     def _heard(self, caller, event, message):
         # VTK passes None for a text that cannot be decoded.
@@ -158,7 +153,7 @@ class Updates:
         self._unfinished.append(algorithm)
 
     def _advanced(self, caller, _):
-        # An exception must not leave an observer: VTK would print the exception, and would end the process at a KeyboardInterrupt.
+        # An exception must not leave an observer: VTK would print it, and would end the process at a KeyboardInterrupt.
         if self._progress and not self._stops:
             try:
                 self._progress(caller.GetProgress(), caller.GetClassName())
@@ -168,7 +163,7 @@ class Updates:
             caller.SetAbortExecute(True)
             self._unfinished.append(caller)
 
-    def __call__(self, run: Optional[Callable[[], Any]] = None) -> Any:
+    def __call__(self, run: Callable[[], Any] | None = None) -> Any:
         """Updates the algorithm; see `update`."""
         for said in (self._errors, self._warnings, self._failures, self._unfinished):
             said.clear()
@@ -198,14 +193,14 @@ def is_current(algorithm) -> bool:
     return data.GetUpdateTime() >= executive.GetPipelineMTime() and not data.GetDataReleased()
 
 
-def update(algorithm, progress: Optional[Progress] = None, run: Optional[Callable[[], Any]] = None) -> Any:
+def update(algorithm, progress: Progress | None = None, run: Callable[[], Any] | None = None) -> Any:
     """Brings an algorithm up to date, with all algorithms that it depends on. Returns the result of `run`.
 
-    `run` executes the algorithm (default: like `algorithm.Update`). `progress` is called with the completed share (0 to 1) and the name
-    of the running class; an exception of `progress` ends the run and is passed on. Errors are raised as `Error`,
-    and warnings are passed to `warnings.warn`. An exception of a signal's handler in the main thread, such as KeyboardInterrupt
-    at Ctrl-C, ends the run between two blocks of work and is passed on. An algorithm that failed or was stopped starts afresh
-    at the next update.
+    `run` executes the algorithm (default: like `algorithm.Update`). `progress` is called with the completed share (0 to
+    1) and the name of the running class; an exception of `progress` ends the run and is passed on. Errors are raised as
+    `Error`, and warnings are passed to `warnings.warn`. An exception of a signal's handler in the main thread, such as
+    KeyboardInterrupt at Ctrl-C, ends the run between two blocks of work and is passed on. An algorithm that failed or
+    was stopped starts afresh at the next update.
     """
     with Updates(algorithm, progress) as once:
         return once(run)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures with Matplotlib, which only the functions import."""
-from __future__ import annotations
-
 import json
 import pathlib
 
@@ -11,8 +9,7 @@ from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from . import vtkAvianLidar as _wrapped
 
-LABELS = {"distance_m": "distance (m)", "candidates": "triangles tested",
-          "nodes_visited": "nodes visited", "rays_traced": "rays traced", "skipped_bound": "skipped, at most (J)"}
+LABELS = {"distance_m": "distance (m)", "candidates": "triangles tested", "skipped_bound": "skipped, at most (J)"}
 
 
 def status_colours(preset: str):
@@ -54,7 +51,8 @@ SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15
 
 
 def _label(name: str, unit: str) -> str:
-    return LABELS.get(name, name.replace("_", " ").replace("$", r"\$") + (f" ({unit})" if unit not in ("", "1") else ""))
+    text = name.replace("_", " ").replace("$", r"\$")
+    return LABELS.get(name, text if unit in ("", "1") else f"{text} ({unit})")
 
 
 def _values(cloud, name: str):
@@ -65,15 +63,15 @@ def _values(cloud, name: str):
     if name == "energy":
         low, high = (cloud.fields.get(key) for key in ("lower_energy_limit", "upper_energy_limit"))
         least, most = values[values > 0.0].min(initial=np.inf), values.max(initial=0.0)
-        decades = (least if low is None else low) * DECADES < (most if high is None else high)  # as for a photon receiver
+        # As for a photon receiver.
+        decades = (least if low is None else low) * DECADES < (most if high is None else high)
+        limits = {"vmin": least} if decades else {}
         if low is not None and high is not None:
-            limits = {"vmin": low, "vmax": min(high, most) if decades and most > low else high}
-            most = limits["vmax"]
-        else:
-            limits = {"vmin": least} if decades else {}
+            most = min(high, most) if decades and most > low else high
+            limits = {"vmin": low, "vmax": most}
         unit, scale = next(((unit, scale) for unit, scale in SCALES.items() if most * scale >= 1), ("J", 1.0))
-        return values * scale, {"cmap": hue_colors(), **({"norm": "log"} if decades else {}),
-                                **{name: limit * scale for name, limit in limits.items()}}, _label(name, unit)
+        options = {"cmap": hue_colors(), **{key: limit * scale for key, limit in limits.items()}}
+        return values * scale, {**options, "norm": "log"} if decades else options, _label(name, unit)
     if name == "object_id":
         return np.ma.masked_less(values, 0) % 20, {"cmap": "tab20", "vmin": -0.5, "vmax": 19.5}, name
     return values, {}, _label(name, cloud.units[name])
@@ -95,7 +93,7 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
     values, known, label = _values(cloud, array)
     if axes is None:
         _, axes = plt.subplots(figsize=(7, 6), constrained_layout=True)
-    dots = axes.scatter(cloud.points[:, 0], cloud.points[:, 1], c=values, **{"s": 4, "rasterized": True, **known, **options})
+    dots = axes.scatter(*cloud.points[:, :2].T, c=values, **{"s": 4, "rasterized": True, **known, **options})
     axes.set(xlabel="east (m)", ylabel="north (m)", aspect="equal")
     axes.figure.colorbar(dots, ax=axes, label=label)
     return axes
@@ -104,10 +102,11 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
 def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     """Draws the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
 
-    array    `distance_m` (m), `energy` (in a unit that fits, such as microjoules, in the colours of vtkAvianLidarHSBColorMap between the
-             limits of the sensor, logarithmic if the limits are decades apart), `object_id` (one colour for each object),
-             `status` (the status of each beam), costs of each beam (`nodes_visited`, `candidates`, `rays_traced`), its
-             `skipped_bound` (J), or any point array of the echoes, taken from the strongest echo of each beam
+    array    `distance_m` (m), `energy` (in a unit that fits, such as microjoules, in the colours of
+             vtkAvianLidarHSBColorMap between the limits of the sensor, logarithmic if the limits are decades apart),
+             `object_id` (one colour for each object), `status` (the status of each beam), costs of each beam
+             (`nodes_visited`, `candidates`, `rays_traced`), its `skipped_bound` (J), or any point array of the echoes,
+             taken from the strongest echo of each beam
     axes     axes of Matplotlib to draw into; default: new axes
     options  options of Matplotlib's `pcolormesh`
 

@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Properties of wrapped classes by name: `RaysPerBeam` of the C++ class is `rays_per_beam` in Python, as in newer VTK."""
-from __future__ import annotations
-
+"""Properties of wrapped classes by name: `RaysPerBeam` in C++ is `rays_per_beam` in Python, as in newer VTK."""
 import difflib
 import functools
 import re
 import textwrap
-from typing import Any, Callable, Dict, Mapping, Optional, TypeVar
+from collections.abc import Mapping
+from typing import Any
 
 from ._pipeline import text_of
 
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-# Caches results by class. mypy does not accept a class as hashable here.
-_once: Callable[[F], F] = functools.lru_cache(maxsize=None)  # type: ignore[assignment]
+_once: Any = functools.cache  # mypy does not accept a class as a hashable argument of functools.cache
 
 
 def snake(name: str) -> str:
@@ -23,9 +18,9 @@ def snake(name: str) -> str:
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
-def _own_methods(wrapped: type) -> Dict[str, Any]:
+def _own_methods(wrapped: type) -> dict[str, Any]:
     """Methods of this project's classes among the bases, without the methods of VTK's classes."""
-    methods: Dict[str, Any] = {}
+    methods: dict[str, Any] = {}
     for base in wrapped.__mro__:
         if base.__name__.startswith("vtkAvianLidar"):
             methods = {**vars(base), **methods}
@@ -52,7 +47,7 @@ def choices(wrapped: type, name: str) -> Mapping[str, Any]:
     several properties (`SetPresetToAirport16()` of the beam source) has the value None."""
     start = f"Set{name}To"
     found = [method[len(start):] for method in _own_methods(wrapped) if method.startswith(start)]
-    values: Dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for choice in found:
         probe = wrapped()
         getattr(probe, start + choice)()
@@ -60,47 +55,30 @@ def choices(wrapped: type, name: str) -> Mapping[str, Any]:
     return dict(sorted(values.items(), key=lambda item: (item[1] is not None, item[1] or 0, item[0])))
 
 
-# Names of properties that users expect but that follow from other properties.
-FOLLOWS = {"maximum_elevation": "it follows from minimum_elevation + (number_of_channels - 1) * elevation_step: set these properties"}
-
-
 def unknown(what: str, name: str, known) -> str:
     """Message about an unknown name: the nearest known name, or all known names."""
     name, known = str(name), list(known)  # NumPy's texts would show their type
-    if snake(name) in FOLLOWS and "elevation_step" in known:
-        return f"{what} {name!r} is not known; {FOLLOWS[snake(name)]}"
-    near = difflib.get_close_matches(snake(name), [snake(k) for k in known], n=1)
-    if near:
-        hint = f"did you mean {next(k for k in known if snake(k) == near[0])!r}?"
-    else:
-        hint = f"expected one of {', '.join(known)}"
+    spellings = {snake(k): k for k in reversed(known)}
+    near = difflib.get_close_matches(snake(name), spellings, n=1)
+    hint = f"did you mean {spellings[near[0]]!r}?" if near else f"expected one of {', '.join(known)}"
+    if snake(name) == "maximum_elevation" and "elevation_step" in known:
+        hint = "it follows from minimum_elevation + (number_of_channels - 1) * elevation_step: set these properties"
     return f"{what} {name!r} is not known; {hint}"
 
 
 def choose(wrapped: type, name: str, value: str) -> str:
     """The choice of a property for a word. Case, blanks, `_` and `-` do not matter."""
-    known = choices(wrapped, name)
-    for choice in known:
-        if re.sub(r"[\s_\-]", "", value).lower() == choice.replace("_", "").lower():
-            return choice
-    raise ValueError(unknown(snake(name), value, known))
+    known = {choice.replace("_", "").lower(): choice for choice in choices(wrapped, name)}
+    word = re.sub(r"[\s_\-]", "", value).lower()
+    if word not in known:
+        raise ValueError(unknown(snake(name), value, known.values()))
+    return known[word]
 
 
-def resolve(wrapped: type, name: str, owner: str) -> str:
-    """The C++ name of a property given in C++ or snake case. TypeError names the nearest property."""
-    names = property_names(wrapped)
-    if name in names:
-        return names[name]
-    if name in names.values():
-        return name
-    raise TypeError(unknown(f"{owner}: property", name, names))
-
-
-def in_snake_case(wrapped: type, values: Dict[str, Any], owner: str) -> Dict[str, Any]:
-    """Values of properties with names in snake case; names that are not properties are kept. TypeError if a property is given
-    twice."""
+def in_snake_case(wrapped: type, values: dict[str, Any], owner: str) -> dict[str, Any]:
+    """Values by names in snake case; other names than of properties are kept. TypeError for a property given twice."""
     here = {name: key for key, name in property_names(wrapped).items()}
-    found: Dict[str, Any] = {}
+    found: dict[str, Any] = {}
     for name, value in values.items():
         key = here.get(name, name)
         if key in found:
@@ -140,7 +118,7 @@ def set_property(algorithm, name: str, value: Any) -> None:
     if name == "ChannelElevations":
         if not hasattr(value, "__len__") or isinstance(value, str):
             raise TypeError(f"channel_elevations are {value!r}, expected a list of numbers in degrees")
-        for table in (type(algorithm)(), algorithm):  # wrong values are refused by the new object, before the algorithm changes
+        for table in (type(algorithm)(), algorithm):  # the new object refuses wrong values before the algorithm changes
             table.SetNumberOfChannelElevations(len(value))
             for i, elevation in enumerate(value):
                 table.SetChannelElevation(i, elevation)
@@ -154,15 +132,18 @@ def set_property(algorithm, name: str, value: Any) -> None:
         try:
             getattr(algorithm, "Set" + name)(text_of(value) if isinstance(value, str) else value)
         except TypeError:
-            raise TypeError(f"{snake(name)} is {value!r}, expected {_kind(getattr(algorithm, 'Get' + name)())}") from None
+            kind = _kind(getattr(algorithm, "Get" + name)())
+            raise TypeError(f"{snake(name)} is {value!r}, expected {kind}") from None
 
 
-def set_properties(algorithm, owner: Optional[str] = None, **values: Any) -> None:
-    """Sets properties by name. No property is set if one of the names is unknown."""
-    owner = owner or algorithm.GetClassName()
-    resolved = {resolve(type(algorithm), name, owner): value for name, value in values.items()}
-    for name, value in resolved.items():
-        set_property(algorithm, name, value)
+def set_properties(algorithm, owner: str | None = None, **values: Any) -> None:
+    """Sets properties by their names in C++ or in snake case. No property is set if one of the names is unknown."""
+    names = property_names(type(algorithm))
+    for name in values:
+        if name not in names and name not in names.values():
+            raise TypeError(unknown(f"{owner or algorithm.GetClassName()}: property", name, names))
+    for name, value in values.items():
+        set_property(algorithm, names.get(name, name), value)
 
 
 class PropertyOwner:
@@ -183,29 +164,25 @@ class PropertyOwner:
         object.__setattr__(self, name, value)
 
     def set(self, **properties: Any):
-        """Sets several properties by name (`rays_per_beam` or `RaysPerBeam`), each in the unit that `help()` of the class
-        gives. An unknown name is a TypeError that names the nearest property. Returns self."""
+        """Sets several properties by name (`rays_per_beam` or `RaysPerBeam`), each in the unit that `help()` of the
+        class gives. An unknown name is a TypeError that names the nearest property. Returns self."""
         set_properties(self.algorithm, type(self).__name__, **properties)
         return self
 
-    def properties(self) -> Dict[str, Any]:
+    def properties(self) -> dict[str, Any]:
         """All properties by name, each in its unit."""
         names = property_names(type(self.algorithm))
         return {key: get_property(self.algorithm, name) for key, name in names.items()}
 
 
 def wraps(wrapped: type):
-    """Class decorator that makes the properties of a wrapped class attributes, with the descriptions of the wrapped class."""
+    """Class decorator that makes the properties of a wrapped class attributes, with the descriptions of that class."""
 
     def decorate(cls):
         for key, name in property_names(wrapped).items():
-            def getter(self, name=name):
-                return get_property(self.algorithm, name)
-
-            def setter(self, value, name=name):
-                set_property(self.algorithm, name, value)
-
-            setattr(cls, key, property(getter, setter, doc=documentation(wrapped, name)))
+            setattr(cls, key, property(lambda self, name=name: get_property(self.algorithm, name),
+                                       lambda self, value, name=name: set_property(self.algorithm, name, value),
+                                       doc=documentation(wrapped, name)))
         return cls
 
     return decorate

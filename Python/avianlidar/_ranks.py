@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Jobs that compute many results on several MPI ranks: the rank of this process, and checksums of inputs."""
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json
 import sys
-from typing import Any, Callable, Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -28,7 +27,7 @@ class Ranks:
     """This process among the processes of the job. Without MPI there is one process."""
 
     def __init__(self, ends_job: bool = False) -> None:
-        """@param ends_job whether an exception of one process ends all processes at once, as in the command; then none waits"""
+        """@param ends_job whether an exception of one process ends all processes at once, as in the command"""
         self.ends_job = ends_job
         self.controller = vtkMultiProcessController.GetGlobalController()
         self.size = self.controller.GetNumberOfProcesses() if self.controller else 1
@@ -45,7 +44,7 @@ class Ranks:
 
     @contextlib.contextmanager
     def together(self) -> Iterator[None]:
-        """Work that all ranks end together: an exception of one rank becomes an `Error` on the other ranks when they wait."""
+        """Work that all ranks end together: an exception of one rank becomes an `Error` on the ranks that wait."""
         try:
             yield
             self.wait()
@@ -64,8 +63,8 @@ class Ranks:
         return bool(least.GetValue(0))
 
     def agree(self, folder, known: Callable[[], Any]) -> None:
-        """`Error` on all ranks unless all ranks would write the same. @param folder the folder for the files @param known everything
-        that decides what is written, with equal text (`repr`) for equal values; called only in a job of several ranks"""
+        """`Error` on all ranks unless all ranks would write the same files to a folder. @param known everything that
+        decides what is written, with equal text (`repr`) for equal values; called only in a job of several ranks"""
         if self.size == 1:
             return
         with self.together():

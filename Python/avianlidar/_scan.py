@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scans of a scene and their echoes."""
-from __future__ import annotations
-
 import os
 import warnings
-from typing import Any, Dict, Iterator, Optional
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
-from . import _display
+from . import _display, _plot
 from . import vtkAvianLidar as _wrapped
 from ._advice import Advice
 from ._advising import measure
 from ._cloud import Cloud, add_array, array_names, as_numpy, point_array
 from ._pipeline import Progress, callers_level, is_current, update
-from ._plot import plot_map, plot_range_image
 from ._properties import PropertyOwner, wraps
 from ._scene import Scene, time_of
 from ._sensor import Sensor
@@ -27,9 +25,9 @@ class SceneAndSensor(PropertyOwner):
     """Base of scans and coverages: a scene observed from a sensor."""
 
     algorithm: Any
-    progress: Optional[Progress]
+    progress: Progress | None
 
-    def __init__(self, algorithm, scene, sensor, progress: Optional[Progress], settings: Dict[str, Any]):
+    def __init__(self, algorithm, scene, sensor, progress: Progress | None, settings: dict[str, Any]):
         self.algorithm = algorithm
         self.set(**settings)
         self.progress = progress
@@ -48,8 +46,8 @@ class SceneAndSensor(PropertyOwner):
 
     @property
     def sensor(self):
-        """The sensor. May be set to a Sensor; to a preset's name or a sensor file, which are placed at the scene's lidar position;
-        or to beams: vtkPolyData, a Cloud (`Sensor.beams`), or the output of a VTK algorithm."""
+        """The sensor. May be set to a Sensor; to a preset's name or a sensor file, which are placed at the scene's
+        lidar position; or to beams: vtkPolyData, a Cloud (`Sensor.beams`), or the output of a VTK algorithm."""
         return self._sensor
 
     @sensor.setter
@@ -62,8 +60,8 @@ class SceneAndSensor(PropertyOwner):
         elif isinstance(source, vtkPolyData):
             self.algorithm.SetInputDataObject(0, source)
         else:
-            raise TypeError("a sensor is a Sensor, a preset's name, a sensor file, or beams (vtkPolyData, Cloud, algorithm), not "
-                            f"{type(sensor).__name__}")
+            raise TypeError("a sensor is a Sensor, a preset's name, a sensor file, or beams (vtkPolyData, Cloud, "
+                            f"algorithm), not {type(sensor).__name__}")
         self._sensor = sensor
 
     def __reduce__(self):
@@ -79,8 +77,8 @@ class SceneAndSensor(PropertyOwner):
         return is_current(self.algorithm)
 
     def update(self):
-        """Runs everything that is not up to date. Errors are raised as `Error`. Warnings are Python warnings, also for a sensor that can
-        see nothing. Ctrl-C stops the work."""
+        """Runs everything that is not up to date. Errors are raised as `Error`. Warnings are Python warnings, also for
+        a sensor that can see nothing. Ctrl-C stops the work."""
         if not self.is_current():
             update(self.algorithm, self.progress)
             for text in warnings_of(self):
@@ -98,8 +96,8 @@ class Scan(SceneAndSensor):
     """A scan of a scene by a sensor. Every property of vtkAvianLidarEchoFilter is an attribute, in the unit of its
     description.
 
-    A scan runs when results are read, and repeats only the work that a change requires. Hits of rays are kept: after a change of
-    attenuation, limits, materials or return modes, few rays are traced, mostly none.
+    A scan runs when results are read, and repeats only the work that a change requires. Hits of rays are kept: after a
+    change of attenuation, limits, materials or return modes, few rays are traced, mostly none.
 
     >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
     >>> scan = Scan(scene, Sensor(azimuth_step=1), rays_per_beam=200)
@@ -109,16 +107,15 @@ class Scan(SceneAndSensor):
     (True, 0)
     """
 
-    def __init__(self, scene, sensor=None, progress: Optional[Progress] = None, movers=None,
-                 **settings: Any):
+    def __init__(self, scene, sensor=None, progress: Progress | None = None, movers=None, **settings: Any):
         """A scan, not yet run.
 
         scene     a Scene, or any source of a Scene: a mesh or scene file, VTK data, (points, triangles)
-        sensor    a Sensor, a preset's name or any beams, see `sensor`; default: Airport16 at the scene's lidar position,
-                  else at the origin
+        sensor    a Sensor, a preset's name or any beams, see `sensor`; default: Airport16 at the scene's lidar
+                  position, else at the origin
         progress  called with the completed share (0 to 1) and the name of the running class
-        movers    moving surfaces: vtkPolyData of `mover`, a list or a composite of vtkPolyData, or a VTK algorithm such as
-                  vtkAvianLidarTracks
+        movers    moving surfaces: vtkPolyData of `mover`, a list or a composite of vtkPolyData, or a VTK algorithm such
+                  as vtkAvianLidarTracks
         settings  any property by name, for example rays_per_beam, preset="Standard", attenuation_coefficient (1/m)
         """
         algorithm = _wrapped.vtkAvianLidarEchoFilter()
@@ -167,8 +164,9 @@ class Scan(SceneAndSensor):
 
     @property
     def mover_report(self) -> Cloud:
-        """One point for every mover that is present, at its place when a beam receives most energy from the mover: `object_id`,
-        `effective_area` (m2), `energy_received` (J, without noise), `detection_probability`, `number_of_echoes`, ...
+        """One point for every mover that is present, at its place when a beam receives most energy from the mover:
+        `object_id`, `effective_area` (m2), `energy_received` (J, without noise), `detection_probability`,
+        `number_of_echoes`, ...
 
         The first reading of this report switches `report_movers` on."""
         self.algorithm.ReportMoversOn()
@@ -185,15 +183,15 @@ class Scan(SceneAndSensor):
     def __contains__(self, name: object) -> bool:
         return name in self.echoes
 
-    def range_image(self) -> Dict[str, np.ndarray]:
+    def range_image(self) -> dict[str, np.ndarray]:
         """The strongest echo of each beam as an image, elevation by azimuth.
 
         distance_m  m, NaN where there is no echo      column_azimuths  deg from north, clockwise
         energy      J, NaN where there is no echo      row_elevations   deg, upwards
         object_id   -1 where there is no echo          echo             number of the echo, -1 without an echo
 
-        The arrays of the beam report are also included: `status`, `candidates`, `nodes_visited`, `rays_traced`, `skipped`,
-        `skipped_bound` (J).
+        The arrays of the beam report are also included: `status`, `candidates`, `nodes_visited`, `rays_traced`,
+        `skipped`, `skipped_bound` (J).
 
         For a tilted sensor and for a sensor with rotating prisms, columns are firings and rows are channels.
         """
@@ -210,8 +208,8 @@ class Scan(SceneAndSensor):
             image.SetColumns(report.number_of_points // image.GetRows())
         update(image)
         data = image.GetOutput()
-        columns, rows, _ = data.GetDimensions()
-        result = {name: point_array(data, name).reshape(rows, columns) for name in array_names(data)}
+        shape = data.GetDimensions()[1::-1]  # rows, columns
+        result = {name: point_array(data, name).reshape(shape) for name in array_names(data)}
         for name in ("column_azimuths", "row_elevations"):
             result[name] = as_numpy(data.GetFieldData().GetArray(name))
         result["echo"] = result["object_id"]
@@ -220,8 +218,9 @@ class Scan(SceneAndSensor):
         return result
 
     def advise(self, energy: float = 0.02, range: float = 0.05, missed: float = 0.01, beams: int = 1000,
-               progress: Optional[Progress] = None) -> Advice:
-        """The settings that this scan requires, measured on some of its beams: the fastest settings that surely keep the limits.
+               progress: Progress | None = None) -> Advice:
+        """The settings that this scan requires, measured on some of its beams: the fastest settings that surely keep
+        the limits.
 
         energy    largest allowed error of the received energy, rms, relative
         range     largest allowed error of ranges, rms, m
@@ -229,8 +228,8 @@ class Scan(SceneAndSensor):
         beams     number of beams that are measured; more beams decide smaller errors and take longer
         progress  as in the constructor; default: the scan's own
 
-        Sensor, scene, movers and air are those of the scan, which does not change. `scan.set(**advice.settings)` applies the
-        settings. The measurement takes seconds; see Documentation/guide/accuracy.md.
+        Sensor, scene, movers and air are those of the scan, which does not change. `scan.set(**advice.settings)`
+        applies the settings. The measurement takes seconds; see Documentation/guide/accuracy.md.
 
         >>> scene = Scene(([(-5, 50, -5), (5, 50, -5), (0, 50, 9)], [(0, 1, 2)]), material="Glass")
         >>> Scan(scene, Sensor(azimuth_step=1)).advise(energy=0.05, missed=0.5).settings["number_of_reflections"]
@@ -249,13 +248,7 @@ class Scan(SceneAndSensor):
         """The echoes as a pandas DataFrame; see `Cloud.to_pandas`."""
         return self.echoes.to_pandas()
 
-    def plot_range_image(self, array: str = "distance_m", axes=None, **options):
-        """Draws the range image with Matplotlib; see `plot_range_image`."""
-        return plot_range_image(self, array, axes, **options)
-
-    def plot_map(self, array: str = "energy", axes=None, **options):
-        """Draws the echoes from above with Matplotlib; see `plot_map`."""
-        return plot_map(self.echoes, array, axes, **options)
+    plot_map, plot_range_image = _plot.plot_map, _plot.plot_range_image
 
     def __repr__(self) -> str:
         return _display.line(self, _display.scan_rows)

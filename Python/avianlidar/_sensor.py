@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Lidar sensors."""
-from __future__ import annotations
-
 import json
 import os
-from typing import Any, Dict, Tuple, Union
+from typing import Any
 
 import numpy as np
 
@@ -17,8 +15,8 @@ from ._properties import PropertyOwner, choices, choose, wraps
 
 @wraps(_wrapped.vtkAvianLidarBeamSource)
 class Sensor(PropertyOwner):
-    """A lidar: its scan pattern, beam, pulse and receiver. Every property of vtkAvianLidarBeamSource is an attribute, in
-    the unit of its description.
+    """A lidar: its scan pattern, beam, pulse and receiver. Every property of vtkAvianLidarBeamSource is an attribute,
+    in the unit of its description.
 
     >>> sensor = Sensor("Airport32", position=(0, 0, 3), orientation=(90, 0, 0))  # metres; degrees
     >>> sensor.pulse_energy = 2e-4  # joules
@@ -31,20 +29,20 @@ class Sensor(PropertyOwner):
     algorithm: Any  # the vtkAvianLidarBeamSource
     _beams: Any  # directions, times and positions of the user's beams, or None
 
-    def __init__(self, preset: Union[str, "os.PathLike[str]"] = "Airport16", *, directions=None, times=None, positions=None,
+    def __init__(self, preset: str | os.PathLike = "Airport16", *, directions=None, times=None, positions=None,
                  **properties: Any):
-        """`preset` is one of `Sensor.presets()`, or a file (`.lidarsensor.json`). Any property by name changes the preset. Frequent
-        properties:
+        """`preset` is one of `Sensor.presets()`, or a file (`.lidarsensor.json`). Any property by name changes the
+        preset. Frequent properties:
 
         position     metres east, north, up
         orientation  yaw (clockwise from north), pitch (nose up), roll (right side down) in degrees
 
-        Beams may replace the pattern of the preset. They are in the frame of the sensor, which `orientation` turns and `position`
-        moves. Beam shape, pulse and receiver are kept from the preset:
+        Beams may replace the pattern of the preset. They are in the frame of the sensor, which `orientation` turns and
+        `position` moves. Beam shape, pulse and receiver are kept from the preset:
 
         directions   n rows of x, y, z, of any length above 0
-        times        n seconds since the start of the scan, 0 or more; default: all 0. Without `rotation_rate`, a scan that is
-                     too short for the times is extended to the last time
+        times        n seconds since the start of the scan, 0 or more; default: all 0. Without `rotation_rate`, a scan
+                     that is too short for the times is extended to the last time
         positions    n rows of x, y, z in metres; default: all 0
         """
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
@@ -63,32 +61,33 @@ class Sensor(PropertyOwner):
 
     def _take_beams(self, directions, times, positions) -> float:
         """Sets the beams, and returns the time of the last beam, s."""
-        count, rows = len(directions) if np.ndim(directions) else 0, {}
+        count, found = len(directions) if np.ndim(directions) else 0, []
         for name, values, shape in (("directions", directions, (count, 3)), ("times", times, (count,)),
                                     ("positions", positions, (count, 3))):
-            rows[name] = np.zeros(shape) if values is None else np.asarray(values, dtype=float)
-            if rows[name].shape != shape or not count:
+            found.append(np.zeros(shape) if values is None else np.asarray(values, dtype=float))
+            if found[-1].shape != shape or not count:
                 expected = "n rows of x, y, z" if name == "directions" else f"{shape}, as directions have {count} rows"
-                raise ValueError(f"Sensor: {name} have the shape {rows[name].shape}, expected {expected}")
-        beams = with_points(rows["positions"])
-        add_array(beams.GetPointData(), "direction", rows["directions"])
-        add_array(beams.GetPointData(), "timestamp", 1e6 * rows["times"])
+                raise ValueError(f"Sensor: {name} have the shape {found[-1].shape}, expected {expected}")
+        beams = with_points(found[2])
+        add_array(beams.GetPointData(), "direction", found[0])
+        add_array(beams.GetPointData(), "timestamp", 1e6 * found[1])
         update(self.algorithm, run=lambda: self.algorithm.SetBeams(beams))
-        return float(rows["times"].max())
+        return float(found[1].max())
 
     @staticmethod
-    def presets() -> Tuple[str, ...]:
+    def presets() -> tuple[str, ...]:
         """Names of the sensors that are known.
 
-        >>> print(*Sensor.presets())
-        Airport16 Airport32 Automotive16 Avia CorridorC16 HDL32E Helios16P Mid360 Mid40 OS0_128 OS1_64 OS2_128 Pandar40P PandarXT32 Search1550 Search905 VLP16 VLP32C
+        >>> print(*Sensor.presets())  # doctest: +NORMALIZE_WHITESPACE
+        Airport16 Airport32 Automotive16 Avia CorridorC16 HDL32E Helios16P Mid360 Mid40 OS0_128 OS1_64 OS2_128
+        Pandar40P PandarXT32 Search1550 Search905 VLP16 VLP32C
         """
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
 
-    def __getstate__(self) -> Dict[str, Any]:
+    def __getstate__(self) -> dict[str, Any]:
         return {"text": self.algorithm.GetDescription(), "beams": self._beams, "properties": self.properties()}
 
-    def __setstate__(self, state: Dict[str, Any]) -> None:
+    def __setstate__(self, state: dict[str, Any]) -> None:
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
         update(self.algorithm, run=lambda: self.algorithm.LoadSensorText(state["text"]))
         self._beams = state["beams"]
@@ -103,16 +102,17 @@ class Sensor(PropertyOwner):
         return _display.page(self, _display.sensor_rows, lambda axes: _display.draw_pattern(self, axes))
 
     def fit(self, points=None):
-        """Fits the receiver to all points of the maker's data sheet: sets `receiver_aperture` and, if the points differ in light,
-        `filter_bandwidth` of a photon receiver. Needs SciPy.
+        """Fits the receiver to all points of the maker's data sheet: sets `receiver_aperture` and, if the points differ
+        in light, `filter_bandwidth` of a photon receiver. Needs SciPy.
 
-        points  mappings with `range` (m), `reflectance` (above 0, at most 1), `source` (a text), and optionally `probability` of
-                detection (default 0.5, assumed), `light` on the board (klx, default 0) and `board`, the board's width (m; default:
+        points  mappings with `range` (m), `reflectance` (above 0, at most 1), `source` (a text), and optionally
+                `probability` of detection (default 0.5, assumed), `light` on the board (klx, default 0) and `board`,
+                the board's width (m; default:
                 one fitted width for all points). Default: the points of the sensor's file (`sheet.points`)
 
-        Returns a Fit with `numbers`, `board` (m) and, for each point, `predicted` (m), `residuals` and `left_out`: the relative errors of
-        the range with the point in the fit and without the point. `bar` is the largest of these errors, the expected error of
-        ranges by this receiver (nan: no point can be left out, so the error is unknown).
+        Returns a Fit with `numbers`, `board` (m) and, for each point, `predicted` (m), `residuals` and `left_out`: the
+        relative errors of the range with the point in the fit and without the point. `bar` is the largest of these
+        errors, the expected error of ranges by this receiver (nan: no point can be left out, so the error is unknown).
         A filter is at most 100 nm wide (assumed); `limit` is a sentence if the fit ends at this bound, else empty.
         ValueError: a point is invalid, or the sensor has no aperture.
 
@@ -125,11 +125,11 @@ class Sensor(PropertyOwner):
         return found
 
     @property
-    def description(self) -> Dict[str, Any]:
-        """The content of the preset's file: `name`, a description (`comment`), documents (`source`), and, if the file has them, the
-        maker's numbers without a property (`data_sheet`) and with a property (`values`), each with `value`, `unit` and `source`.
-        A `source` that begins with "assumed" means that the number was not measured. `sheet` has ranges of the data sheet.
-        Later changes of properties do not appear.
+    def description(self) -> dict[str, Any]:
+        """The content of the preset's file: `name`, a description (`comment`), documents (`source`), and, if the file
+        has them, the maker's numbers without a property (`data_sheet`) and with a property (`values`), each with
+        `value`, `unit` and `source`. A `source` that begins with "assumed" means that the number was not measured.
+        `sheet` has ranges of the data sheet. Later changes of properties do not appear.
 
         >>> Sensor("VLP-16").description["values"]["wavelength"]
         {'value': 903.0, 'unit': 'nm', 'source': 'user manual'}

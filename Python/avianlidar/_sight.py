@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Warnings that explain why a sensor sees nothing, or less than the user intended."""
-from __future__ import annotations
-
-from typing import Any, Iterator, Tuple
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ def extent(bounds) -> str:
                      zip(("east", "north", "up"), bounds[::2], bounds[1::2])) + " m"
 
 
-def above_and_below(surfaces, place) -> Tuple[int, int]:
+def above_and_below(surfaces, place) -> tuple[int, int]:
     """Numbers of triangles straight above a place, and of triangles below or at the place."""
     points, triangles = triangles_of(surfaces)
     for axis in range(2):  # triangles with corners on both sides, found with bits because there may be millions
@@ -28,7 +27,8 @@ def above_and_below(surfaces, place) -> Tuple[int, int]:
         triangles = triangles[beyond.any(axis=1) & ~beyond.all(axis=1)]
     x, y, z = (points[:, axis][triangles] for axis in range(3))
     x, y = x - place[0], y - place[1]
-    opposite = np.roll(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), -1, axis=1)  # twice the area opposite to each corner
+    # Twice the area opposite to each corner.
+    opposite = np.roll(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), -1, axis=1)
     area = opposite.sum(axis=1)
     inside = (area != 0) & ((opposite * np.sign(area)[:, None]) >= 0).all(axis=1)
     heights = (opposite[inside] * z[inside]).sum(axis=1) / area[inside]
@@ -43,8 +43,8 @@ def of_scene(bounds, place=(0, 0, 0), seen: bool = True) -> Iterator[str]:
         yield f"the scene extends {extent(bounds)}: if its file is in millimetres, read it with the scale 0.001"
     elif on_north and (deep < tall / 3 and tall > 100 and bounds[4] < -0.25 * tall or
                        not seen and bounds[4] < place[2] - 0.5 * tall and deep < tall):
-        yield (f"the scene's lowest point is {-bounds[4]:.6g} m below the origin, and the scene stands on north = {bounds[2]:.6g} m "
-               f"({extent(bounds)}): if y is up in its file, read it with the up axis y")
+        yield (f"the scene's lowest point is {-bounds[4]:.6g} m below the origin, and the scene stands on north = "
+               f"{bounds[2]:.6g} m ({extent(bounds)}): if y is up in its file, read it with the up axis y")
 
 
 def of_place(surfaces, bounds, place, seen: bool = True) -> Iterator[str]:

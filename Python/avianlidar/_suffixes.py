@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Suffixes of the files of clouds, in one list for the package. The module needs no VTK, because the command's help uses the list."""
-from __future__ import annotations
-
-from typing import Iterable
+"""Suffixes of the files of clouds, in one list for the package. The module needs no VTK, because the command's help
+uses the list."""
+from collections.abc import Iterable
 
 PACKETS = (".pcap", ".pcapng")  # files of which each revolution is a cloud
 # Classes of the wrapped module, some of which a build may lack. The writers replace a file as a whole themselves.
-READERS = {suffix: "vtkAvianLidarPointCloudReader" for suffix in (".las", ".laz", ".pcd", ".ply", ".bin", *PACKETS)}
-WRITERS = {".las": "vtkAvianLidarLASWriter", ".laz": "vtkAvianLidarLASWriter", ".pcd": "vtkAvianLidarPCDWriter",
-           ".ply": "vtkAvianLidarPLYWriter", ".bin": "vtkAvianLidarKITTIWriter", ".geojson": "vtkAvianLidarGeoJSONWriter"}
+READERS = dict.fromkeys((".las", ".laz", ".pcd", ".ply", ".bin", *PACKETS), "vtkAvianLidarPointCloudReader")
+WRITERS = {suffix: f"vtkAvianLidar{kind}Writer" for suffix, kind in (
+    (".las", "LAS"), (".laz", "LAS"), (".pcd", "PCD"), (".ply", "PLY"), (".bin", "KITTI"), (".geojson", "GeoJSON"))}
 # Suffixes that need none of these classes.
 OWN = (".vtp", ".csv")
 TABLES = (".csv", ".xyz")  # files that are read; .csv is also written

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Output of the command: lines, tables, and a progress bar on a terminal."""
-from __future__ import annotations
-
 import sys
-from typing import Any, Iterable, List, Tuple
+from collections.abc import Iterable
+from typing import Any
 
-_shown: List[Any] = []  # the progress bar on the terminal
+_shown: list[Any] = []  # the progress bar on the terminal
 
 
 def bar(what: str, done: float, total: float) -> None:
@@ -47,7 +46,7 @@ def warn(text: str) -> None:
     print(f"avianlidar: warning: {' '.join(text.split())}", file=sys.stderr)
 
 
-def table(rows: Iterable[Tuple[Any, ...]]) -> None:
+def table(rows: Iterable[tuple[Any, ...]]) -> None:
     """Prints columns as wide as their words."""
     lines = [[str(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*lines)]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions of the verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs need."""
-from __future__ import annotations
-
+"""The functions of the verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs
+need."""
 import pathlib
 import warnings
-from typing import Any, Callable, Dict, List, Tuple
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from ._terminal import bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
 from .apps._inputs import read_plan, read_scenario
-from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401  these are verbs
+from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
 
 
 def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
@@ -48,8 +48,8 @@ def _scan_of(options) -> Scan:
 
     scene = Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
                   progress=percent_of("scene"))
-    sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0)).set(**dict(options.sensor_set))
-    scan = Scan(scene, sensor, progress=percent_of(options.verb))
+    sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0))
+    scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=percent_of(options.verb))
     preset = getattr(options, "preset", None)
     if preset:
         scan.preset = preset
@@ -70,8 +70,8 @@ def scan(options) -> None:
                 scan.plot_range_image("energy").figure.savefig(name, format="png", dpi=150)
         else:
             save(echoes, out)
-        labels = f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""
-        tell(f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}{labels}")
+        text = f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}"
+        tell(text + (f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""))
     if not options.quiet:
         tell(*notes_of(echoes.fields))
 
@@ -86,20 +86,21 @@ def advise(options) -> None:
         tell(f"{out}: the advice")
 
 
-def _of_packets(options, *files) -> Dict[str, Any]:
+def _of_packets(options, *files) -> dict[str, Any]:
     """The options that choose packets, by name."""
     chosen = {name: getattr(options, name) for name in ("time", "sensor_address") if getattr(options, name) is not None}
     for name, value in chosen.items():
         if not any(file.suffix.lower() in PACKETS for file in files):
-            raise ValueError(f"--{name.replace('_', '-')} {value} chooses packets, expected a file {' or '.join(PACKETS)}, "
-                             f"got {files[0]}")
+            raise ValueError(f"--{name.replace('_', '-')} {value} chooses packets, expected a file "
+                             f"{' or '.join(PACKETS)}, got {files[0]}")
     return chosen
 
 
-def _cloud(file, chosen: Dict[str, Any]):
+def _cloud(file, chosen: dict[str, Any]):
     """A cloud, in the scene's frame if the file gives the frame. @param chosen options for packets"""
-    suffix = file.suffix.lower()
-    return load_cloud(file, **{"local_coordinates": True} if suffix in (".las", ".laz") else chosen if suffix in PACKETS else {})
+    if file.suffix.lower() in (".las", ".laz"):
+        return load_cloud(file, local_coordinates=True)
+    return load_cloud(file, **chosen if file.suffix.lower() in PACKETS else {})
 
 
 def _has_points_only(file: pathlib.Path) -> bool:
@@ -117,8 +118,9 @@ def _words(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key} {_words(part)}" for key, part in value.items())
     parts = value.tolist() if hasattr(value, "tolist") else value
-    return ", ".join(f"{part:.10g}" if isinstance(part, float) else str(part) for part in parts) if isinstance(parts, (list, tuple)) \
-        else str(parts)
+    if not isinstance(parts, (list, tuple)):
+        return str(parts)
+    return ", ".join(f"{part:.10g}" if isinstance(part, float) else str(part) for part in parts)
 
 
 def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
@@ -126,15 +128,14 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
     if not cloud.number_of_points:
         return
     fields = cloud.fields
-    known = {"extent": extent(cloud.data.GetBounds()) if "crs_wkt" not in fields else _words(cloud.data.GetBounds())}
+    bounds = cloud.data.GetBounds()
+    known = {"extent": _words(bounds) if "crs_wkt" in fields else extent(bounds)}
     if file.suffix.lower() in OF_SENSOR:
         known["frame"] = "of the sensor: right, forward and up for east, north and up"
-    units = cloud.field_units
-    for name in ("geodetic_origin", "position", "crs_wkt"):
-        if name in fields:
-            known[name] = f"{_words(fields[name])} {units[name]}"
+    known.update((name, f"{_words(fields[name])} {cloud.field_units[name]}")
+                 for name in ("geodetic_origin", "position", "crs_wkt") if name in fields)
     table(known.items())
-    rows: List[Tuple[Any, ...]] = [("array", "unit", "least", "greatest")]
+    rows: list[tuple[Any, ...]] = [("array", "unit", "least", "greatest")]
     for name, values in cloud.items():
         finite = values[np.isfinite(values)] if np.isfinite(values).any() else np.array([np.nan])
         rows.append((name, cloud.units[name] or "-", f"{finite.min():.6g}", f"{finite.max():.6g}"))
@@ -145,31 +146,32 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
 
 def info(options) -> None:
     file, name = options.file, options.file.name.lower()
-    if not file.is_file():
+    if not file.exists():
         raise FileNotFoundError(f"no such file: {file}")
     chosen = _of_packets(options, file)
-    rows: Dict[str, Any]
-    bounds = None
+    hints: Iterable[str] = ()
     if name.endswith(".lidarsensor.json"):
         what, rows = "a sensor", _display.sensor_rows(Sensor(file))
     elif name.endswith(".coverage.json"):
-        plan = read_plan(file)
-        what, rows = "a plan of coverage", {
-            key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights", "regions", "spread", "runways", "siting", "design") if plan.get(key)}
+        plan, what = read_plan(file), "a plan of coverage"
+        rows = {key: plan[key] for key in ("scene", "sensor", "compare_with", "coverage", "weather", "mix", "heights",
+                                           "regions", "spread", "runways", "siting", "design") if plan.get(key)}
         if "year" in plan:
-            rows["year"] = "; ".join(f"{', '.join(part['weather']) or 'as in coverage'} {100 * part['share']:.3g} %" for part in plan["year"])
+            rows["year"] = "; ".join(f"{', '.join(part['weather']) or 'as in coverage'} {100 * part['share']:.3g} %"
+                                     for part in plan["year"])
     elif name.endswith(".json") and not name.endswith(".lidarscene.json"):
-        scenario = read_scenario(file)
-        what, rows = "a scenario of sequences", {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
+        scenario, what = read_scenario(file), "a scenario of sequences"
+        rows = {key: scenario[key] for key in ("scene", "sensor", "weather", "number_of_scans") if key in scenario}
     elif _has_points_only(file):
         _say_cloud(file, _cloud(file, chosen), options.quiet)
         return
     else:
-        scene = Scene(file)
-        what, rows, bounds = "a scene", _display.scene_rows(scene), scene.bounds if scene.number_of_triangles else None
+        scene, what = Scene(file), "a scene"
+        rows = _display.scene_rows(scene)
+        hints = of_scene(scene.bounds) if scene.number_of_triangles else ()
     print(f"{file}: {what}")
     table((key, _words(value)) for key, value in rows.items())
-    for text in of_scene(bounds) if bounds else ():
+    for text in hints:
         warn(text)
 
 
@@ -200,12 +202,15 @@ def compare(options) -> None:
                 ("density-aware Chamfer distance (1)", "DensityAwareChamfer"))),
             ("number of points", *(cloud.number_of_points for cloud in clouds))])
     print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
-    alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}" for file, cloud in zip(files, clouds) if _alarms(cloud)]
+    alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}"
+              for file, cloud in zip(files, clouds) if _alarms(cloud)]
     if alarms:
+        text = f"All numbers above count echoes that no surface has returned: {'; '.join(alarms)}."
         left = [cloud.points[cloud["object_id"] >= 0] if "object_id" in cloud else cloud.points for cloud in clouds]
-        print(f"All numbers above count echoes that no surface has returned: {'; '.join(alarms)}." +
-              (f" Without these echoes the Hausdorff distance is {_compared(*map(vertices, left)).GetHausdorffDistance():.6g} m."
-               if all(map(len, left)) else ""))
+        if all(map(len, left)):
+            distance = _compared(*map(vertices, left)).GetHausdorffDistance()
+            text += f" Without these echoes the Hausdorff distance is {distance:.6g} m."
+        print(text)
     print(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
           f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
     if options.out:
@@ -215,14 +220,13 @@ def compare(options) -> None:
 
 def convert(options) -> None:
     chosen = _of_packets(options, options.file)
-    to_mcap = options.out.suffix.lower() == ".mcap"
-    if not to_mcap:
-        check_suffix(options.out)
-    check_target(options.out)
-    if to_mcap:
+    if options.out.suffix.lower() == ".mcap":
+        check_target(options.out)
         from .apps import _mcap
         print(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
         return
+    check_suffix(options.out)
+    check_target(options.out)
     cloud = _cloud(options.file, chosen)
     save(cloud, options.out)
     print(f"{options.out}: {cloud.number_of_points} points of {options.file}")
@@ -252,25 +256,28 @@ def _fit(options) -> None:
     sensor = Sensor(options.fit)
     description = sensor.description
     found = sensor.fit()
-    points = description["sheet"]["points"]
-    table([("reflectance", "light (klx)", "probability", "range of the data sheet (m)", "fitted range (m)", "error", "error if left out",
-            "source"),
-            *((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", f"{point.get('probability', _sheet.HALF):g}"
-               + ("" if "probability" in point else ", assumed"), f"{point['range']:g}", f"{predicted:.1f}", f"{100 * off:+.1f} %",
-               "-" if left != left else f"{100 * left:+.1f} %", point["source"])
-              for point, predicted, off, left in zip(points, found.predicted, found.residuals, found.left_out))])
-    print(*(f"{name} {value:.4g}" for name, value in found.numbers.items()),
-          *([f"board of the maker {found.board:.3g} m"] if found.board == found.board else []), sep=", ")
+    rows = [("reflectance", "light (klx)", "probability", "range of the data sheet (m)", "fitted range (m)", "error",
+             "error if left out", "source")]
+    for point, *fitted in zip(description["sheet"]["points"], found.predicted, found.residuals, found.left_out):
+        predicted, off, left = fitted
+        probability = f"{point['probability']:g}" if "probability" in point else f"{_sheet.HALF:g}, assumed"
+        rows.append((f"{point['reflectance']:g}", f"{point.get('light', 0):g}", probability, f"{point['range']:g}",
+                     f"{predicted:.1f}", f"{100 * off:+.1f} %", "-" if np.isnan(left) else f"{100 * left:+.1f} %",
+                     point["source"]))
+    table(rows)
+    numbers = [f"{name} {value:.4g}" for name, value in found.numbers.items()]
+    print(*numbers, *([] if np.isnan(found.board) else [f"board of the maker {found.board:.3g} m"]), sep=", ")
     if found.limit:
         print(found.limit)
-    print(f"ranges by this receiver have an error of about {100 * found.bar:.0f} %" if found.bar == found.bar else
-          "the error of ranges by this receiver is unknown: no point can be left out of the fit")
+    print("the error of ranges by this receiver is unknown: no point can be left out of the fit" if np.isnan(found.bar)
+          else f"ranges by this receiver have an error of about {100 * found.bar:.0f} %")
     if options.out:
         _sheet.write(description, found, options.out)
         print(options.out)
 
 
 def materials(_) -> None:
-    of = {_wrapped.vtkAvianLidarMaterial.GetMaterialName(i): _wrapped.vtkAvianLidarMaterial.GetMaterialSource(i) for i in range(100)}
+    known = _wrapped.vtkAvianLidarMaterial
+    sources = {known.GetMaterialName(i): known.GetMaterialSource(i) for i in range(100)}
     table([("name", *_scene.COEFFICIENTS, "source"),
-            *((name, *(f"{value:g}" for value in values), of[name]) for name, values in _scene.materials().items())])
+           *((name, *map("{:g}".format, values), sources[name]) for name, values in _scene.materials().items())])

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Weather in words, as `--weather`, plans and scenarios give it: `fog:800` (visibility, m), `rain:10` (mm/h)."""
-from __future__ import annotations
-
 import math
-from typing import Any, Dict, Iterable, Mapping, Optional
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from ._properties import snake
 
@@ -12,21 +11,21 @@ FAR = 10_000.0  # visibility, m, that reports of airports do not distinguish fro
 AIR = ("visibility", "air_backscatter", "rain_rate")  # properties that the words set
 
 
-def weather(words: Optional[Iterable[str]]) -> Dict[str, Any]:
+def weather(words: Iterable[str] | None) -> dict[str, Any]:
     """Settings of a scan or a coverage for words of `--weather`.
 
     >>> weather(["fog:800", "rain:10"])
     {'visibility': 800.0, 'air_backscatter': True, 'rain_rate': 10.0}
     """
-    found: Dict[str, Any] = {}
-    known: Dict[str, str] = {}
+    found: dict[str, Any] = {}
+    known: dict[str, str] = {}
     for word in words or ():
         kind, colon, number = word.partition(":")
         try:
             value = float(number)
         except ValueError:
             value = math.nan
-        if kind not in ("fog", "haze", "rain") or not value > 0 or not math.isfinite(value):
+        if kind not in ("fog", "haze", "rain") or not 0 < value < math.inf:
             raise ValueError(f"weather {word!r}, expected {WEATHER.partition(';')[0]}")
         name = "rain rate" if kind == "rain" else "visibility"
         if name in known:
@@ -36,8 +35,8 @@ def weather(words: Optional[Iterable[str]]) -> Dict[str, Any]:
     return found
 
 
-def in_weather(settings: Mapping[str, Any], words: Optional[Iterable[str]]) -> Dict[str, Any]:
-    """Settings in a weather. Settings given by name are kept; ValueError where settings and words both give visibility or rain rate."""
+def in_weather(settings: Mapping[str, Any], words: Iterable[str] | None) -> dict[str, Any]:
+    """Settings in a weather. ValueError where settings and words both give the visibility or the rain rate."""
     air = weather(words)
     for name in ("visibility", "rain_rate"):
         if name in air and name in settings:
@@ -45,7 +44,7 @@ def in_weather(settings: Mapping[str, Any], words: Optional[Iterable[str]]) -> D
     return {**air, **settings}
 
 
-def without_air(settings: Mapping[str, Any]) -> Dict[str, Any]:
+def without_air(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Settings without the properties that words of weather set."""
     return {name: value for name, value in settings.items() if snake(name) not in AIR}
 

@@ -7,13 +7,12 @@
 >>> round(gulls.to(0.5), -1)  # half of them by one scan, m
 580.0
 """
-from __future__ import annotations
-
 import copy
 import dataclasses
 import math
 import warnings
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -59,28 +58,28 @@ class Reach:
         return float(np.interp(share, values[last][::-1], self.ranges[last][::-1])) if len(above) else 0.0
 
 
-def band(sensor: Sensor) -> Tuple[float, float]:
+def band(sensor: Sensor) -> tuple[float, float]:
     """Lowest and highest elevation of the beam centres, deg."""
     up = np.degrees(np.arcsin(np.clip(sensor.beams["direction"][:, 2], -1.0, 1.0)))
     return float(up.min()), float(up.max())
 
 
 def _azimuths(directions: np.ndarray, elevations: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Azimuths drawn evenly between the outermost of the NEAR beams nearest to each elevation, rad, for a pattern without columns."""
-    up = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
-    order = np.argsort(up, kind="stable")
-    about = np.arctan2(directions[order, 0], directions[order, 1])
+    """Azimuths, rad, drawn evenly between the outermost of the NEAR beams nearest to each elevation."""
+    directions = directions[np.argsort(directions[:, 2], kind="stable")]
+    up, about = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0)), np.arctan2(directions[:, 0], directions[:, 1])
     count = min(NEAR, len(about))
-    first = np.clip(np.searchsorted(up[order], elevations) - count // 2, 0, len(about) - count)
+    first = np.clip(np.searchsorted(up, elevations) - count // 2, 0, len(about) - count)
     near = about[first[:, None] + np.arange(count)]
     return random.uniform(near.min(axis=1), near.max(axis=1))
 
 
-def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional[Sequence[float]] = None, birds: int = BIRDS,
-                 **settings: Any) -> Reach:
-    """Birds in the band of a level sensor, drawn with a fixed seed: elevations evenly between the lowest and the highest beam,
-    azimuths about the beams. With rotating prisms, azimuths lie evenly between the leftmost and the rightmost beam at the elevation, and
-    the scan is the first scan. There are no surfaces, and therefore no shadows and no clutter.
+def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Sequence[float] | None = None,
+                 birds: int = BIRDS, **settings: Any) -> Reach:
+    """Birds in the band of a level sensor, drawn with a fixed seed: elevations evenly between the lowest and the
+    highest beam, azimuths about the beams. With rotating prisms, azimuths lie evenly between the leftmost and the
+    rightmost beam at the elevation, and the scan is the first scan. There are no surfaces, and therefore no shadows and
+    no clutter.
 
     ranges    m; default: the part of RANGES in which birds are detected
     birds     number of birds at each range
@@ -100,11 +99,12 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
         about = np.arctan2(of[:, 0], of[:, 1]) + np.radians(random.uniform(-0.5, 0.5, birds) * sensor.azimuth_step)
     lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
 
-    def at(distances: np.ndarray, lines: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    def at(distances: np.ndarray, lines: np.ndarray) -> list[np.ndarray]:
         cover.places = (distances[:, None, None] * lines).reshape(-1, 3)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about missing surfaces
-            return cover["detection_probability"].reshape(len(distances), -1), cover["track_probability"].reshape(len(distances), -1)
+            return [cover[name].reshape(len(distances), -1).astype(float)
+                    for name in ("detection_probability", "track_probability")]
 
     if ranges is None:
         end, found = math.inf, sensor.range_gate
@@ -117,18 +117,19 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Optional
         ranges = np.linspace(found / RANGES, found, RANGES)
     distances = np.asarray(ranges, dtype=float)
     one, several = at(distances, lines)
-    return Reach(distances, one.mean(axis=1, dtype=float), one.std(axis=1, dtype=float) / math.sqrt(birds), several.mean(axis=1, dtype=float))
+    return Reach(distances, one.mean(axis=1), one.std(axis=1) / math.sqrt(birds), several.mean(axis=1))
 
 
-def air_of(sensor: Sensor, words: Optional[Sequence[str]] = None) -> Dict[str, Any]:
-    """Settings of `within_beams` for words of `--weather`; the visibility is CLEAR if no word gives a visibility. For a receiver without an
-    aperture, air and drops only weaken light."""
+def air_of(sensor: Sensor, words: Sequence[str] | None = None) -> dict[str, Any]:
+    """Settings of `within_beams` for words of `--weather`; the visibility is CLEAR if no word gives a visibility. For a
+    receiver without an aperture, air and drops only weaken light."""
     attenuation = _wrapped.vtkAvianLidarCoverage().GetAttenuationCoefficient()
-    return as_received(sensor, {"attenuation_coefficient": attenuation, "visibility": CLEAR, "air_backscatter": False, "rain_rate": 0.0, **weather(words)})
+    return as_received(sensor, {"attenuation_coefficient": attenuation, "visibility": CLEAR, "air_backscatter": False,
+                                "rain_rate": 0.0, **weather(words)})
 
 
 def left_open(sensor: Sensor) -> float:
-    """Expected relative error of ranges by a sensor's fitted receiver; nan without a fit to several points of a data sheet."""
+    """Expected relative error of ranges by a sensor's fitted receiver; nan without a fit to several points."""
     return float(sensor.description.get("sheet", {}).get("bar", math.nan))
 
 
@@ -140,8 +141,9 @@ def metres(value: float) -> str:
 def half(sensor: Sensor, found: Reach) -> str:
     """The range to which half of the birds are detected, with the interval that the fit of the receiver leaves open."""
     to, bar = found.to(0.5), left_open(sensor)
-    between = "" if math.isnan(bar) or to == 0.0 else f" ({metres((1.0 - bar) * to).removesuffix(' m')} to {metres((1.0 + bar) * to)})"
-    return metres(to) + between
+    if math.isnan(bar) or to == 0.0:
+        return metres(to)
+    return f"{metres(to)} ({metres((1.0 - bar) * to).removesuffix(' m')} to {metres((1.0 + bar) * to)})"
 
 
 def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
@@ -149,13 +151,13 @@ def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
     to, width = found.to(0.5), 2.0 * table()["precision"]["4"]["strip"]["half_width"]
     if to == 0.0:
         return f"{name} sees half of the {species}s in its beams at no range."
-    return (f"{name} sees half of the {species}s in its beams to {half(sensor, found)}, {'less' if to < width else 'more'} than the {width:g} m that the strip "
-            "of a large runway is wide.")
+    return (f"{name} sees half of the {species}s in its beams to {half(sensor, found)}, "
+            f"{'less' if to < width else 'more'} than the {width:g} m that the strip of a large runway is wide.")
 
 
-def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) -> List[Dict[str, float]]:
-    """A row for each height (z, m): the ground distance from which the band of the plan's sensor contains the height, and the ground
-    distance to which birds are near enough, m; inf and 0 if no distance fulfils the condition.
+def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) -> list[dict[str, float]]:
+    """A row for each height (z, m): the ground distance from which the band of the plan's sensor contains the height,
+    and the ground distance to which birds are near enough, m; inf and 0 if no distance fulfils the condition.
 
     detected_to  m along the line of sight, for example Reach.to(0.5)
     """
@@ -164,18 +166,21 @@ def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) ->
     for height in heights:
         above = height - plan.sensor.position[2]
         limit = high if above >= 0.0 else -low  # deg, on the side of the horizon where the bird is
-        start = abs(above) / math.tan(math.radians(limit)) if 0.0 < limit < 90.0 else 0.0 if limit >= 90.0 or above == 0.0 else math.inf
+        start = 0.0 if limit >= 90.0 or above == 0.0 else math.inf
+        if 0.0 < limit < 90.0:
+            start = abs(above) / math.tan(math.radians(limit))
         rows.append({"height": float(height), "above": above, "from": start,
                      "to": math.sqrt(max(detected_to ** 2 - above ** 2, 0.0))})
     return rows
 
 
-def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
-    """How high the band must reach, if the band contains one of the plan's heights only beyond half of the distance to which birds are
-    detected. None if the plan gives no heights, or if all heights are contained.
+def advice(plan: Plan, detected_to: float) -> dict[str, Any] | None:
+    """How high the band must reach, if the band contains one of the plan's heights only beyond half of the distance to
+    which birds are detected. None if the plan gives no heights, or if all heights are contained.
 
-    @return `needed` (elevation of the highest beams, deg; None if birds are too far away for any elevation), `rows` as in
-    `heights_in_band`, and `ways`: changes in words (`what`), their costs, and `changes` to try (properties of the sensor)
+    @return `needed` (elevation of the highest beams, deg; None if birds are too far away for any elevation), `rows` as
+    in `heights_in_band`, and `ways`: changes in words (`what`), their costs, and `changes` to try (properties of the
+    sensor)
     """
     if not plan.asked:
         return None
@@ -185,20 +190,21 @@ def advice(plan: Plan, detected_to: float) -> Optional[Dict[str, Any]]:
     near = [row for row in rows if row["above"] > 0.0 and row["to"] > 0.0]
     if not near:
         return {"needed": None, "rows": rows, "ways": []}
-    low, high = band(plan.sensor)
+    sensor, (low, high) = plan.sensor, band(plan.sensor)
     needed = max(math.degrees(math.atan2(row["above"], 0.5 * row["to"])) for row in near)
-    ways: List[Dict[str, Any]] = []
-    sensor = plan.sensor
+    ways: list[dict[str, Any]] = []
     regular = (not sensor.channel_elevations and sensor._beams is None and sensor.elevation_step > 0.0 and
                not any(sensor.orientation) and not sensor.algorithm.GetNumberOfPrisms())
     if high < needed < 90.0 and regular:
-        number = sensor.number_of_channels
+        number, lowest = sensor.number_of_channels, sensor.minimum_elevation
         more = number + math.ceil((needed - high) / sensor.elevation_step - 1e-9)
-        raised = [{"minimum_elevation": sensor.minimum_elevation + (needed - high) * k / RAISES} for k in range(1, RAISES + 1)]
+        slower = round(sensor.rotation_rate * number / more, 6)
+        raised = [{"minimum_elevation": lowest + (needed - high) * k / RAISES} for k in range(1, RAISES + 1)]
         ways = [{"what": lambda _: f"{more} beams above one another instead of {number}, at the same step",
                  "cost": f"scans that take {more / number:.2g} times as long, at the same pulses a second",
-                 "changes": [{"number_of_channels": more, "rotation_rate": round(sensor.rotation_rate * number / more, 6)}]},
+                 "changes": [{"number_of_channels": more, "rotation_rate": slower}]},
                 {"what": lambda changes: f"the same beams, all higher, from {changes['minimum_elevation']:.1f} to "
-                                         f"{changes['minimum_elevation'] + high - low:.1f}°: the best of {RAISES} tried",
+                                         f"{changes['minimum_elevation'] + high - low:.1f}°: the best of {RAISES} "
+                                         "tried",
                  "cost": "birds that fly lower", "changes": raised}]
     return {"needed": needed, "rows": rows, "ways": ways}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Advice on a scene: one reflection of a convex sphere and why, two of a corner; at the airport what is advised holds on the
+"""Advice on a scene: one reflection of a convex sphere, two of a corner; at the airport what is advised holds on the
 whole scan with other seeds and what surely fails does; more beams where these cannot tell how many echoes are wrong; settings
 that are equally fast are ranked by their errors; every kind of sensor, movers and weather; the same each time; errors."""
 import contextlib
@@ -49,16 +49,13 @@ class Advice(unittest.TestCase):
         advice = al.Scan(sphere(), SENSOR, seed=2**31 - 1).advise(**EASY)  # the largest
         self.assertEqual(advice.settings["number_of_reflections"], 1)
         self.assertIn("One reflection is enough: second reflections return 0 of the light (measured over 150 beams)", str(advice))
-        self.assertIn("a convex body cannot light itself", str(advice))
         self.assertEqual((advice.table["verdict"][advice.row], len(advice.table["verdict"])), (2, 37))
-        self.assertNotIn("convex", str(al.Scan(sphere(), al.Sensor("Airport16", azimuth_step=10, position=(0, 60, 0))).advise(**EASY)))  # from inside
 
     def test_a_corner_needs_two(self):
         advice = al.Scan(al.Scene(CORNER, material="Metal"), SENSOR).advise(**{**EASY, "energy": 0.01})
         self.assertEqual(advice.settings["number_of_reflections"], 2)
         one = (advice.table["number_of_reflections"] == 1) & (advice.table["beam_samples"] == 0)
         self.assertTrue((advice.table["energy_error"][one] > 0.01).all())
-        self.assertNotIn("convex", str(advice))
 
     def test_holds_on_the_whole_scan(self):
         scan = al.Scan(SCENE, "Airport16", noise=False)

@@ -164,6 +164,7 @@ class Verbs(unittest.TestCase):
                  ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
                  ((*scan, "--scan-set", "attenuation_coefficient=nan"), "not a finite number"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
+                 (("info", "none.vtp"), "no such file: none.vtp"), (("info", OUTPUT), "is not a regular file"),
                  (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
                  (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:

@@ -266,7 +266,7 @@ class Refused(unittest.TestCase):
         cover, sensor = al.Coverage(al.Scene(), al.Sensor()), al.Sensor(azimuth_step=5)
         runway, points = siting.Runway("a", (0, 0), (1000, 0), 45.0), al.Cloud(cloud([(1, 2, 3)]))
         for kind, words, call in (
-                (KeyError, "there is no array 'x', expected one of .*status", lambda: cover["x"]),
+                (KeyError, "array 'x' is not known; expected one of .*status", lambda: cover["x"]),
                 (ValueError, "birds is 1, expected at least 2", lambda: reach.within_beams(sensor, birds=1)),
                 (ValueError, "count is 1, expected at least 2", lambda: siting.strips_and_approaches([runway], 1)),
                 (ValueError, "count is 9, expected at least 2", lambda: siting.strips_and_approaches([], 9)),
