@@ -75,7 +75,7 @@ int vtkAvianLidarEchoFilter::RequestData(
       vtkPolyData* moved = vtkPolyData::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       this->PrepareBeams(ranks, beams);
-      in.Beams.CheckRanks(ranks, this);
+      in.Beams.CheckRanks(ranks);
       this->PrepareSurfaces(ranks, surfaces);
       this->PrepareMovers(ranks, movers);
       this->PrepareTree(ranks, surfaces);
@@ -92,20 +92,16 @@ int vtkAvianLidarEchoFilter::RequestData(
 void vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  this->Moved->Movers.Read(ranks, this, input, *in.Surfaces);
+  this->Moved->Movers.Read(ranks, input, *in.Surfaces);
   in.Setup.movers = this->Moved->Movers.movers;
   in.Setup.largestReflectance = in.Summary.largestReflectance();
   in.Setup.largestGain = in.Summary.largestGain();
   avianlidar::includeMovers(in.Setup);
   const bool untimed = in.Setup.movers && in.Beams.beams.size() > 0 && !in.Beams.isTimed;
-  ranks.Together(this,
-    [untimed]()
-    {
-      vtkAvianLidarRequire(untimed
-          ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
-            "in microseconds at which each beam meets the movers (input port 2)"
-          : "");
-    });
+  vtkAvianLidarRequire(untimed
+      ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
+        "in microseconds at which each beam meets the movers (input port 2)"
+      : "");
 }
 
 //------------------------------------------------------------------------------
@@ -113,26 +109,18 @@ void vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData
   const std::array<vtkPolyData*, 3>& outputs)
 {
   vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [&]()
-    {
-      avianlidar::planModel(in.Setup);
-      vtkAvianLidarRequire(avianlidar::checkNoise(in.Setup.noise, in.Beams.total),
-        "Input port 0 (beams), field data: ");
-      this->Trace(outputs);
-    });
+  avianlidar::planModel(in.Setup);
+  vtkAvianLidarRequire(
+    avianlidar::checkNoise(in.Setup.noise, in.Beams.total), "Input port 0 (beams), field data: ");
+  this->Trace(outputs);
   for (double* count : { &in.TracedRays, &in.TracedBeams, &this->Moved->TouchedBeams })
   {
     *count = ranks.Sum(*count);
   }
-  ranks.Together(this,
-    [&]()
-    {
-      for (vtkPolyData* output : outputs)
-      {
-        this->FillFields(beamFields, output->GetFieldData());
-      }
-    });
+  for (vtkPolyData* output : outputs)
+  {
+    this->FillFields(beamFields, output->GetFieldData());
+  }
 }
 
 //------------------------------------------------------------------------------

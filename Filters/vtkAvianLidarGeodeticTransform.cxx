@@ -217,7 +217,6 @@ int vtkAvianLidarGeodeticTransform::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||

@@ -3,7 +3,6 @@
 
 #include "AvailableMemory.h"
 #include "ScanGrid.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarGuard.h"
@@ -237,28 +236,19 @@ int vtkAvianLidarRangeImage::RequestData(
     {
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
       vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
-      ranks.Together(this,
+      vtkAvianLidarWithin(ImagePrefix,
         [&]()
         {
-          vtkAvianLidarAbort::StopIfWanted(this);
-          vtkAvianLidarWithin(ImagePrefix,
-            [&]()
-            {
-              ImageArrays::RequireLengths(echoes, "input port 0 (echoes)");
-              ImageArrays::RequireLengths(beams, "input port 1 (beams)");
-            });
+          ImageArrays::RequireLengths(echoes, "input port 0 (echoes)");
+          ImageArrays::RequireLengths(beams, "input port 1 (beams)");
         });
-      echoes = vtkAvianLidarGather::Points(ranks, this, echoes);
-      beams = vtkAvianLidarGather::Points(ranks, this, beams);
-      ranks.Together(this,
+      echoes = vtkAvianLidarGather::Points(ranks, echoes);
+      beams = vtkAvianLidarGather::Points(ranks, beams);
+      vtkAvianLidarWithin(ImagePrefix,
         [&]()
         {
-          vtkAvianLidarWithin(ImagePrefix,
-            [&]()
-            {
-              this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
-                inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0));
-            });
+          this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
+            inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0));
         });
     });
   return done && ImageArrays::FillIfFailed(this, outputVector);

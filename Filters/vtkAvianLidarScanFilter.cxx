@@ -296,19 +296,13 @@ void vtkAvianLidarScanFilter::AddAirTo(vtkFieldData* fields) const
 void vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
 {
   vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [&]()
-    {
-      vtkAvianLidarAbort::StopIfWanted(this);
-      vtkAvianLidarRequire(this->MissingInput());
-      in.Beams.Read(input);
-      in.Setup.sensor = in.Beams.sensor;
-      in.Setup.revolution = in.Beams.revolution;
-      this->PrepareSettings();
-    });
-  ranks.AgreeOn(this,
-    SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient,
-      this->AirBackscatter, this->RainRate));
+  vtkAvianLidarRequire(this->MissingInput());
+  in.Beams.Read(input);
+  in.Setup.sensor = in.Beams.sensor;
+  in.Setup.revolution = in.Beams.revolution;
+  this->PrepareSettings();
+  ranks.AgreeOn(SettingsOf(in.Setup.settings, this->Preset, this->Visibility,
+    this->AttenuationCoefficient, this->AirBackscatter, this->RainRate));
 }
 
 //------------------------------------------------------------------------------
@@ -316,7 +310,7 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 {
   vtkInternals& in = *this->Internals;
   auto state = vtkAvianLidarContent::StateOf(input);
-  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Group()))
+  if (ranks.All(state == in.State && in.MergedBy == ranks.Group()))
   {
     return; // nothing was modified since the last execution
   }
@@ -326,19 +320,15 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   if (!given)
   {
     in.Surfaces =
-      in.Exchange.Merge(ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
+      in.Exchange.Merge(ranks, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
   }
-  ranks.Together(this,
-    [&]()
-    {
-      if (given)
-      {
-        in.Exchange.Forget();
-        in.Exchange.Fields = input->GetFieldData();
-        in.Surfaces = merged;
-      }
-      this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
-    });
+  if (given)
+  {
+    in.Exchange.Forget();
+    in.Exchange.Fields = input->GetFieldData();
+    in.Surfaces = merged;
+  }
+  this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
   in.State = std::move(state);
   in.MergedBy = ranks.Group();
 }
@@ -368,20 +358,16 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
 {
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
-  ranks.Together(this,
-    [&]()
-    {
-      this->PlaceMedia();
-      this->FindTree(input);
-      if (!in.Setup.tree)
-      {
-        in.Setup.tree = in.OwnTree =
-          avianlidar::buildCollisionTree(in.Surfaces->mesh, avianlidar::TreeOptions{},
-            vtkAvianLidarAbort::KeepGoing(this, 0.0, vtkInternals::BuildShare), in.Threads);
-        in.TreeBuilds += in.OwnTree != nullptr;
-      }
-      vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
-    });
+  this->PlaceMedia();
+  this->FindTree(input);
+  if (!in.Setup.tree)
+  {
+    in.Setup.tree = in.OwnTree =
+      avianlidar::buildCollisionTree(in.Surfaces->mesh, avianlidar::TreeOptions{},
+        vtkAvianLidarAbort::KeepGoing(this, 0.0, vtkInternals::BuildShare), in.Threads);
+    in.TreeBuilds += in.OwnTree != nullptr;
+  }
+  vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarGuard.h"
 
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
@@ -59,7 +60,7 @@ std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGuard::RequireInputs(vtkAlgorithm* self)
+void vtkAvianLidarGuard::Begin(vtkAlgorithm* self)
 {
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -75,6 +76,7 @@ void vtkAvianLidarGuard::RequireInputs(vtkAlgorithm* self)
       }
     }
   }
+  vtkAvianLidarAbort::StopIfWanted(self);
 }
 
 //------------------------------------------------------------------------------

@@ -27,8 +27,10 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// Throw an error that names the first input that is empty because its producer failed.
-void RequireInputs(vtkAlgorithm* self);
+/// Begin an execution. Throws an error that names the first input that is empty because its
+/// producer failed, or avianlidar::WorkStopped if an observer has stopped the algorithm at progress
+/// 0, which the executive reports before RequestData.
+void Begin(vtkAlgorithm* self);
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
@@ -65,6 +67,10 @@ std::string ProblemOf(const Step& step)
   {
     return error.what();
   }
+  catch (...)
+  {
+    return "An unknown exception was thrown";
+  }
 }
 }
 
@@ -78,7 +84,7 @@ try
   const std::string problem = vtkAvianLidarGuard::ProblemOf(
     [&]()
     {
-      vtkAvianLidarGuard::RequireInputs(self);
+      vtkAvianLidarGuard::Begin(self);
       body();
       stopped = false;
     });
