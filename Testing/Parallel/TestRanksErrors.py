@@ -6,9 +6,11 @@ import json
 import os
 import sys
 
+import numpy as np
 import vtk
 
 from paralleltools import LAST, RANK, RANKS, assert_same, exchange, in_order, joined, main, point_arrays, total, update
+import cloudtools
 import echotools
 import faulttools
 from avianlidar import vtkAvianLidar as al
@@ -266,5 +268,37 @@ def test_abort():
         check_good(filters[-1])
 
 
+def test_abort_of_a_tracker():
+    """One rank hears of the wish while tracks are updated: no rank keeps this cloud, and all go on as one process without it."""
+    places = np.random.default_rng(3).uniform(-100, 100, (20, 3))
+    serial, together = al.vtkAvianLidarTracker(), al.vtkAvianLidarTracker()
+    serial.SetController(None)
+    told = []
+
+    def heard(caller, _):
+        told.append(caller)
+        if RANK == LAST and len(told) == 2:  # the first is before the execution
+            caller.SetAbortExecute(1)
+
+    for time in range(4):
+        for tracker, mine in ((serial, slice(None)), (together, slice(RANK, None, RANKS))):
+            cloud = cloudtools.cloud((places + 5 * time)[mine])
+            cloud.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), float(time))
+            tracker.SetInputData(cloud)
+        if time == 1:
+            observer = together.AddObserver("ProgressEvent", heard)
+            update(together)
+            assert len(told) > 1 and sizes(together) == {"0 0"}, told
+            together.RemoveObserver(observer)
+            together.SetAbortExecute(0)
+        else:
+            update(together)
+            serial.Update()
+    found, expected = (echotools.array(tracker.GetOutput(1), "track_id") for tracker in (together, serial))
+    assert (found == expected[RANK::RANKS]).all(), (found, expected)
+    assert RANK != 0 or not assert_same(point_arrays(together.GetOutput(0)), point_arrays(serial.GetOutput(0)))
+
+
 if __name__ == "__main__":
-    main([test_bad_input, test_block_of_2_gib, test_settings_that_differ, test_beams_of_two_sensors, test_files, test_errors_as_data, test_abort])
+    main([test_bad_input, test_block_of_2_gib, test_settings_that_differ, test_beams_of_two_sensors, test_files, test_errors_as_data, test_abort,
+          test_abort_of_a_tracker])
