@@ -219,20 +219,14 @@ int vtkAvianLidarBeamView::RequestData(
     [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
-      vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
-      vtkDataObject* movers = vtkDataObject::GetData(inputVector[2]);
       vtkPolyData* seen = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* cone = vtkPolyData::GetData(outputVector, 1);
       vtkTable* shares = vtkTable::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkAvianLidarRanks::Settings own;
       own.Add("BeamId", this->BeamId);
-      this->PrepareBeams(ranks, beams);
       ranks.AgreeOn(own);
-      in.Beams.CheckRanks(ranks);
-      this->PrepareSurfaces(ranks, surfaces);
-      this->PrepareMovers(ranks, movers);
-      this->PrepareTree(ranks, surfaces);
+      this->Prepare(ranks, inputVector);
       this->Look(ranks, beams->GetFieldData(), seen, cone, shares);
     });
 }

@@ -212,12 +212,6 @@ vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCloudComparison::~vtkAvianLidarCloudComparison()
-{
-  this->SetController(nullptr);
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarCloudComparison::ForgetResult()
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -295,9 +289,6 @@ int vtkAvianLidarCloudComparison::RequestData(
       for (int port = 0; port < Ports; ++port)
       {
         whole[port] = vtkAvianLidarGather::Coordinates(ranks, clouds[port]);
-      }
-      for (int port = 0; port < Ports; ++port)
-      {
         vtkAvianLidarRequire(whole[port]->GetNumberOfPoints() > 0
             ? ""
             : NameOf(port) + " has no points, expected at least one point");

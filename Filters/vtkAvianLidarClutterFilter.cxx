@@ -24,7 +24,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -201,10 +200,7 @@ vtkAvianLidarClutterFilter::vtkAvianLidarClutterFilter()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarClutterFilter::~vtkAvianLidarClutterFilter()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarClutterFilter::~vtkAvianLidarClutterFilter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarClutterFilter::Forget()

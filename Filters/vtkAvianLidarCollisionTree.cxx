@@ -168,10 +168,7 @@ vtkAvianLidarCollisionTree::vtkAvianLidarCollisionTree()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCollisionTree::~vtkAvianLidarCollisionTree()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarCollisionTree::~vtkAvianLidarCollisionTree() = default;
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* info)

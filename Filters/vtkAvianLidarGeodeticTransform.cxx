@@ -7,7 +7,6 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRequire.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"

@@ -152,9 +152,6 @@ std::string SizeOf(int columns, int rows)
 {
   return std::to_string(columns) + " columns and " + std::to_string(rows) + " rows";
 }
-
-/// Prefix of errors.
-constexpr char ImagePrefix[] = "Range image: ";
 }
 
 vtkStandardNewMacro(vtkAvianLidarRangeImage);
@@ -165,12 +162,6 @@ vtkAvianLidarRangeImage::vtkAvianLidarRangeImage()
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(2);
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarRangeImage::~vtkAvianLidarRangeImage()
-{
-  this->SetController(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -236,17 +227,13 @@ int vtkAvianLidarRangeImage::RequestData(
     {
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
       vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
-      vtkAvianLidarWithin(ImagePrefix,
+      vtkAvianLidarWithin("Range image: ",
         [&]()
         {
           ImageArrays::RequireLengths(echoes, "input port 0 (echoes)");
           ImageArrays::RequireLengths(beams, "input port 1 (beams)");
-        });
-      echoes = vtkAvianLidarGather::Points(ranks, echoes);
-      beams = vtkAvianLidarGather::Points(ranks, beams);
-      vtkAvianLidarWithin(ImagePrefix,
-        [&]()
-        {
+          echoes = vtkAvianLidarGather::Points(ranks, echoes);
+          beams = vtkAvianLidarGather::Points(ranks, beams);
           this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
             inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0));
         });

@@ -52,7 +52,7 @@ vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int p
 }
 }
 
-vtkAvianLidarCxxModifyRequestMacro(vtkAvianLidarScanFilter);
+vtkAvianLidarCxxRanksMacro(vtkAvianLidarScanFilter);
 
 //------------------------------------------------------------------------------
 const std::vector<vtkAvianLidarScanFilter::vtkInternals::Property>& vtkAvianLidarScanFilter::
@@ -86,10 +86,7 @@ vtkAvianLidarScanFilter::vtkAvianLidarScanFilter()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarScanFilter::~vtkAvianLidarScanFilter()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarScanFilter::~vtkAvianLidarScanFilter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controller)
@@ -100,7 +97,7 @@ void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controlle
     this->Internals->State.clear();
     this->Internals->Beams.ForgetRanks();
   }
-  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
+  vtkSetSmartPointerBodyMacro(Controller, vtkMultiProcessController, controller);
 }
 
 //------------------------------------------------------------------------------
@@ -262,12 +259,9 @@ void vtkAvianLidarScanFilter::PlaceMedia()
   std::vector<avianlidar::PlacedMedium>& media = in.Setup.media;
   for (const avianlidar::PlacedMedium& placed : in.Media)
   {
-    if (placed.volume.velocity != avianlidar::Vec3(0.0) && in.Beams.beams.size() > 0 &&
-      !in.Beams.isTimed)
+    if (placed.volume.velocity != avianlidar::Vec3(0.0))
     {
-      vtkAvianLidarRequire(
-        "Input port 0 (beams), point array 'timestamp' is missing, expected the time in "
-        "microseconds at which each beam meets the media that move (input port 1)");
+      in.Beams.RequireTimes("the media that move (input port 1)");
     }
     media.push_back(placed);
   }
@@ -317,16 +311,16 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   in.State.clear();
   const auto merged = vtkAvianLidarScene::FindSurfaces(input);
   const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
-  if (!given)
-  {
-    in.Surfaces =
-      in.Exchange.Merge(ranks, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
-  }
   if (given)
   {
     in.Exchange.Forget();
     in.Exchange.Fields = input->GetFieldData();
     in.Surfaces = merged;
+  }
+  else
+  {
+    in.Surfaces =
+      in.Exchange.Merge(ranks, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
   }
   this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
   in.State = std::move(state);

@@ -389,10 +389,7 @@ vtkAvianLidarTracker::vtkAvianLidarTracker()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarTracker::~vtkAvianLidarTracker()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarTracker::~vtkAvianLidarTracker() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarTracker::Reset()

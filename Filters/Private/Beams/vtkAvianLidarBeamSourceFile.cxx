@@ -7,12 +7,10 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRequire.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <array>
 
 namespace Arrays = vtkAvianLidarArrays;
 
@@ -184,14 +182,7 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::vtkInternals::ApplyPreset(const std::string& name, Source& self)
 {
-  const vtkAvianLidarSensorFile file = vtkAvianLidarSensorFile::Preset(name);
-  Apply(file, self);
-  const auto& known = PhotonSensors();
-  if (std::any_of(known.begin(), known.end(),
-        [&](const vtkAvianLidarSensorFile& one) { return one.name == file.name; }))
-  {
-    self.Assumed.clear(); // AssumedOf() finds these values without a list
-  }
+  Apply(vtkAvianLidarSensorFile::Preset(name), self);
 }
 
 //------------------------------------------------------------------------------

@@ -336,6 +336,17 @@ void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarBeams::RequireTimes(const std::string& what) const
+{
+  vtkAvianLidarRequire(this->isTimed || this->beams.size() == 0
+      ? ""
+      : "point array 'timestamp' is missing, expected the time in microseconds at which each beam "
+        "meets " +
+        what,
+    BeamsPort);
+}
+
+//------------------------------------------------------------------------------
 std::uint64_t vtkAvianLidarBeams::Hash() const
 {
   const std::uint64_t parts[] = { this->beams.checksum, HashOf(this->sensor, this->revolution) };

@@ -12,6 +12,7 @@
 #include "vtkAvianLidarRanks.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -44,6 +45,9 @@ struct vtkAvianLidarBeams
   /// Check that the beams of all ranks belong to one sensor, and that no id occurs twice. All ranks
   /// must call this function.
   void CheckRanks(const vtkAvianLidarRanks& ranks);
+
+  /// Throws if there are beams without timestamps. @param what what the beams meet, which moves
+  void RequireTimes(const std::string& what) const;
 
   /// Check ids again at the next CheckRanks(), because the ranks may have changed.
   void ForgetRanks() { this->checkedWith = nullptr; }

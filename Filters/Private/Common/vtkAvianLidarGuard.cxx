@@ -3,6 +3,7 @@
 
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
@@ -103,28 +104,9 @@ void vtkAvianLidarGuard::Empty(vtkInformationVector* outputs, const std::string&
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarGuard::End(
-  vtkInformationVector* outputs, const std::string& problem, bool errorsAsData)
+int vtkAvianLidarGuard::Run(vtkAlgorithm* self, vtkInformationVector* outputs, bool errorsAsData,
+  const std::function<void()>& body)
 {
-  if (problem.empty())
-  {
-    return 1;
-  }
-  Empty(outputs, Sentence(problem));
-  return errorsAsData;
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarGuard::GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs)
-{
-  Empty(outputs);
-  try
-  {
-    vtkErrorWithObjectMacro(self, << NoMemory);
-  }
-  catch (const std::bad_alloc&)
-  {
-    // The return value 0 reports the failure.
-  }
-  return 0;
+  return vtkAvianLidarRanks::Execute(
+    self, {}, outputs, errorsAsData, [&](const vtkAvianLidarRanks&) { body(); });
 }

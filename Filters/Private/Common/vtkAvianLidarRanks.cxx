@@ -24,7 +24,6 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
-#include <stdexcept>
 #include <thread>
 
 namespace
@@ -187,25 +186,34 @@ void vtkAvianLidarRanks::Send(const Work& work) const
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
-  vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body)
+int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, const vtkAvianLidarRanks& ranks,
+  vtkInformationVector* outputs, bool errorsAsData, const Body& body)
 try
 {
-  const vtkAvianLidarRanks together(controller, request, outputs);
-  const auto work = [&](const vtkAvianLidarRanks& ranks)
+  const auto work = [&](const vtkAvianLidarRanks&)
   {
     vtkAvianLidarGuard::Begin(self);
     body(ranks);
   };
-  if (!together.Run(self, std::cref(work)) && together.Problem.empty())
+  if (ranks.Run(self, std::cref(work)))
   {
-    vtkAvianLidarGuard::Empty(outputs);
+    return 1;
   }
-  return vtkAvianLidarGuard::End(outputs, together.Problem, errorsAsData);
+  vtkAvianLidarGuard::Empty(outputs, vtkAvianLidarGuard::Sentence(ranks.Problem));
+  return ranks.Problem.empty() || errorsAsData;
 }
 catch (const std::bad_alloc&)
 {
-  return vtkAvianLidarGuard::GiveUp(self, outputs);
+  vtkAvianLidarGuard::Empty(outputs);
+  try
+  {
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::NoMemory);
+  }
+  catch (const std::bad_alloc&)
+  {
+    // The return value 0 reports the failure.
+  }
+  return 0;
 }
 
 //------------------------------------------------------------------------------

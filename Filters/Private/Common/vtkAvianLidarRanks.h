@@ -62,7 +62,7 @@ public:
 
   /// Run the body of a RequestData on the ranks that execute the request. If the producer of an
   /// input failed on one of these ranks, the body is not run. Returns 0 or 1. No exception leaves
-  /// the function. Failures are handled as in vtkAvianLidarGuarded(). If the work was stopped,
+  /// the function. After an error, outputs are empty and hold the message. If the work was stopped,
   /// outputs are empty.
   template <class Filter, class Work>
   static int Execute(
@@ -70,9 +70,15 @@ public:
   {
     // The body is passed by reference, because a copy takes memory. The other ranks would wait for
     // a rank without memory.
-    return Execute(
-      self, self->GetController(), request, outputs, self->GetErrorsAsData(), std::cref(body));
+    return Execute(self, vtkAvianLidarRanks(self->GetController(), request, outputs), outputs,
+      self->GetErrorsAsData(), std::cref(body));
   }
+
+  /// Run the body of a RequestData on given ranks.
+  static int Execute(vtkAlgorithm* self, const vtkAvianLidarRanks& ranks,
+    vtkInformationVector* outputs, bool errorsAsData, const Body& body);
+
+  vtkAvianLidarRanks() = default; ///< only this process
 
   /// The ranks that execute a request. @param controller processes that may work together; null:
   /// only this process
@@ -153,8 +159,6 @@ public:
   }
 
 private:
-  static int Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
-    vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body);
   static int UpdateInputs(
     vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
   /// Run the body, and report the first problem of all ranks. @return true after success on all
@@ -177,8 +181,12 @@ private:
   mutable bool Exchanging = false; ///< true while data are sent
 };
 
-/// Defines ModifyRequest() of a filter whose ranks work together.
-#define vtkAvianLidarCxxModifyRequestMacro(thisClass)               \
+/// Defines what vtkAvianLidarControllerMacro() declares, except SetController().
+#define vtkAvianLidarCxxRanksMacro(thisClass)                       \
+  vtkMultiProcessController* thisClass::GetController()             \
+  {                                                                 \
+    return this->Controller;                                        \
+  }                                                                 \
   int thisClass::ModifyRequest(vtkInformation* request, int when)   \
   {                                                                 \
     return vtkAvianLidarRanks::UpdateInputs(this, request, when) && \
@@ -186,8 +194,8 @@ private:
   }
 
 /// Defines what vtkAvianLidarControllerMacro() declares.
-#define vtkAvianLidarCxxControllerMacro(thisClass)                        \
-  vtkCxxSetObjectMacro(thisClass, Controller, vtkMultiProcessController); \
-  vtkAvianLidarCxxModifyRequestMacro(thisClass)
+#define vtkAvianLidarCxxControllerMacro(thisClass)                              \
+  vtkCxxSetSmartPointerMacro(thisClass, Controller, vtkMultiProcessController); \
+  vtkAvianLidarCxxRanksMacro(thisClass)
 
 #endif

@@ -12,7 +12,6 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
-#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
