@@ -139,10 +139,9 @@ std::size_t ReadNumbers(
   names::RequireShape(array, "field data", components, array->GetNumberOfTuples());
   const auto rows = static_cast<std::size_t>(array->GetNumberOfTuples());
   values.resize(rows * static_cast<std::size_t>(components));
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < rows; ++i)
   {
-    values[i] = array->GetComponent(
-      static_cast<vtkIdType>(i / static_cast<std::size_t>(components)), i % components);
+    array->GetTuple(static_cast<vtkIdType>(i), &values[i * static_cast<std::size_t>(components)]);
   }
   return rows;
 }
