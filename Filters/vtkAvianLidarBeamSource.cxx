@@ -4,7 +4,6 @@
 #include "Air.h"
 #include "AvailableMemory.h"
 #include "PhotonReceiver.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
 #include "vtkAvianLidarGuard.h"
@@ -541,7 +540,6 @@ int vtkAvianLidarBeamSource::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkAvianLidarAbort::StopIfWanted(this);
       // The piece and the time requested from one output apply to both outputs, as in VTK's
       // executive.
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);

@@ -219,20 +219,14 @@ int vtkAvianLidarBeamView::RequestData(
     [&](const vtkAvianLidarRanks& ranks)
     {
       vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
-      vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
-      vtkDataObject* movers = vtkDataObject::GetData(inputVector[2]);
       vtkPolyData* seen = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* cone = vtkPolyData::GetData(outputVector, 1);
       vtkTable* shares = vtkTable::GetData(outputVector, 2);
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkAvianLidarRanks::Settings own;
       own.Add("BeamId", this->BeamId);
-      this->PrepareBeams(ranks, beams);
-      ranks.AgreeOn(this, own);
-      in.Beams.CheckRanks(ranks, this);
-      this->PrepareSurfaces(ranks, surfaces);
-      this->PrepareMovers(ranks, movers);
-      this->PrepareTree(ranks, surfaces);
+      ranks.AgreeOn(own);
+      this->Prepare(ranks, inputVector);
       this->Look(ranks, beams->GetFieldData(), seen, cone, shares);
     });
 }
@@ -246,43 +240,39 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
   const auto place = std::find(ids.begin(), ids.end(), static_cast<std::uint64_t>(this->BeamId));
   const bool isHere = place != ids.end() && this->BeamId >= 0;
   const bool isAnywhere = ranks.Sum(isHere ? 1.0 : 0.0) > 0.0;
-  ranks.Together(this,
-    [&]()
-    {
-      if (!isAnywhere && in.Beams.total > 0)
-      {
-        vtkAvianLidarRequire("BeamId is " + std::to_string(this->BeamId) +
-          ", expected the beam_id of a beam of input port 0 (beams)");
-      }
-      avianlidar::planModel(in.Setup);
-      for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ surfaces, cone, shares })
-      {
-        this->FillFields(beamFields, output->GetFieldData());
-        output->GetFieldData()->AddArray(
-          Arrays::MakeOf<vtkIdTypeArray>(Arrays::BeamId, std::vector<vtkIdType>{ this->BeamId }));
-      }
-      if (!isHere)
-      {
-        return;
-      }
-      in.Setup.settings.fullModel = true; // for faint samples, too
-      avianlidar::planModel(in.Setup);
-      const auto beam = static_cast<std::size_t>(place - ids.begin());
-      const avianlidar::KeepGoing keepGoing =
-        vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
-      const std::vector<SeenSurface> seen =
-        avianlidar::sightAlong(in.Setup, in.Beams.beams, beam, [&] { return keepGoing(0.0); });
-      const avianlidar::BeamFrame frame = avianlidar::makeBeamFrame(in.Beams.beams.origins[beam],
-        in.Beams.beams.directions[beam], avianlidar::BeamShape(in.Setup.sensor).width());
-      double length = 0.0;
-      for (const SeenSurface& one : seen)
-      {
-        length = std::max(length, one.farthest);
-      }
-      FillSurfaces(frame, seen, surfaces);
-      FillCone(frame, length > 0.0 ? length : in.Beams.displayLength, cone);
-      FillTable(RowsOf(seen), shares->GetFieldData(), shares);
-    });
+  if (!isAnywhere && in.Beams.total > 0)
+  {
+    vtkAvianLidarRequire("BeamId is " + std::to_string(this->BeamId) +
+      ", expected the beam_id of a beam of input port 0 (beams)");
+  }
+  avianlidar::planModel(in.Setup);
+  for (vtkDataObject* output : std::initializer_list<vtkDataObject*>{ surfaces, cone, shares })
+  {
+    this->FillFields(beamFields, output->GetFieldData());
+    output->GetFieldData()->AddArray(
+      Arrays::MakeOf<vtkIdTypeArray>(Arrays::BeamId, std::vector<vtkIdType>{ this->BeamId }));
+  }
+  if (!isHere)
+  {
+    return;
+  }
+  in.Setup.settings.fullModel = true; // for faint samples, too
+  avianlidar::planModel(in.Setup);
+  const auto beam = static_cast<std::size_t>(place - ids.begin());
+  const avianlidar::KeepGoing keepGoing =
+    vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
+  const std::vector<SeenSurface> seen =
+    avianlidar::sightAlong(in.Setup, in.Beams.beams, beam, [&] { return keepGoing(0.0); });
+  const avianlidar::BeamFrame frame = avianlidar::makeBeamFrame(in.Beams.beams.origins[beam],
+    in.Beams.beams.directions[beam], avianlidar::BeamShape(in.Setup.sensor).width());
+  double length = 0.0;
+  for (const SeenSurface& one : seen)
+  {
+    length = std::max(length, one.farthest);
+  }
+  FillSurfaces(frame, seen, surfaces);
+  FillCone(frame, length > 0.0 ? length : in.Beams.displayLength, cone);
+  FillTable(RowsOf(seen), shares->GetFieldData(), shares);
 }
 
 //------------------------------------------------------------------------------

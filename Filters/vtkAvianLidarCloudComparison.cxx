@@ -212,12 +212,6 @@ vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCloudComparison::~vtkAvianLidarCloudComparison()
-{
-  this->SetController(nullptr);
-}
-
-//------------------------------------------------------------------------------
 void vtkAvianLidarCloudComparison::ForgetResult()
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -282,37 +276,25 @@ int vtkAvianLidarCloudComparison::RequestData(
       vtkPointSet* clouds[Ports];
       vtkSmartPointer<vtkPointSet> whole[Ports];
       Direction directions[Ports];
-      ranks.Together(this,
-        [&]()
-        {
-          vtkAvianLidarAbort::StopIfWanted(this);
-          vtkAvianLidarRequire(avianlidar::rangeError(
-            "ChamferAlpha", this->ChamferAlpha, 1e-6, 1e6, "1e-6 to 1e6 1/m"));
-          for (int port = 0; port < Ports; ++port)
-          {
-            clouds[port] = vtkPointSet::GetData(inputVector[port]);
-            CheckCloud(clouds[port], port);
-          }
-        });
-      vtkAvianLidarRanks::Settings settings;
-      settings.Add("ChamferAlpha", this->ChamferAlpha);
-      ranks.AgreeOn(this, settings);
+      vtkAvianLidarRequire(
+        avianlidar::rangeError("ChamferAlpha", this->ChamferAlpha, 1e-6, 1e6, "1e-6 to 1e6 1/m"));
       for (int port = 0; port < Ports; ++port)
       {
-        whole[port] = vtkAvianLidarGather::Coordinates(ranks, this, clouds[port]);
+        clouds[port] = vtkPointSet::GetData(inputVector[port]);
+        CheckCloud(clouds[port], port);
       }
-      ranks.Together(this,
-        [&]()
-        {
-          for (int port = 0; port < Ports; ++port)
-          {
-            vtkAvianLidarRequire(whole[port]->GetNumberOfPoints() > 0
-                ? ""
-                : NameOf(port) + " has no points, expected at least one point");
-          }
-          Measure(clouds[0], whole[1], this, 0.0, directions[0]);
-          Measure(clouds[1], whole[0], this, 0.5, directions[1]);
-        });
+      vtkAvianLidarRanks::Settings settings;
+      settings.Add("ChamferAlpha", this->ChamferAlpha);
+      ranks.AgreeOn(settings);
+      for (int port = 0; port < Ports; ++port)
+      {
+        whole[port] = vtkAvianLidarGather::Coordinates(ranks, clouds[port]);
+        vtkAvianLidarRequire(whole[port]->GetNumberOfPoints() > 0
+            ? ""
+            : NameOf(port) + " has no points, expected at least one point");
+      }
+      Measure(clouds[0], whole[1], this, 0.0, directions[0]);
+      Measure(clouds[1], whole[0], this, 0.5, directions[1]);
       for (int port = 0; port < Ports; ++port)
       {
         const vtkIdType others = whole[1 - port]->GetNumberOfPoints();

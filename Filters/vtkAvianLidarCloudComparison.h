@@ -81,7 +81,7 @@ public:
 
 protected:
   vtkAvianLidarCloudComparison();
-  ~vtkAvianLidarCloudComparison() override;
+  ~vtkAvianLidarCloudComparison() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

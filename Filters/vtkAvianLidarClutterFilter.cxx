@@ -4,7 +4,6 @@
 #include "ClutterMap.h"
 #include "ScanBeams.h"
 #include "ValueError.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarContent.h"
@@ -25,7 +24,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -202,10 +200,7 @@ vtkAvianLidarClutterFilter::vtkAvianLidarClutterFilter()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarClutterFilter::~vtkAvianLidarClutterFilter()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarClutterFilter::~vtkAvianLidarClutterFilter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarClutterFilter::Forget()
@@ -372,16 +367,11 @@ int vtkAvianLidarClutterFilter::RequestData(
       vtkPointSet* cloud = vtkPointSet::GetData(inputVector[0]);
       Memory memory = *this->Kept; // copy, so that an error leaves Kept unchanged
       std::vector<ClutterMap::Key> keys;
-      ranks.Together(this,
+      vtkAvianLidarWithin("Clutter filter: ",
         [&]()
         {
-          vtkAvianLidarAbort::StopIfWanted(this);
-          vtkAvianLidarWithin("Clutter filter: ",
-            [&]()
-            {
-              this->Advance(cloud, vtkPolyData::GetData(inputVector[1]), memory);
-              keys = KeysOf(cloud, memory.Of);
-            });
+          this->Advance(cloud, vtkPolyData::GetData(inputVector[1]), memory);
+          keys = KeysOf(cloud, memory.Of);
         });
       vtkAvianLidarRanks::Settings settings;
       settings.Add("time", memory.Stream.Time());
@@ -391,29 +381,26 @@ int vtkAvianLidarClutterFilter::RequestData(
       settings.Add("ElevationStep", this->ElevationStep);
       settings.Add("Learning", this->Learning);
       settings.Add("learned_scans", memory.Before ? memory.Before->scans() : 0);
-      ranks.AgreeOn(this, settings);
-      const vtkSmartPointer<vtkPointSet> all = vtkAvianLidarGather::Coordinates(ranks, this, cloud);
-      ranks.Together(this,
-        [&]()
-        {
-          memory.With = !this->Learning ? memory.Before
-                                        : std::make_shared<const ClutterMap>(memory.Before->learned(
-                                            ranks.Alone() ? keys : KeysOf(all, memory.Of)));
-          vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
-          vtkPolyData* table = vtkPolyData::GetData(outputVector, 1);
-          scan->ShallowCopy(cloud);
-          this->Classify(memory, keys, scan);
-          if (ranks.Piece() <= 0)
-          {
-            WriteTable(*memory.With, memory.Of.Position, table);
-          }
-          else if (ranks.Alone())
-          {
-            scan->Initialize();
-          }
-          this->AddSettings(memory, scan->GetFieldData());
-          this->AddSettings(memory, table->GetFieldData());
-        });
+      ranks.AgreeOn(settings);
+      const vtkSmartPointer<vtkPointSet> all = vtkAvianLidarGather::Coordinates(ranks, cloud);
+      memory.With = !this->Learning ? memory.Before
+                                    : std::make_shared<const ClutterMap>(memory.Before->learned(
+                                        ranks.Alone() ? keys : KeysOf(all, memory.Of)));
+      vtkPointSet* scan = vtkPointSet::GetData(outputVector, 0);
+      vtkPolyData* table = vtkPolyData::GetData(outputVector, 1);
+      scan->ShallowCopy(cloud);
+      this->Classify(memory, keys, scan);
+      if (ranks.Piece() <= 0)
+      {
+        WriteTable(*memory.With, memory.Of.Position, table);
+      }
+      else if (ranks.Alone())
+      {
+        scan->Initialize();
+      }
+      this->AddSettings(memory, scan->GetFieldData());
+      this->AddSettings(memory, table->GetFieldData());
+      ranks.Meet(); // before the memory changes
       *this->Kept = std::move(memory);
     });
 }

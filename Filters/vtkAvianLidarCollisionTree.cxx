@@ -168,10 +168,7 @@ vtkAvianLidarCollisionTree::vtkAvianLidarCollisionTree()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarCollisionTree::~vtkAvianLidarCollisionTree()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarCollisionTree::~vtkAvianLidarCollisionTree() = default;
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarCollisionTree::FillInputPortInformation(int, vtkInformation* info)
@@ -218,13 +215,8 @@ void vtkAvianLidarCollisionTree::MergeSurfaces(
   const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [this]()
-    {
-      vtkAvianLidarAbort::StopIfWanted(this);
-      this->CheckOptions();
-    });
-  in.Surfaces = in.Exchange.Merge(ranks, this, input, "Input port 0, ", 0, in.Surfaces);
+  this->CheckOptions();
+  in.Surfaces = in.Exchange.Merge(ranks, input, "Input port 0, ", 0, in.Surfaces);
   const vtkAvianLidarSurfaces& merged = *in.Surfaces;
   if (in.Warnings.IsNew(input, merged.checksum, merged.warning) && ranks.Rank() == 0)
   {
@@ -243,22 +235,18 @@ void vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
     : TreeOptions{ static_cast<avianlidar::SplitRule>(this->SplitRule),
         static_cast<BoundingVolumeType>(this->BoundingVolume), this->MaximumLeafSize };
   const int threads = ranks.Threads(0);
-  ranks.Together(this,
-    [&]()
-    {
-      const std::uint64_t checksum = in.Surfaces->checksum;
-      if (!in.Fits(checksum, options))
-      {
-        in.Tree = vtkAvianLidarScene::FindTree(input, checksum).tree;
-      }
-      if (!in.Fits(checksum, options))
-      {
-        in.Tree = avianlidar::buildVolumeTree(
-          in.Surfaces->mesh, options, vtkAvianLidarAbort::KeepGoing(this), threads);
-        in.Builds += in.Tree != nullptr;
-      }
-      vtkAvianLidarAbort::Require(in.Tree != nullptr);
-    });
+  const std::uint64_t checksum = in.Surfaces->checksum;
+  if (!in.Fits(checksum, options))
+  {
+    in.Tree = vtkAvianLidarScene::FindTree(input, checksum).tree;
+  }
+  if (!in.Fits(checksum, options))
+  {
+    in.Tree = avianlidar::buildVolumeTree(
+      in.Surfaces->mesh, options, vtkAvianLidarAbort::KeepGoing(this), threads);
+    in.Builds += in.Tree != nullptr;
+  }
+  vtkAvianLidarAbort::Require(in.Tree != nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -266,27 +254,23 @@ void vtkAvianLidarCollisionTree::MakeOutputs(
   const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display)
 {
   vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [&]()
-    {
-      if (ranks.Rank() == 0)
-      {
-        output->ShallowCopy(in.Surfaces->ToPolyData(in.Exchange.Fields));
-      }
-      else
-      {
-        // Only rank 0 has the surfaces. The other ranks have the field data of the surfaces.
-        output->GetFieldData()->PassData(in.Exchange.Fields);
-      }
-      vtkNew<vtkAvianLidarScene> scene;
-      scene->Surfaces = in.Surfaces;
-      scene->Tree = in.Tree;
-      scene->AttachTo(output);
-      if (ranks.Rank() == 0)
-      {
-        MakeDisplay(*in.Tree, this->DisplayLevel, display);
-      }
-    });
+  if (ranks.Rank() == 0)
+  {
+    output->ShallowCopy(in.Surfaces->ToPolyData(in.Exchange.Fields));
+  }
+  else
+  {
+    // Only rank 0 has the surfaces. The other ranks have the field data of the surfaces.
+    output->GetFieldData()->PassData(in.Exchange.Fields);
+  }
+  vtkNew<vtkAvianLidarScene> scene;
+  scene->Surfaces = in.Surfaces;
+  scene->Tree = in.Tree;
+  scene->AttachTo(output);
+  if (ranks.Rank() == 0)
+  {
+    MakeDisplay(*in.Tree, this->DisplayLevel, display);
+  }
 }
 
 //------------------------------------------------------------------------------

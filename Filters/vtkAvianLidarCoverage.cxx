@@ -28,12 +28,10 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
-#include <array>
 #include <vector>
 
 vtkStandardNewMacro(vtkAvianLidarCoverage);
@@ -308,21 +306,16 @@ int vtkAvianLidarCoverage::RequestData(
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       vtkInformation* info = outputVector->GetInformationObject(0);
       this->PrepareBeams(ranks, beams);
-      this->PrepareTargets(ranks);
+      this->PrepareTargets();
       this->PreparePlaces(ranks, vtkDataSet::GetData(inputVector[2]), info);
       this->PrepareSurfaces(ranks, surfaces);
       this->PrepareTree(ranks, surfaces);
       this->View(ranks, clutter);
       this->Evaluate(ranks, output, table);
-      ranks.Together(this,
-        [&]()
-        {
-          for (vtkDataObject* made :
-            std::initializer_list<vtkDataObject*>{ output, table, clutter })
-          {
-            this->MakeFields(beams->GetFieldData(), made->GetFieldData());
-          }
-        });
+      for (vtkDataObject* made : std::initializer_list<vtkDataObject*>{ output, table, clutter })
+      {
+        this->MakeFields(beams->GetFieldData(), made->GetFieldData());
+      }
       const bool differ = vtkTargets::ScansDiffer(beams) && this->NumberOfScans > 1;
       if (differ && !this->Targets->Warned && ranks.Piece() == 0)
       {
@@ -336,22 +329,17 @@ int vtkAvianLidarCoverage::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarCoverage::PrepareTargets(const vtkAvianLidarRanks& ranks)
+void vtkAvianLidarCoverage::PrepareTargets()
 {
   vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [&]()
-    {
-      vtkAvianLidarRequire(
-        in.Beams.beams.size() > 0 ? avianlidar::checkOrigins(in.Beams.beams) : "",
-        "Input port 0 (beams), ");
-      this->Targets->Rules = { this->RequiredDetections, this->NumberOfScans,
-        this->StrikeHeightWeights, this->HeightLimits };
-      this->CheckTarget();
-      in.Beams.total = in.Beams.beams.size(); // every rank has all beams
-      this->Targets->Wanted = this->Targets->Birds.Choose(
-        this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
-    });
+  vtkAvianLidarRequire(in.Beams.beams.size() > 0 ? avianlidar::checkOrigins(in.Beams.beams) : "",
+    "Input port 0 (beams), ");
+  this->Targets->Rules = { this->RequiredDetections, this->NumberOfScans, this->StrikeHeightWeights,
+    this->HeightLimits };
+  this->CheckTarget();
+  in.Beams.total = in.Beams.beams.size(); // every rank has all beams
+  this->Targets->Wanted = this->Targets->Birds.Choose(
+    this->Species, this->SpeciesFileName, this->Gliding, this->EffectiveArea, this->AllSpecies);
 }
 
 //------------------------------------------------------------------------------
@@ -395,42 +383,37 @@ vtkAvianLidarRanks::Settings vtkAvianLidarCoverage::vtkTargets::SettingsOf(
 void vtkAvianLidarCoverage::PreparePlaces(
   const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info)
 {
-  ranks.AgreeOn(this, vtkTargets::SettingsOf(*this, places != nullptr));
-  ranks.Together(this,
-    [&]()
+  ranks.AgreeOn(vtkTargets::SettingsOf(*this, places != nullptr));
+  vtkAvianLidarPlaces& where = this->Targets->Places;
+  where = {};
+  // Checked before the places are read. As many places as before already have memory.
+  const auto require = [this](double count)
+  {
+    if (count != static_cast<double>(this->Targets->Survey.size()))
     {
-      vtkAvianLidarPlaces& where = this->Targets->Places;
-      where = {};
-      // Checked before the places are read. As many places as before already have memory.
-      const auto require = [this](double count)
+      const double poses = this->PoseProbabilities
+        ? static_cast<double>(this->Targets->Wanted.front().Views->poses)
+        : 0.0;
+      avianlidar::requireMemory(count, "places", (BytesPerPlace + sizeof(float) * poses) * count);
+    }
+  };
+  if (places)
+  {
+    vtkAvianLidarWithin("Input port 2 (places), ",
+      [&]()
       {
-        if (count != static_cast<double>(this->Targets->Survey.size()))
-        {
-          const double poses = this->PoseProbabilities
-            ? static_cast<double>(this->Targets->Wanted.front().Views->poses)
-            : 0.0;
-          avianlidar::requireMemory(
-            count, "places", (BytesPerPlace + sizeof(float) * poses) * count);
-        }
-      };
-      if (places)
-      {
-        vtkAvianLidarWithin("Input port 2 (places), ",
-          [&]()
-          {
-            require(vtkAvianLidarPlaces::CountOf(places));
-            where = vtkAvianLidarPlaces(places);
-          });
-      }
-      else
-      {
-        vtkAvianLidarRequire(vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing));
-        const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
-        where = vtkAvianLidarPlaces(info->Get(Pipeline::UPDATE_EXTENT()), origin, this->Spacing);
-        require(static_cast<double>(where.Size()));
-      }
-      where.SetMine(info);
-    });
+        require(vtkAvianLidarPlaces::CountOf(places));
+        where = vtkAvianLidarPlaces(places);
+      });
+  }
+  else
+  {
+    vtkAvianLidarRequire(vtkAvianLidarPlaces::CheckRegion(this->Bounds, this->Spacing));
+    const double origin[3] = { this->Bounds[0], this->Bounds[2], this->Bounds[4] };
+    where = vtkAvianLidarPlaces(info->Get(Pipeline::UPDATE_EXTENT()), origin, this->Spacing);
+    require(static_cast<double>(where.Size()));
+  }
+  where.SetMine(info);
   if (!ranks.Alone())
   {
     this->Targets->Places.ShareRegions(ranks);
@@ -442,28 +425,24 @@ void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
 {
   vtkInternals& in = *this->Internals;
   vtkTargets& targets = *this->Targets;
-  ranks.Together(this,
-    [&]()
-    {
-      in.Setup.largestReflectance = in.Summary.largestReflectance;
-      in.Setup.largestGain = in.Summary.largestGain;
-      avianlidar::planModel(in.Setup);
-      avianlidar::ScanResult still;
-      const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
-      vtkAvianLidarAbort::Require(!this->Clutter ||
-        avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit,
-          vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, ScanShare), still));
-      in.TracedRays = static_cast<double>(still.raysTraced);
-      in.TracedBeams = static_cast<double>(still.beamsTraced);
-      vtkAvianLidarAbort::Require(
-        targets.Survey.look(in.Setup, in.Beams.beams, still, targets.SurveyPlaces(), in.Geometry,
-          in.Threads, vtkAvianLidarAbort::KeepGoing(this, ScanShare, ViewShare)));
-      targets.TracedPlaces = static_cast<double>(targets.Survey.traced());
-      if (ranks.Piece() == 0)
-      {
-        vtkAvianLidarFillClutter(still, in.Beams, clutter);
-      }
-    });
+  in.Setup.largestReflectance = in.Summary.largestReflectance;
+  in.Setup.largestGain = in.Summary.largestGain;
+  avianlidar::planModel(in.Setup);
+  avianlidar::ScanResult still;
+  const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
+  vtkAvianLidarAbort::Require(!this->Clutter ||
+    avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit,
+      vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, ScanShare), still));
+  in.TracedRays = static_cast<double>(still.raysTraced);
+  in.TracedBeams = static_cast<double>(still.beamsTraced);
+  vtkAvianLidarAbort::Require(
+    targets.Survey.look(in.Setup, in.Beams.beams, still, targets.SurveyPlaces(), in.Geometry,
+      in.Threads, vtkAvianLidarAbort::KeepGoing(this, ScanShare, ViewShare)));
+  targets.TracedPlaces = static_cast<double>(targets.Survey.traced());
+  if (ranks.Piece() == 0)
+  {
+    vtkAvianLidarFillClutter(still, in.Beams, clutter);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -479,58 +458,50 @@ void vtkAvianLidarCoverage::Evaluate(
   {
     sums.species.push_back(bird.Name);
   }
-  ranks.Together(this,
-    [&]()
+  sums.sums.resize(sums.species.size() * sums.Cells());
+  vtkAvianLidarPlaceArrays arrays(static_cast<vtkIdType>(targets.Places.Size()),
+    this->PoseProbabilities ? static_cast<int>(targets.Wanted.front().Views->poses) : 0);
+  const std::size_t count = targets.Wanted.size();
+  const double share = (1.0 - ViewShare) / static_cast<double>(count);
+  for (std::size_t t = 0; t < count; ++t)
+  {
+    const vtkAvianLidarBirdTargets::Target& bird = targets.Wanted[t];
+    avianlidar::CoverageSurvey::EachPlace setArrays;
+    avianlidar::CoverageSurvey::PosesOf posesOf;
+    if (t == 0)
     {
-      sums.sums.resize(sums.species.size() * sums.Cells());
-      vtkAvianLidarPlaceArrays arrays(static_cast<vtkIdType>(targets.Places.Size()),
-        this->PoseProbabilities ? static_cast<int>(targets.Wanted.front().Views->poses) : 0);
-      const std::size_t count = targets.Wanted.size();
-      const double share = (1.0 - ViewShare) / static_cast<double>(count);
-      for (std::size_t t = 0; t < count; ++t)
+      setArrays = [&](std::size_t k, const avianlidar::CoverageValue& value, double track)
+      { arrays.Set(static_cast<vtkIdType>(k), value, track); };
+      if (this->PoseProbabilities)
       {
-        const vtkAvianLidarBirdTargets::Target& bird = targets.Wanted[t];
-        avianlidar::CoverageSurvey::EachPlace setArrays;
-        avianlidar::CoverageSurvey::PosesOf posesOf;
-        if (t == 0)
-        {
-          setArrays = [&](std::size_t k, const avianlidar::CoverageValue& value, double track)
-          { arrays.Set(static_cast<vtkIdType>(k), value, track); };
-          if (this->PoseProbabilities)
-          {
-            posesOf = [&](std::size_t k) { return arrays.PosesOf(k); };
-          }
-        }
-        vtkAvianLidarAbort::Require(targets.Survey.evaluate(
-          { bird.Area, this->Reflectance, bird.Views }, targets.Rules, in.Threads,
-          vtkAvianLidarAbort::KeepGoing(this, ViewShare + t * share, ViewShare + (t + 1) * share),
-          setArrays, sums.sums.data() + t * sums.Cells(), posesOf));
+        posesOf = [&](std::size_t k) { return arrays.PosesOf(k); };
       }
-      if (vtkDataSet* points = targets.Places.GetPoints())
-      {
-        output->ShallowCopy(points);
-      }
-      else
-      {
-        auto* image = vtkImageData::SafeDownCast(output);
-        image->SetExtent(const_cast<int*>(targets.Places.GetExtent()));
-        image->SetOrigin(targets.Places.GetOrigin());
-        image->SetSpacing(targets.Places.GetSpacing());
-      }
-      arrays.AddTo(output->GetPointData());
-    });
+    }
+    vtkAvianLidarAbort::Require(targets.Survey.evaluate(
+      { bird.Area, this->Reflectance, bird.Views }, targets.Rules, in.Threads,
+      vtkAvianLidarAbort::KeepGoing(this, ViewShare + t * share, ViewShare + (t + 1) * share),
+      setArrays, sums.sums.data() + t * sums.Cells(), posesOf));
+  }
+  if (vtkDataSet* points = targets.Places.GetPoints())
+  {
+    output->ShallowCopy(points);
+  }
+  else
+  {
+    auto* image = vtkImageData::SafeDownCast(output);
+    image->SetExtent(const_cast<int*>(targets.Places.GetExtent()));
+    image->SetOrigin(targets.Places.GetOrigin());
+    image->SetSpacing(targets.Places.GetSpacing());
+  }
+  arrays.AddTo(output->GetPointData());
   if (!ranks.Alone())
   {
     sums.SumOverRanks(ranks);
   }
-  ranks.Together(this,
-    [&]()
-    {
-      if (ranks.Rank() == 0)
-      {
-        sums.Fill(table);
-      }
-    });
+  if (ranks.Rank() == 0)
+  {
+    sums.Fill(table);
+  }
 }
 
 //------------------------------------------------------------------------------

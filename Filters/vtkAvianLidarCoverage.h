@@ -166,7 +166,7 @@ private:
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
 
   // Passes of an execution, which all ranks make together.
-  void PrepareTargets(const vtkAvianLidarRanks& ranks);
+  void PrepareTargets();
   void PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
   void View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter);
   void Evaluate(const vtkAvianLidarRanks& ranks, vtkDataSet* output, vtkTable* table);

@@ -67,21 +67,22 @@ int vtkAvianLidarEchoFilter::RequestData(
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks)
     {
-      vtkPolyData* beams = vtkPolyData::GetData(inputVector[0]);
-      vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
-      vtkDataObject* movers = vtkDataObject::GetData(inputVector[2]);
-      vtkPolyData* echoes = vtkPolyData::GetData(outputVector, 0);
-      vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
-      vtkPolyData* moved = vtkPolyData::GetData(outputVector, 2);
+      const std::array<vtkPolyData*, 3> outputs = { vtkPolyData::GetData(outputVector, 0),
+        vtkPolyData::GetData(outputVector, 1), vtkPolyData::GetData(outputVector, 2) };
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
-      this->PrepareBeams(ranks, beams);
-      in.Beams.CheckRanks(ranks, this);
-      this->PrepareSurfaces(ranks, surfaces);
-      this->PrepareMovers(ranks, movers);
-      this->PrepareTree(ranks, surfaces);
-      this->Scan(ranks, beams->GetFieldData(), { echoes, report, moved });
+      this->Prepare(ranks, inputVector);
+      this->Trace(outputs);
+      for (double* count : { &in.TracedRays, &in.TracedBeams, &this->Moved->TouchedBeams })
+      {
+        *count = ranks.Sum(*count);
+      }
+      for (vtkPolyData* output : outputs)
+      {
+        this->FillFields(
+          vtkPolyData::GetData(inputVector[0])->GetFieldData(), output->GetFieldData());
+      }
       const std::string& warning = this->Moved->Coincident;
-      if (this->Moved->Warnings.IsNew(surfaces, in.Scene, warning))
+      if (this->Moved->Warnings.IsNew(vtkDataObject::GetData(inputVector[1]), in.Scene, warning))
       {
         vtkWarningMacro("Input port 1, " << vtkAvianLidarText(warning));
       }
@@ -89,50 +90,25 @@ int vtkAvianLidarEchoFilter::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
+void vtkAvianLidarEchoFilter::Prepare(
+  const vtkAvianLidarRanks& ranks, vtkInformationVector** inputVector)
 {
   vtkInternals& in = *this->Internals;
-  this->Moved->Movers.Read(ranks, this, input, *in.Surfaces);
-  in.Setup.movers = this->Moved->Movers.movers;
+  vtkDataObject* surfaces = vtkDataObject::GetData(inputVector[1]);
+  vtkAvianLidarMovers& movers = this->Moved->Movers;
+  this->PrepareBeams(ranks, vtkPolyData::GetData(inputVector[0]));
+  in.Beams.CheckRanks(ranks);
+  this->PrepareSurfaces(ranks, surfaces);
+  movers.Read(ranks, vtkDataObject::GetData(inputVector[2]), *in.Surfaces);
+  in.Setup.movers = movers.movers;
   in.Setup.largestReflectance = in.Summary.largestReflectance;
   in.Setup.largestGain = in.Summary.largestGain;
   avianlidar::includeMovers(in.Setup);
-  const bool untimed = in.Setup.movers && in.Beams.beams.size() > 0 && !in.Beams.isTimed;
-  ranks.Together(this,
-    [untimed]()
-    {
-      vtkAvianLidarRequire(untimed
-          ? "Input port 0 (beams), point array 'timestamp' is missing, expected the time "
-            "in microseconds at which each beam meets the movers (input port 2)"
-          : "");
-    });
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
-  const std::array<vtkPolyData*, 3>& outputs)
-{
-  vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [&]()
-    {
-      avianlidar::planModel(in.Setup);
-      vtkAvianLidarRequire(avianlidar::checkNoise(in.Setup.noise, in.Beams.total),
-        "Input port 0 (beams), field data: ");
-      this->Trace(outputs);
-    });
-  for (double* count : { &in.TracedRays, &in.TracedBeams, &this->Moved->TouchedBeams })
+  if (in.Setup.movers)
   {
-    *count = ranks.Sum(*count);
+    in.Beams.RequireTimes("the movers (input port 2)");
   }
-  ranks.Together(this,
-    [&]()
-    {
-      for (vtkPolyData* output : outputs)
-      {
-        this->FillFields(beamFields, output->GetFieldData());
-      }
-    });
+  this->PrepareTree(ranks, surfaces);
 }
 
 //------------------------------------------------------------------------------
@@ -148,6 +124,9 @@ void vtkAvianLidarEchoFilter::FillFields(vtkFieldData* beamFields, vtkFieldData*
 void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
 {
   vtkInternals& in = *this->Internals;
+  avianlidar::planModel(in.Setup);
+  vtkAvianLidarRequire(
+    avianlidar::checkNoise(in.Setup.noise, in.Beams.total), "Input port 0 (beams), field data: ");
   const avianlidar::KeepGoing keepGoing =
     vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;

@@ -117,16 +117,13 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  // A pass of an execution, which all ranks make together.
-  void PrepareMovers(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
+  // Reads all inputs. All ranks must call this function.
+  void Prepare(const vtkAvianLidarRanks& ranks, vtkInformationVector** inputVector);
   void FillFields(vtkFieldData* beamFields, vtkFieldData* fields) const;
 
 private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;
   void operator=(const vtkAvianLidarEchoFilter&) = delete;
-
-  void Scan(const vtkAvianLidarRanks& ranks, vtkFieldData* beamFields,
-    const std::array<vtkPolyData*, 3>& outputs);
 
   void Trace(const std::array<vtkPolyData*, 3>& outputs);
 

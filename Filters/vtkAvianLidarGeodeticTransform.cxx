@@ -7,7 +7,6 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRequire.h"
-#include "vtkAvianLidarText.h"
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
@@ -217,7 +216,6 @@ int vtkAvianLidarGeodeticTransform::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       if (this->SourceFrame < FRAME_ENU || this->SourceFrame > FRAME_UTM ||

@@ -2,7 +2,6 @@
 #include "vtkAvianLidarHSBColorMap.h"
 
 #include "Hue.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRequire.h"
@@ -104,7 +103,6 @@ int vtkAvianLidarHSBColorMap::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkAvianLidarAbort::StopIfWanted(this);
       vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
       vtkPointSet* output = vtkPointSet::GetData(outputVector);
       if (input->GetNumberOfPoints() == 0)

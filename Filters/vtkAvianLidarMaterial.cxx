@@ -4,7 +4,6 @@
 #include "Glob.h"
 #include "Reflectance.h"
 #include "ValueError.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarGuard.h"
@@ -343,7 +342,6 @@ int vtkAvianLidarMaterial::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkAvianLidarAbort::StopIfWanted(this);
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
       const Materials::NamedMaterial* named = Named(this->Material);

@@ -7,7 +7,8 @@
 #ifndef vtkAvianLidarProperties_h
 #define vtkAvianLidarProperties_h
 
-#include "vtkSetGet.h" // For set and get macros
+#include "vtkSetGet.h"       // For set and get macros
+#include "vtkSmartPointer.h" // For the controller
 
 #include <string> // For names of files
 
@@ -71,15 +72,14 @@ protected:                                                         \
 public:
 
 /// Declares the Controller of a filter whose ranks work together, and ModifyRequest(), which
-/// updates the inputs of all ranks. vtkAvianLidarCxxControllerMacro() defines SetController() and
-/// ModifyRequest().
+/// updates the inputs of all ranks. vtkAvianLidarCxxControllerMacro() defines these functions.
 #define vtkAvianLidarControllerMacro()                           \
   void SetController(vtkMultiProcessController* controller);     \
-  vtkGetObjectMacro(Controller, vtkMultiProcessController);      \
+  vtkMultiProcessController* GetController();                    \
                                                                  \
 protected:                                                       \
   int ModifyRequest(vtkInformation* request, int when) override; \
-  vtkMultiProcessController* Controller = nullptr;               \
+  vtkSmartPointer<vtkMultiProcessController> Controller;         \
                                                                  \
 public:
 

@@ -3,7 +3,6 @@
 
 #include "AvailableMemory.h"
 #include "ScanGrid.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
 #include "vtkAvianLidarGuard.h"
@@ -153,9 +152,6 @@ std::string SizeOf(int columns, int rows)
 {
   return std::to_string(columns) + " columns and " + std::to_string(rows) + " rows";
 }
-
-/// Prefix of errors.
-constexpr char ImagePrefix[] = "Range image: ";
 }
 
 vtkStandardNewMacro(vtkAvianLidarRangeImage);
@@ -166,12 +162,6 @@ vtkAvianLidarRangeImage::vtkAvianLidarRangeImage()
 {
   this->SetController(vtkMultiProcessController::GetGlobalController());
   this->SetNumberOfInputPorts(2);
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarRangeImage::~vtkAvianLidarRangeImage()
-{
-  this->SetController(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -237,28 +227,15 @@ int vtkAvianLidarRangeImage::RequestData(
     {
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
       vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
-      ranks.Together(this,
+      vtkAvianLidarWithin("Range image: ",
         [&]()
         {
-          vtkAvianLidarAbort::StopIfWanted(this);
-          vtkAvianLidarWithin(ImagePrefix,
-            [&]()
-            {
-              ImageArrays::RequireLengths(echoes, "input port 0 (echoes)");
-              ImageArrays::RequireLengths(beams, "input port 1 (beams)");
-            });
-        });
-      echoes = vtkAvianLidarGather::Points(ranks, this, echoes);
-      beams = vtkAvianLidarGather::Points(ranks, this, beams);
-      ranks.Together(this,
-        [&]()
-        {
-          vtkAvianLidarWithin(ImagePrefix,
-            [&]()
-            {
-              this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
-                inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0));
-            });
+          ImageArrays::RequireLengths(echoes, "input port 0 (echoes)");
+          ImageArrays::RequireLengths(beams, "input port 1 (beams)");
+          echoes = vtkAvianLidarGather::Points(ranks, echoes);
+          beams = vtkAvianLidarGather::Points(ranks, beams);
+          this->MakeImage(echoes, ranks.Alone() ? beams : ImageBeams::InOrder(beams),
+            inputVector[1]->GetInformationObject(0), outputVector->GetInformationObject(0));
         });
     });
   return done && ImageArrays::FillIfFailed(this, outputVector);

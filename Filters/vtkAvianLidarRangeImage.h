@@ -65,7 +65,7 @@ public:
 
 protected:
   vtkAvianLidarRangeImage();
-  ~vtkAvianLidarRangeImage() override;
+  ~vtkAvianLidarRangeImage() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

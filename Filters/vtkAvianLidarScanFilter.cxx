@@ -52,7 +52,7 @@ vtkAvianLidarRanks::Settings SettingsOf(const avianlidar::EchoSettings& s, int p
 }
 }
 
-vtkAvianLidarCxxModifyRequestMacro(vtkAvianLidarScanFilter);
+vtkAvianLidarCxxRanksMacro(vtkAvianLidarScanFilter);
 
 //------------------------------------------------------------------------------
 const std::vector<vtkAvianLidarScanFilter::vtkInternals::Property>& vtkAvianLidarScanFilter::
@@ -86,10 +86,7 @@ vtkAvianLidarScanFilter::vtkAvianLidarScanFilter()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarScanFilter::~vtkAvianLidarScanFilter()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarScanFilter::~vtkAvianLidarScanFilter() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controller)
@@ -100,7 +97,7 @@ void vtkAvianLidarScanFilter::SetController(vtkMultiProcessController* controlle
     this->Internals->State.clear();
     this->Internals->Beams.ForgetRanks();
   }
-  vtkSetObjectBodyMacro(Controller, vtkMultiProcessController, controller);
+  vtkSetSmartPointerBodyMacro(Controller, vtkMultiProcessController, controller);
 }
 
 //------------------------------------------------------------------------------
@@ -262,12 +259,9 @@ void vtkAvianLidarScanFilter::PlaceMedia()
   std::vector<avianlidar::PlacedMedium>& media = in.Setup.media;
   for (const avianlidar::PlacedMedium& placed : in.Media)
   {
-    if (placed.volume.velocity != avianlidar::Vec3(0.0) && in.Beams.beams.size() > 0 &&
-      !in.Beams.isTimed)
+    if (placed.volume.velocity != avianlidar::Vec3(0.0))
     {
-      vtkAvianLidarRequire(
-        "Input port 0 (beams), point array 'timestamp' is missing, expected the time in "
-        "microseconds at which each beam meets the media that move (input port 1)");
+      in.Beams.RequireTimes("the media that move (input port 1)");
     }
     media.push_back(placed);
   }
@@ -296,19 +290,13 @@ void vtkAvianLidarScanFilter::AddAirTo(vtkFieldData* fields) const
 void vtkAvianLidarScanFilter::PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input)
 {
   vtkInternals& in = *this->Internals;
-  ranks.Together(this,
-    [&]()
-    {
-      vtkAvianLidarAbort::StopIfWanted(this);
-      vtkAvianLidarRequire(this->MissingInput());
-      in.Beams.Read(input);
-      in.Setup.sensor = in.Beams.sensor;
-      in.Setup.revolution = in.Beams.revolution;
-      this->PrepareSettings();
-    });
-  ranks.AgreeOn(this,
-    SettingsOf(in.Setup.settings, this->Preset, this->Visibility, this->AttenuationCoefficient,
-      this->AirBackscatter, this->RainRate));
+  vtkAvianLidarRequire(this->MissingInput());
+  in.Beams.Read(input);
+  in.Setup.sensor = in.Beams.sensor;
+  in.Setup.revolution = in.Beams.revolution;
+  this->PrepareSettings();
+  ranks.AgreeOn(SettingsOf(in.Setup.settings, this->Preset, this->Visibility,
+    this->AttenuationCoefficient, this->AirBackscatter, this->RainRate));
 }
 
 //------------------------------------------------------------------------------
@@ -316,29 +304,25 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
 {
   vtkInternals& in = *this->Internals;
   auto state = vtkAvianLidarContent::StateOf(input);
-  if (ranks.All(!state.empty() && state == in.State && in.MergedBy == ranks.Group()))
+  if (ranks.All(state == in.State && in.MergedBy == ranks.Group()))
   {
     return; // nothing was modified since the last execution
   }
   in.State.clear();
   const auto merged = vtkAvianLidarScene::FindSurfaces(input);
   const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
-  if (!given)
+  if (given)
+  {
+    in.Exchange.Forget();
+    in.Exchange.Fields = input->GetFieldData();
+    in.Surfaces = merged;
+  }
+  else
   {
     in.Surfaces =
-      in.Exchange.Merge(ranks, this, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
+      in.Exchange.Merge(ranks, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
   }
-  ranks.Together(this,
-    [&]()
-    {
-      if (given)
-      {
-        in.Exchange.Forget();
-        in.Exchange.Fields = input->GetFieldData();
-        in.Surfaces = merged;
-      }
-      this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
-    });
+  this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
   in.State = std::move(state);
   in.MergedBy = ranks.Group();
 }
@@ -368,20 +352,16 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
 {
   vtkInternals& in = *this->Internals;
   in.Threads = ranks.Threads(this->NumberOfThreads);
-  ranks.Together(this,
-    [&]()
-    {
-      this->PlaceMedia();
-      this->FindTree(input);
-      if (!in.Setup.tree)
-      {
-        in.Setup.tree = in.OwnTree =
-          avianlidar::buildCollisionTree(in.Surfaces->mesh, avianlidar::TreeOptions{},
-            vtkAvianLidarAbort::KeepGoing(this, 0.0, vtkInternals::BuildShare), in.Threads);
-        in.TreeBuilds += in.OwnTree != nullptr;
-      }
-      vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
-    });
+  this->PlaceMedia();
+  this->FindTree(input);
+  if (!in.Setup.tree)
+  {
+    in.Setup.tree = in.OwnTree =
+      avianlidar::buildCollisionTree(in.Surfaces->mesh, avianlidar::TreeOptions{},
+        vtkAvianLidarAbort::KeepGoing(this, 0.0, vtkInternals::BuildShare), in.Threads);
+    in.TreeBuilds += in.OwnTree != nullptr;
+  }
+  vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
 }
 
 //------------------------------------------------------------------------------

@@ -269,8 +269,7 @@ protected:
   void PlaceMedia();
   void AddAirTo(vtkFieldData* fields) const;
 
-  // Passes of an execution, which all ranks make together. A failure on one rank throws on all
-  // ranks.
+  // Passes of an execution. All ranks must call these functions.
   void PrepareBeams(const vtkAvianLidarRanks& ranks, vtkPolyData* input);
   void PrepareSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);

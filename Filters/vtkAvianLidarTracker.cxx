@@ -254,8 +254,8 @@ struct vtkAvianLidarTracker::vtkInternals
 
   static avianlidar::TrackerSettings SettingsOf(const vtkAvianLidarTracker& self);
   // Updates the tracks. @return track of each point of the cloud, or -1
-  std::vector<int> Track(
-    vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns);
+  std::vector<int> Track(vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud,
+    const vtkAvianLidarRanks& ranks);
 };
 
 //------------------------------------------------------------------------------
@@ -315,8 +315,8 @@ avianlidar::TrackerSettings vtkAvianLidarTracker::vtkInternals::SettingsOf(
 }
 
 //------------------------------------------------------------------------------
-std::vector<int> vtkAvianLidarTracker::vtkInternals::Track(
-  vtkAvianLidarTracker* self, vtkPolyData* input, vtkPolyData* cloud, bool warns)
+std::vector<int> vtkAvianLidarTracker::vtkInternals::Track(vtkAvianLidarTracker* self,
+  vtkPolyData* input, vtkPolyData* cloud, const vtkAvianLidarRanks& ranks)
 {
   const CloudFacts& facts = this->Facts;
   Targets targets = ReadTargets(cloud, self->RangeError);
@@ -357,17 +357,18 @@ std::vector<int> vtkAvianLidarTracker::vtkInternals::Track(
   {
     trackOfPoint[static_cast<std::size_t>(targets.Indices[i])] = ids[clusters.ofPoint[i]];
   }
+  ranks.Meet(); // before the memory changes
   if (isLater || isEarlier)
   {
     this->Before = isLater ? std::move(this->After) : State{};
   }
   this->After = std::move(next);
-  if (isEarlier && warns)
+  if (isEarlier && ranks.Rank() == 0)
   {
     vtkWarningWithObjectMacro(self,
       << "Tracker: the cloud has an earlier time than the cloud before: all tracks are removed.");
   }
-  if (areOdd && warns)
+  if (areOdd && ranks.Rank() == 0)
   {
     vtkWarningWithObjectMacro(self,
       << "Tracker: not all values of 'timestamp' are later than the times of the cloud before: the "
@@ -388,10 +389,7 @@ vtkAvianLidarTracker::vtkAvianLidarTracker()
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarTracker::~vtkAvianLidarTracker()
-{
-  this->SetController(nullptr);
-}
+vtkAvianLidarTracker::~vtkAvianLidarTracker() = default;
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarTracker::Reset()
@@ -444,33 +442,23 @@ int vtkAvianLidarTracker::RequestData(
       facts = {};
       std::copy(this->SensorPosition, this->SensorPosition + 3, facts.Sensor);
       facts.HalfBeamwidth = this->HalfBeamwidth;
-      ranks.Together(this,
+      vtkAvianLidarWithin(TrackerPrefix,
         [&]()
         {
-          vtkAvianLidarAbort::StopIfWanted(this);
-          vtkAvianLidarWithin(TrackerPrefix,
-            [&]()
-            {
-              this->CheckSettings();
-              ReadFacts(this->Internals->After.Stream, input, facts);
-              CheckArrays(input);
-            });
+          this->CheckSettings();
+          ReadFacts(this->Internals->After.Stream, input, facts);
+          CheckArrays(input);
         });
       vtkAvianLidarRanks::Settings settings;
       for (const vtkInternals::Setting& setting : vtkInternals::Settings())
       {
         settings.Add(setting.Property, setting.ValueOf(*this));
       }
-      ranks.AgreeOn(this, settings);
+      ranks.AgreeOn(settings);
       const vtkIdType first = Share(ranks, facts); // first point of this rank
-      const vtkSmartPointer<vtkPolyData> cloud = vtkAvianLidarGather::Points(ranks, this, input);
-      std::vector<int> trackOfPoint;
-      ranks.Together(this,
-        [&]()
-        {
-          trackOfPoint = vtkAvianLidarWithin(TrackerPrefix,
-            [&]() { return this->Internals->Track(this, input, cloud, ranks.Rank() == 0); });
-        });
+      const vtkSmartPointer<vtkPolyData> cloud = vtkAvianLidarGather::Points(ranks, input);
+      const std::vector<int> trackOfPoint = vtkAvianLidarWithin(
+        TrackerPrefix, [&]() { return this->Internals->Track(this, input, cloud, ranks); });
       const bool isOther = ranks.Alone() && ranks.Piece() > 0;
       this->FillOutputs(
         ranks.Piece() == 0, input, isOther ? nullptr : trackOfPoint.data() + first, outputVector);

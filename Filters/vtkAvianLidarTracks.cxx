@@ -447,7 +447,6 @@ int vtkAvianLidarTracks::RequestData(
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkAvianLidarAbort::StopIfWanted(this);
       vtkAvianLidarRequire(
         avianlidar::rangeError("Pattern", this->Pattern, PATTERN_CROSSINGS, PATTERN_LINES,
           "0 (crossings), 1 (circles), 2 (flock), 3 (approach), 4 (file) or 5 (lines)"));

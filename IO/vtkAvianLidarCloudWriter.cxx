@@ -2,7 +2,6 @@
 #include "vtkAvianLidarCloudWriter.h"
 
 #include "Private/vtkAvianLidarCloudFields.h"
-#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
 
@@ -46,8 +45,7 @@ void vtkAvianLidarCloudWriter::WriteData()
   }
   const auto write = [&]
   {
-    vtkAvianLidarGuard::RequireInputs(this);
-    vtkAvianLidarAbort::StopIfWanted(this);
+    vtkAvianLidarGuard::Begin(this);
     this->WriteCloud(input);
     this->SetErrorCode(vtkErrorCode::NoError);
     this->UpdateProgress(1.0);

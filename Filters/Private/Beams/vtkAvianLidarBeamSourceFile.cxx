@@ -7,12 +7,10 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRequire.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <array>
 
 namespace Arrays = vtkAvianLidarArrays;
 
@@ -184,14 +182,7 @@ void vtkAvianLidarBeamSource::vtkInternals::Apply(const vtkAvianLidarSensorFile&
 //------------------------------------------------------------------------------
 void vtkAvianLidarBeamSource::vtkInternals::ApplyPreset(const std::string& name, Source& self)
 {
-  const vtkAvianLidarSensorFile file = vtkAvianLidarSensorFile::Preset(name);
-  Apply(file, self);
-  const auto& known = PhotonSensors();
-  if (std::any_of(known.begin(), known.end(),
-        [&](const vtkAvianLidarSensorFile& one) { return one.name == file.name; }))
-  {
-    self.Assumed.clear(); // AssumedOf() finds these values without a list
-  }
+  Apply(vtkAvianLidarSensorFile::Preset(name), self);
 }
 
 //------------------------------------------------------------------------------
@@ -227,24 +218,17 @@ std::vector<double> vtkAvianLidarBeamSource::vtkInternals::ValuesOf(
 }
 
 //------------------------------------------------------------------------------
-const std::vector<vtkAvianLidarSensorFile>& vtkAvianLidarBeamSource::vtkInternals::PhotonSensors()
-{
-  static const std::vector<vtkAvianLidarSensorFile> all = {
-    vtkAvianLidarSensorFile::Preset("Search905"), vtkAvianLidarSensorFile::Preset("Search1550"),
-    vtkAvianLidarSensorFile::Preset("Automotive16")
-  };
-  return all;
-}
-
-//------------------------------------------------------------------------------
 std::vector<std::string> vtkAvianLidarBeamSource::vtkInternals::AssumedOf(const Source& self)
 {
   AssumedValues assumed = self.Assumed;
   if (assumed.empty())
   {
-    // Without a file, take the assumed values of the most similar built-in sensor.
+    // Without a file, take the assumed values of the most similar sensor with a photon receiver.
+    static const vtkAvianLidarSensorFile known[] = { vtkAvianLidarSensorFile::Preset("Search905"),
+      vtkAvianLidarSensorFile::Preset("Search1550"),
+      vtkAvianLidarSensorFile::Preset("Automotive16") };
     std::size_t most = 0;
-    for (const vtkAvianLidarSensorFile& sensor : PhotonSensors())
+    for (const vtkAvianLidarSensorFile& sensor : known)
     {
       AssumedValues own;
       std::size_t alike = 0;

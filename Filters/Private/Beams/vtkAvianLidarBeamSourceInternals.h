@@ -93,8 +93,6 @@ struct vtkAvianLidarBeamSource::vtkInternals
   using AssumedValues = std::vector<std::pair<std::string, std::vector<double>>>;
   // Values of a property, by its name in snake case.
   static std::vector<double> ValuesOf(const Source& self, const std::string& name);
-  // The built-in sensors with a photon receiver.
-  static const std::vector<vtkAvianLidarSensorFile>& PhotonSensors();
   // Names of the properties in use whose values are assumed.
   static std::vector<std::string> AssumedOf(const Source& self);
 

@@ -302,7 +302,7 @@ void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
 {
   const bool isEmpty = input->GetNumberOfPoints() == 0;
   const vtkAvianLidarContent::State state = vtkAvianLidarContent::StateOf(input);
-  const bool untouched = !state.empty() && state == this->ReadFrom;
+  const bool untouched = state == this->ReadFrom;
   const std::uint64_t content = untouched ? this->Content : HashOf(input);
   const bool known = !this->ReadFrom.empty() && content == this->Content;
   this->ReadFrom.clear(); // empty after an error
@@ -336,6 +336,17 @@ void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
 }
 
 //------------------------------------------------------------------------------
+void vtkAvianLidarBeams::RequireTimes(const std::string& what) const
+{
+  vtkAvianLidarRequire(this->isTimed || this->beams.size() == 0
+      ? ""
+      : "point array 'timestamp' is missing, expected the time in microseconds at which each beam "
+        "meets " +
+        what,
+    BeamsPort);
+}
+
+//------------------------------------------------------------------------------
 std::uint64_t vtkAvianLidarBeams::Hash() const
 {
   const std::uint64_t parts[] = { this->beams.checksum, HashOf(this->sensor, this->revolution) };
@@ -343,7 +354,7 @@ std::uint64_t vtkAvianLidarBeams::Hash() const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self)
+void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;
   this->total = static_cast<std::uint64_t>(ranks.Sum(static_cast<double>(ids.size())));
@@ -358,48 +369,34 @@ void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorith
   }
   const bool oneSensor = ranks.Same(mine);
   const bool checked = ranks.All(this->checkedWith == ranks.Group());
-  if (!oneSensor)
+  vtkAvianLidarRequire(oneSensor ? ""
+                                 : "the ranks have beams of different sensors or revolutions "
+                                   "in field data, expected those of one",
+    BeamsPort);
+  if (!checked)
   {
-    ranks.Together(self,
-      []()
-      {
-        vtkAvianLidarRequire("the ranks have beams of different sensors or revolutions in field "
-                             "data, expected those of one",
-          BeamsPort);
-      });
-  }
-  else if (!checked)
-  {
-    this->CompareIds(ranks, self);
+    this->CompareIds(ranks);
   }
   this->checkedWith = ranks.Group();
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self) const
+void vtkAvianLidarBeams::CompareIds(const vtkAvianLidarRanks& ranks) const
 {
   vtkNew<vtkTypeUInt64Array> mine;
-  ranks.Together(self,
-    [&]()
-    {
-      for (const IdRun& run : RunsOf(this->beams.ids))
-      {
-        mine->InsertNextValue(run.first);
-        mine->InsertNextValue(run.count);
-      }
-    });
+  for (const IdRun& run : RunsOf(this->beams.ids))
+  {
+    mine->InsertNextValue(run.first);
+    mine->InsertNextValue(run.count);
+  }
   vtkNew<vtkTypeUInt64Array> all;
   ranks.Gather(mine, all);
-  ranks.Together(self,
-    [&]()
-    {
-      std::vector<IdRun> runs;
-      for (vtkIdType i = 0; i < all->GetNumberOfValues(); i += 2)
-      {
-        runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
-      }
-      vtkAvianLidarRequire(RepeatedIdError(std::move(runs)), BeamsPort);
-    });
+  std::vector<IdRun> runs;
+  for (vtkIdType i = 0; i < all->GetNumberOfValues(); i += 2)
+  {
+    runs.push_back({ all->GetValue(i), all->GetValue(i + 1) });
+  }
+  vtkAvianLidarRequire(RepeatedIdError(std::move(runs)), BeamsPort);
 }
 
 //------------------------------------------------------------------------------

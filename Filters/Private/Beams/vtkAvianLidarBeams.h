@@ -12,9 +12,9 @@
 #include "vtkAvianLidarRanks.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
-class vtkAlgorithm;
 class vtkPolyData;
 
 struct vtkAvianLidarBeams
@@ -44,7 +44,10 @@ struct vtkAvianLidarBeams
 
   /// Check that the beams of all ranks belong to one sensor, and that no id occurs twice. All ranks
   /// must call this function.
-  void CheckRanks(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self);
+  void CheckRanks(const vtkAvianLidarRanks& ranks);
+
+  /// Throws if there are beams without timestamps. @param what what the beams meet, which moves
+  void RequireTimes(const std::string& what) const;
 
   /// Check ids again at the next CheckRanks(), because the ranks may have changed.
   void ForgetRanks() { this->checkedWith = nullptr; }
@@ -65,7 +68,7 @@ struct vtkAvianLidarBeams
 private:
   void ReadAll(vtkPolyData* input);
   void ReadBeams(vtkPolyData* input);
-  void CompareIds(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self) const;
+  void CompareIds(const vtkAvianLidarRanks& ranks) const;
   const void* checkedWith = nullptr;    ///< ranks among which no id occurs twice; null: not checked
   vtkAvianLidarContent::State ReadFrom; ///< state of the input read last; empty after an error
   std::uint64_t Content = 0;            ///< hash of sensor, revolution and beams

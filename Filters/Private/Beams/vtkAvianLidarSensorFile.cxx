@@ -48,14 +48,11 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
   }
   vtkAvianLidarSensorFile sensor;
   sensor.file = file;
-  sensor.name = root.Get("name").Name();
   sensor.text = json.dump();
+  root.Get("name").Name(); // checked, but not used
   for (const char* key : { "maker", "model", "comment", "source" })
   {
-    if (root.Has(key))
-    {
-      root.Get(key).String();
-    }
+    root.Find(key, &JsonNode::String); // checked, but not used
   }
   if (root.Has("data_sheet"))
   {

@@ -26,7 +26,6 @@ struct vtkAvianLidarSensorFile
     bool IsAssumed() const { return this->source.rfind("assumed", 0) == 0; }
   };
   std::string file; ///< name of the file, for messages
-  std::string name;
   std::string text; ///< whole file, as JSON
   std::vector<Entry> entries;
 

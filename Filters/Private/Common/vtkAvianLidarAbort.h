@@ -45,9 +45,7 @@ inline void Require(bool done)
   }
 }
 
-/// Throws if an observer has stopped the algorithm at progress 0, which the executive reports
-/// before RequestData. Call the function in the body of RequestData. Ranks that work together call
-/// the function in a step (vtkAvianLidarRanks.h).
+/// Throws if the algorithm is to stop.
 inline void StopIfWanted(vtkAlgorithm* algorithm)
 {
   Require(!Wanted(algorithm));

@@ -18,7 +18,6 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
-#include <new>
 #include <string>
 
 namespace vtkAvianLidarContent
@@ -42,7 +41,6 @@ vtkMTimeType TimeOf(vtkPolyData* poly)
 
 //------------------------------------------------------------------------------
 State StateOf(vtkDataObject* data)
-try
 {
   State state;
   const auto add = [&state](vtkDataObject* object)
@@ -73,10 +71,6 @@ try
     }
   }
   return state;
-}
-catch (const std::bad_alloc&)
-{
-  return {};
 }
 
 //------------------------------------------------------------------------------

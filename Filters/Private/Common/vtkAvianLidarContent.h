@@ -30,9 +30,7 @@ using State = std::vector<std::pair<const void*, vtkMTimeType>>;
 /// arrays.
 vtkMTimeType TimeOf(vtkPolyData* poly);
 
-/// State of a vtkPolyData, or of a composite with all nodes, leaves and their names. If memory does
-/// not suffice, the state is empty. The function does not throw, because ranks call the function
-/// outside the steps of vtkAvianLidarRanks, which hand errors to all ranks.
+/// State of a vtkPolyData, or of a composite with all nodes, leaves and their names.
 State StateOf(vtkDataObject* data);
 
 /// Hash of an array, which may be null: its type, size and values. @param seed hash to continue

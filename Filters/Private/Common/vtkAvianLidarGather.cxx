@@ -10,7 +10,7 @@
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> vtkAvianLidarGather::Points(
-  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPolyData* mine)
+  const vtkAvianLidarRanks& ranks, vtkPolyData* mine)
 {
   if (ranks.Alone())
   {
@@ -24,22 +24,18 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarGather::Points(
   }
   const std::vector<vtkSmartPointer<vtkDataObject>> parts = ranks.Gather(bare);
   vtkNew<vtkAppendPolyData> append;
-  ranks.Together(self,
-    [&]()
-    {
-      append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-      for (const auto& part : parts)
-      {
-        append->AddInputData(vtkPolyData::SafeDownCast(part));
-      }
-      append->Update();
-    });
+  append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  for (const auto& part : parts)
+  {
+    append->AddInputData(vtkPolyData::SafeDownCast(part));
+  }
+  append->Update();
   return append->GetOutput();
 }
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPointSet> vtkAvianLidarGather::Coordinates(
-  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPointSet* mine)
+  const vtkAvianLidarRanks& ranks, vtkPointSet* mine)
 {
   if (ranks.Alone())
   {
@@ -47,5 +43,5 @@ vtkSmartPointer<vtkPointSet> vtkAvianLidarGather::Coordinates(
   }
   vtkNew<vtkPolyData> bare;
   bare->SetPoints(mine ? mine->GetPoints() : nullptr);
-  return Points(ranks, self, bare);
+  return Points(ranks, bare);
 }

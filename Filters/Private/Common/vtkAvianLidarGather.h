@@ -10,7 +10,6 @@
 
 #include "vtkSmartPointer.h"
 
-class vtkAlgorithm;
 class vtkPointSet;
 class vtkPolyData;
 
@@ -19,12 +18,10 @@ namespace vtkAvianLidarGather
 /// The points of all ranks, rank by rank, with the point arrays that all ranks have; `mine` itself
 /// for one process. All ranks must call this function. Throws on all ranks if the points together
 /// take 2 GiB or more.
-vtkSmartPointer<vtkPolyData> Points(
-  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPolyData* mine);
+vtkSmartPointer<vtkPolyData> Points(const vtkAvianLidarRanks& ranks, vtkPolyData* mine);
 
 /// Only the coordinates of the points of all ranks; `mine` itself for one process.
-vtkSmartPointer<vtkPointSet> Coordinates(
-  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkPointSet* mine);
+vtkSmartPointer<vtkPointSet> Coordinates(const vtkAvianLidarRanks& ranks, vtkPointSet* mine);
 }
 
 #endif

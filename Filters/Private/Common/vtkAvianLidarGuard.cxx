@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarGuard.h"
 
+#include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
@@ -59,7 +61,7 @@ std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGuard::RequireInputs(vtkAlgorithm* self)
+void vtkAvianLidarGuard::Begin(vtkAlgorithm* self)
 {
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -75,6 +77,7 @@ void vtkAvianLidarGuard::RequireInputs(vtkAlgorithm* self)
       }
     }
   }
+  vtkAvianLidarAbort::StopIfWanted(self);
 }
 
 //------------------------------------------------------------------------------
@@ -101,28 +104,9 @@ void vtkAvianLidarGuard::Empty(vtkInformationVector* outputs, const std::string&
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarGuard::End(
-  vtkInformationVector* outputs, const std::string& problem, bool errorsAsData)
+int vtkAvianLidarGuard::Run(vtkAlgorithm* self, vtkInformationVector* outputs, bool errorsAsData,
+  const std::function<void()>& body)
 {
-  if (problem.empty())
-  {
-    return 1;
-  }
-  Empty(outputs, Sentence(problem));
-  return errorsAsData;
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarGuard::GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs)
-{
-  Empty(outputs);
-  try
-  {
-    vtkErrorWithObjectMacro(self, << NoMemory);
-  }
-  catch (const std::bad_alloc&)
-  {
-    // The return value 0 reports the failure.
-  }
-  return 0;
+  return vtkAvianLidarRanks::Execute(
+    self, {}, outputs, errorsAsData, [&](const vtkAvianLidarRanks&) { body(); });
 }

@@ -17,6 +17,7 @@
 #include "vtkAlgorithm.h"
 
 #include <exception>
+#include <functional>
 #include <new>
 #include <string>
 #include <type_traits>
@@ -27,8 +28,10 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// Throw an error that names the first input that is empty because its producer failed.
-void RequireInputs(vtkAlgorithm* self);
+/// Begin an execution. Throws an error that names the first input that is empty because its
+/// producer failed, or avianlidar::WorkStopped if an observer has stopped the algorithm at progress
+/// 0, which the executive reports before RequestData.
+void Begin(vtkAlgorithm* self);
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
@@ -36,12 +39,9 @@ std::string Sentence(const std::string& problem);
 /// Empty all outputs. @param error error text for the field data; empty: no error text
 void Empty(vtkInformationVector* outputs, const std::string& error = {});
 
-/// End an execution. If `problem` is not empty, outputs are emptied and hold this text.
-/// @return what RequestData is to return
-int End(vtkInformationVector* outputs, const std::string& problem, bool errorsAsData);
-
-/// End an execution whose error does not fit into memory: outputs are emptied. @return 0
-int GiveUp(vtkAlgorithm* self, vtkInformationVector* outputs);
+/// Run the body of a RequestData. @return what RequestData is to return
+int Run(vtkAlgorithm* self, vtkInformationVector* outputs, bool errorsAsData,
+  const std::function<void()>& body);
 
 /// The problem that a step throws; an empty string for avianlidar::WorkStopped.
 template <class Step>
@@ -65,6 +65,10 @@ std::string ProblemOf(const Step& step)
   {
     return error.what();
   }
+  catch (...)
+  {
+    return "An unknown exception was thrown";
+  }
 }
 }
 
@@ -72,29 +76,8 @@ std::string ProblemOf(const Step& step)
 /// empty outputs.
 template <class Filter, class Body>
 int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, const Body& body)
-try
 {
-  bool stopped = true;
-  const std::string problem = vtkAvianLidarGuard::ProblemOf(
-    [&]()
-    {
-      vtkAvianLidarGuard::RequireInputs(self);
-      body();
-      stopped = false;
-    });
-  if (!problem.empty())
-  {
-    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
-  }
-  else if (stopped)
-  {
-    vtkAvianLidarGuard::Empty(outputs);
-  }
-  return vtkAvianLidarGuard::End(outputs, problem, self->GetErrorsAsData());
-}
-catch (const std::bad_alloc&)
-{
-  return vtkAvianLidarGuard::GiveUp(self, outputs);
+  return vtkAvianLidarGuard::Run(self, outputs, self->GetErrorsAsData(), std::cref(body));
 }
 
 #endif

@@ -24,14 +24,13 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
-#include <stdexcept>
 #include <thread>
 
 namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// Answers of a rank in Meet(), which returns the least answer of all ranks.
+/// Answers of a rank in All(), which finds the least answer of all ranks.
 enum Answer
 {
   Absent, ///< the rank threw
@@ -39,21 +38,10 @@ enum Answer
   Yes
 };
 
-constexpr char Stop = 's';
-constexpr char Failure = 'f';
-
-/// Result of this rank's step, for the other ranks; empty after success.
-std::string ResultOf(const std::function<void()>& step)
+/// Thrown if another rank threw.
+class RankThrew
 {
-  bool stopped = true;
-  const std::string problem = vtkAvianLidarGuard::ProblemOf(
-    [&]()
-    {
-      step();
-      stopped = false;
-    });
-  return problem.empty() ? std::string(stopped, Stop) : Failure + problem;
-}
+};
 
 std::uint64_t HashOfHostName()
 {
@@ -63,24 +51,10 @@ std::uint64_t HashOfHostName()
   return avianlidar::hashOf(name.data(), name.size(), 0);
 }
 
-/// Thrown on all ranks if VTK could not send data.
-class SendError : public std::runtime_error
+void RequireSent(bool sent)
 {
-public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Thrown if another rank threw between exchanges.
-class RankThrew
-{
-};
-
-void ThrowUnlessSent(int sent)
-{
-  if (!sent)
-  {
-    throw SendError("VTK could not send the data: 2 GiB or more together, or no memory");
-  }
+  vtkAvianLidarRequire(
+    sent ? "" : "VTK could not send the data: 2 GiB or more together, or no memory");
 }
 
 /// Mark a filter as aborted or not, in the same way on all ranks. Newer executives empty the
@@ -123,146 +97,123 @@ bool WasAborted(vtkAlgorithm* algorithm)
 }
 }
 
-struct vtkAvianLidarRanks::Ended
-{
-  Outcome outcome;
-};
-
 //------------------------------------------------------------------------------
-vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
+bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
+try
 {
-  Outcome outcome = Outcome::Stopped;
-  const std::string thrown = vtkAvianLidarGuard::ProblemOf(
+  bool done = false;
+  bool otherThrew = false;
+  const std::string mine = vtkAvianLidarGuard::ProblemOf(
     [&]()
     {
       try
       {
-        outcome = this->RunTogether(self, body);
+        body(*this);
+        this->Meet();
+        done = true;
       }
-      catch (const Ended& ended)
+      catch (const RankThrew&)
       {
-        outcome = ended.outcome;
+        otherThrew = true;
       }
     });
-  if (!thrown.empty())
+  if (done)
   {
-    outcome = Outcome::Failed;
-    this->Problem = thrown;
-    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(thrown));
+    return true;
   }
-  return outcome;
+  if (this->Exchanging)
+  {
+    EndJob(self, mine.c_str());
+  }
+  if (!this->Alone() && !otherThrew)
+  {
+    const int absent = Absent;
+    int least = 0;
+    this->Controller->AllReduce(&absent, &least, 1, vtkCommunicator::MIN_OP);
+  }
+  vtkMultiProcessStream stream;
+  stream << mine;
+  this->Problem = mine;
+  int rank = 0;
+  for (vtkMultiProcessStream& other : this->GatherStreams(stream))
+  {
+    std::string problem;
+    other >> problem;
+    if (this->Problem.empty() && !problem.empty())
+    {
+      this->Problem = "Rank " + std::to_string(rank) + ": " + problem;
+    }
+    ++rank;
+  }
+  if (this->Problem.empty())
+  {
+    SetAborted(self, true);
+  }
+  else if (!mine.empty() || this->Mine == 0)
+  {
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(this->Problem));
+  }
+  return false;
 }
-
-//------------------------------------------------------------------------------
-vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::RunTogether(
-  vtkAlgorithm* self, const Body& body) const
+catch (...)
 {
   if (this->Alone())
   {
-    body(*this);
-    return Outcome::Done;
-  }
-  this->Exchanging = false;
-  try
-  {
-    body(*this);
-    this->Meet(Yes); // throws if another rank threw
-    return Outcome::Done;
-  }
-  catch (const Ended&)
-  {
     throw;
   }
-  catch (const SendError&)
-  {
-    throw;
-  }
-  catch (const RankThrew&)
-  {
-    return this->Fail(self, nullptr);
-  }
-  catch (const std::bad_alloc&)
-  {
-    return this->Fail(self, vtkAvianLidarGuard::NoMemory);
-  }
-  catch (const std::exception& error)
-  {
-    return this->Fail(self, error.what());
-  }
-  catch (...)
-  {
-    return this->Fail(self, "An unknown exception was thrown");
-  }
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Fail(
-  vtkAlgorithm* self, const char* mine) const noexcept
-{
-  if (!this->Exchanging)
-  {
-    try
-    {
-      if (mine)
-      {
-        const int absent = Absent;
-        int least = 0;
-        this->Controller->AllReduce(&absent, &least, 1, vtkCommunicator::MIN_OP);
-      }
-      return this->Share(self, mine ? Failure + std::string(mine) : std::string(), false);
-    }
-    catch (...)
-    {
-      // There is not enough memory to share the problem.
-    }
-  }
-  EndJob(self, mine ? mine : vtkAvianLidarGuard::NoMemory);
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Meet(int mine) const
-{
-  int least = 0;
-  this->Controller->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
-  if (least == Absent)
-  {
-    throw RankThrew{};
-  }
-  return least;
+  EndJob(self, vtkAvianLidarGuard::NoMemory); // the problem cannot be shared
 }
 
 //------------------------------------------------------------------------------
 template <class Work>
-void vtkAvianLidarRanks::Exchange(Work work) const
+void vtkAvianLidarRanks::Exchange(const Work& work) const
 {
-  this->Meet(Yes);
-  this->Exchanging = true;
-  work();
-  this->Exchanging = false;
+  if (!this->Alone())
+  {
+    this->Meet();
+    this->Send(work);
+  }
 }
 
 //------------------------------------------------------------------------------
-int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
-  vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body)
+template <class Work>
+void vtkAvianLidarRanks::Send(const Work& work) const
+{
+  this->Exchanging = true;
+  const int sent = work();
+  this->Exchanging = false;
+  RequireSent(sent != 0);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarRanks::Execute(vtkAlgorithm* self, const vtkAvianLidarRanks& ranks,
+  vtkInformationVector* outputs, bool errorsAsData, const Body& body)
 try
 {
-  const vtkAvianLidarRanks together(controller, request, outputs);
-  const auto work = [&](const vtkAvianLidarRanks& ranks)
+  const auto work = [&](const vtkAvianLidarRanks&)
   {
-    ranks.Together(self, [self]() { vtkAvianLidarGuard::RequireInputs(self); });
+    vtkAvianLidarGuard::Begin(self);
     body(ranks);
   };
-  const Outcome outcome = together.Run(self, std::cref(work));
-  if (outcome == Outcome::Stopped)
+  if (ranks.Run(self, std::cref(work)))
   {
-    vtkAvianLidarGuard::Empty(outputs);
+    return 1;
   }
-  return vtkAvianLidarGuard::End(
-    outputs, outcome == Outcome::Failed ? together.Problem : std::string(), errorsAsData);
+  vtkAvianLidarGuard::Empty(outputs, vtkAvianLidarGuard::Sentence(ranks.Problem));
+  return ranks.Problem.empty() || errorsAsData;
 }
 catch (const std::bad_alloc&)
 {
-  return vtkAvianLidarGuard::GiveUp(self, outputs);
+  vtkAvianLidarGuard::Empty(outputs);
+  try
+  {
+    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::NoMemory);
+  }
+  catch (const std::bad_alloc&)
+  {
+    // The return value 0 reports the failure.
+  }
+  return 0;
 }
 
 //------------------------------------------------------------------------------
@@ -287,58 +238,8 @@ vtkAvianLidarRanks::vtkAvianLidarRanks(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarRanks::RunStep(vtkAlgorithm* self, const std::function<void()>& step) const
+void vtkAvianLidarRanks::AgreeOn(const Settings& mine) const
 {
-  const std::string mine = ResultOf(step);
-  if (!this->All(mine.empty()))
-  {
-    throw Ended{ this->Share(self, mine, true) };
-  }
-}
-
-//------------------------------------------------------------------------------
-vtkAvianLidarRanks::Outcome vtkAvianLidarRanks::Share(
-  vtkAlgorithm* self, const std::string& mine, bool meet) const
-{
-  const bool failed = !mine.empty() && mine[0] == Failure;
-  std::string problem = failed ? mine.substr(1) : "";
-  vtkMultiProcessStream stream;
-  stream << mine;
-  if (meet && !this->Alone())
-  {
-    this->Meet(Yes);
-  }
-  int rank = 0;
-  for (vtkMultiProcessStream& other : this->GatherStreams(stream))
-  {
-    std::string result;
-    other >> result;
-    if (problem.empty() && !result.empty() && result[0] == Failure)
-    {
-      problem = "Rank " + std::to_string(rank) + ": " + result.substr(1);
-    }
-    ++rank;
-  }
-  if (problem.empty())
-  {
-    SetAborted(self, true);
-    return Outcome::Stopped;
-  }
-  this->Problem = problem;
-  if (failed || this->Mine == 0)
-  {
-    vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(problem));
-  }
-  return Outcome::Failed;
-}
-
-//------------------------------------------------------------------------------
-void vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
-{
-  if (this->Alone())
-  {
-    return;
-  }
   std::uint64_t hash = 0;
   vtkMultiProcessStream stream;
   for (const auto& [name, value] : mine.Each)
@@ -351,63 +252,51 @@ void vtkAvianLidarRanks::AgreeOn(vtkAlgorithm* self, const Settings& mine) const
     return;
   }
   std::vector<vtkMultiProcessStream> all = this->Gather(stream);
-  this->Together(self,
-    [&]()
+  for (const auto& [name, value] : mine.Each)
+  {
+    std::string first;
+    all[0] >> first;
+    for (std::size_t rank = 1; rank < all.size(); ++rank)
     {
-      for (const auto& [name, value] : mine.Each)
+      std::string other;
+      all[rank] >> other;
+      if (other != first)
       {
-        std::string first;
-        all[0] >> first;
-        for (std::size_t rank = 1; rank < all.size(); ++rank)
-        {
-          std::string other;
-          all[rank] >> other;
-          if (other != first)
-          {
-            vtkAvianLidarRequire(std::string(name) + " is " + first + " on rank 0 and " + other +
-              " on rank " + std::to_string(rank) + ", expected the same on all ranks");
-          }
-        }
+        vtkAvianLidarRequire(std::string(name) + " is " + first + " on rank 0 and " + other +
+          " on rank " + std::to_string(rank) + ", expected the same on all ranks");
       }
-    });
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::All(bool mine) const
 {
-  return this->Alone() ? mine : this->Meet(mine ? Yes : No) == Yes;
+  if (this->Alone())
+  {
+    return mine;
+  }
+  const int answer = mine ? Yes : No;
+  int least = 0;
+  this->Controller->AllReduce(&answer, &least, 1, vtkCommunicator::MIN_OP);
+  if (least == Absent)
+  {
+    throw RankThrew{};
+  }
+  return least == Yes;
 }
 
 //------------------------------------------------------------------------------
-double vtkAvianLidarRanks::Sum(double mine) const
+double vtkAvianLidarRanks::Reduce(double mine, int operation) const
 {
-  double sum = mine;
-  if (!this->Alone())
-  {
-    this->Exchange([&]() { this->Controller->AllReduce(&mine, &sum, 1, vtkCommunicator::SUM_OP); });
-  }
-  return sum;
-}
-
-//------------------------------------------------------------------------------
-double vtkAvianLidarRanks::Largest(double mine) const
-{
-  double largest = mine;
-  if (!this->Alone())
-  {
-    this->Exchange(
-      [&]() { this->Controller->AllReduce(&mine, &largest, 1, vtkCommunicator::MAX_OP); });
-  }
-  return largest;
+  double result = mine;
+  this->Exchange([&]() { return this->Controller->AllReduce(&mine, &result, 1, operation); });
+  return result;
 }
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
 {
-  if (this->Alone())
-  {
-    return true;
-  }
   // The type is not unsigned long, because VTK would treat unsigned long as long.
   const unsigned long long low = mine.value_or(std::numeric_limits<std::uint64_t>::max());
   const unsigned long long high = mine.value_or(0);
@@ -416,8 +305,8 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
   this->Exchange(
     [&]()
     {
-      this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
-      this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+      return this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP) &&
+        this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
     });
   return least >= largest; // `least` is greater if no rank has a value
 }
@@ -426,10 +315,7 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
 std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
   const vtkMultiProcessStream& mine) const
 {
-  if (!this->Alone())
-  {
-    this->Meet(Yes);
-  }
+  this->Meet();
   return this->GatherStreams(mine);
 }
 
@@ -437,35 +323,34 @@ std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::Gather(
 std::vector<vtkMultiProcessStream> vtkAvianLidarRanks::GatherStreams(
   const vtkMultiProcessStream& mine) const
 {
-  this->Exchanging = true;
   std::vector<vtkMultiProcessStream> all{ mine };
   if (!this->Alone())
   {
-    ThrowUnlessSent(this->Controller->AllGather(mine, all));
+    this->Send([&]() { return this->Controller->AllGather(mine, all); });
   }
-  this->Exchanging = false;
   return all;
 }
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarRanks::Gather(vtkDataArray* mine, vtkDataArray* all) const
 {
-  this->Exchange([&]() { ThrowUnlessSent(this->Controller->AllGatherV(mine, all)); });
+  this->Exchange([&]() { return this->Controller->AllGatherV(mine, all); });
 }
 
 //------------------------------------------------------------------------------
 std::vector<vtkSmartPointer<vtkDataObject>> vtkAvianLidarRanks::Gather(vtkDataObject* mine) const
 {
   std::vector<vtkSmartPointer<vtkDataObject>> all;
-  ThrowUnlessSent(this->Sum(BytesOf(mine)) < MostBytes);
+  RequireSent(this->Sum(BytesOf(mine)) < MostBytes);
   this->Exchange(
     [&]()
     {
-      ThrowUnlessSent(this->Controller->AllGather(mine, all));
+      const int sent = this->Controller->AllGather(mine, all);
       if (std::count(all.begin(), all.end(), nullptr) > 0)
       {
         throw std::bad_alloc(); // VTK had no memory to serialise the data
       }
+      return sent;
     });
   return all;
 }
@@ -493,6 +378,7 @@ void vtkAvianLidarRanks::Broadcast(vtkDataObject* data, int from, double& sent) 
       {
         throw std::bad_alloc(); // VTK had no memory to serialise the data
       }
+      return 1;
     });
   sent += from == this->Mine ? BytesOf(data) : 0.0;
 }
@@ -509,7 +395,7 @@ int vtkAvianLidarRanks::Threads(int wanted) const
   this->Exchange(
     [&]()
     {
-      this->Controller->AllGather(reinterpret_cast<const char*>(&host),
+      return this->Controller->AllGather(reinterpret_cast<const char*>(&host),
         reinterpret_cast<char*>(hosts.data()), static_cast<vtkIdType>(sizeof(host)));
     });
   if (wanted > 0)
@@ -533,7 +419,7 @@ int vtkAvianLidarRanks::UpdateInputs(
   vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when)
 {
   vtkInformationVector* outputs = self->GetExecutive()->GetOutputInformation();
-  const auto update = [&]()
+  const auto update = [&](const vtkAvianLidarRanks&)
   {
     bool good = true;
     bool stopped = false;
@@ -554,19 +440,21 @@ int vtkAvianLidarRanks::UpdateInputs(
       throw avianlidar::WorkStopped{};
     }
   };
-  const auto work = [&](const vtkAvianLidarRanks& ranks) { ranks.Together(self, update); };
   if (when != vtkExecutive::BeforeForward || !request->Has(Pipeline::REQUEST_DATA()))
   {
     return 1;
   }
   const vtkAvianLidarRanks ranks(controller, request, outputs);
-  const Outcome outcome = ranks.Alone() ? Outcome::Done : ranks.Run(self, std::cref(work));
-  if (outcome == Outcome::Stopped)
+  if (ranks.Alone() || ranks.Run(self, std::cref(update)))
+  {
+    return 1;
+  }
+  if (ranks.Problem.empty())
   {
     SetAborted(self, false); // the filter does not execute
     vtkAvianLidarGuard::Empty(outputs);
   }
-  return outcome == Outcome::Done;
+  return 0;
 }
 
 //------------------------------------------------------------------------------

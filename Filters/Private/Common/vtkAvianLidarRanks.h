@@ -9,16 +9,16 @@
  * executes any other request (one piece, or pieces of the user's choice) by itself: the rank sends
  * nothing and does not wait.
  *
- * All ranks must make the same calls in the same order. So work that may fail on one rank is a
- * step: if a step fails or stops on one rank, the execution ends on all ranks, by an exception that
- * Execute() catches. Before each exchange every rank reports whether it is ready. If a rank throws
- * between exchanges, it reports that it is not ready, and its error becomes the error of all ranks.
- * If a rank throws within an exchange, for example without memory, the rank ends the job, because
- * the other ranks would wait for ever.
+ * All ranks must make the same calls in the same order. A rank that throws between two calls takes
+ * part in the next call of the other ranks by saying so: the call then throws on all ranks, and the
+ * error becomes the error of all ranks. So errors are agreed once, at the end of an execution. If a
+ * rank throws within a call, for example without memory, the rank ends the job, because the other
+ * ranks would wait for ever.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
 
+#include "vtkCommunicator.h"
 #include "vtkMultiProcessStream.h"
 #include "vtkSmartPointer.h"
 
@@ -27,7 +27,6 @@
 #include <optional>
 #include <sstream>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -63,7 +62,7 @@ public:
 
   /// Run the body of a RequestData on the ranks that execute the request. If the producer of an
   /// input failed on one of these ranks, the body is not run. Returns 0 or 1. No exception leaves
-  /// the function. Failures are handled as in vtkAvianLidarGuarded(). If the work was stopped,
+  /// the function. After an error, outputs are empty and hold the message. If the work was stopped,
   /// outputs are empty.
   template <class Filter, class Work>
   static int Execute(
@@ -71,9 +70,15 @@ public:
   {
     // The body is passed by reference, because a copy takes memory. The other ranks would wait for
     // a rank without memory.
-    return Execute(
-      self, self->GetController(), request, outputs, self->GetErrorsAsData(), std::cref(body));
+    return Execute(self, vtkAvianLidarRanks(self->GetController(), request, outputs), outputs,
+      self->GetErrorsAsData(), std::cref(body));
   }
+
+  /// Run the body of a RequestData on given ranks.
+  static int Execute(vtkAlgorithm* self, const vtkAvianLidarRanks& ranks,
+    vtkInformationVector* outputs, bool errorsAsData, const Body& body);
+
+  vtkAvianLidarRanks() = default; ///< only this process
 
   /// The ranks that execute a request. @param controller processes that may work together; null:
   /// only this process
@@ -87,36 +92,29 @@ public:
   int Rank() const { return this->Mine; }
   int Size() const { return this->Count; }
 
-  /// Run this rank's part of a step. If the step fails or stops on one rank, the function throws on
-  /// all ranks, and Execute() ends.
-  /// @param step function that throws an error, or avianlidar::WorkStopped to stop. `self` reports
-  /// the error of a rank on this rank, and on rank 0 with the number of the rank.
-  template <class Step>
-  void Together(vtkAlgorithm* self, const Step& step) const
-  {
-    static_assert(std::is_void_v<decltype(step())>, "a step throws its error");
-    this->RunStep(self, std::cref(step));
-  }
+  /// Wait for all ranks. Throws on all ranks if one rank threw. To be called before results are
+  /// kept that must be the same on all ranks in the next execution.
+  void Meet() const { this->All(true); }
 
-  /// Gives an error on all ranks if a rank's setting differs from the setting of rank 0, because
-  /// results would be mixed.
+  /// Throws on all ranks if a rank's setting differs from the setting of rank 0, because results
+  /// would be mixed.
   /// @param mine settings of this rank, with the same names on all ranks
-  void AgreeOn(vtkAlgorithm* self, const Settings& mine) const;
+  void AgreeOn(const Settings& mine) const;
 
   /// True if `mine` is true on every rank.
   bool All(bool mine) const;
 
   /// The sum of `mine` over all ranks.
-  double Sum(double mine) const;
+  double Sum(double mine) const { return this->Reduce(mine, vtkCommunicator::SUM_OP); }
 
   /// The largest `mine` of all ranks.
-  double Largest(double mine) const;
+  double Largest(double mine) const { return this->Reduce(mine, vtkCommunicator::MAX_OP); }
 
   /// True if all ranks that have a value have the same value.
   bool Same(std::optional<std::uint64_t> mine) const;
 
-  /// A few numbers and texts of every rank, by rank. All functions Gather() throw on all ranks if
-  /// all ranks together have 2^31 or more values, which VTK cannot send.
+  /// A few numbers and texts of every rank, by rank. All functions Gather() throw if all
+  /// ranks together have 2^31 or more values, which VTK cannot send.
   std::vector<vtkMultiProcessStream> Gather(const vtkMultiProcessStream& mine) const;
 
   /// The values of all ranks, rank by rank. Requires several processes.
@@ -161,44 +159,34 @@ public:
   }
 
 private:
-  enum class Outcome
-  {
-    Done,
-    Stopped, ///< the work was stopped by a user or an observer: empty outputs, no error
-    Failed   ///< the error was reported
-  };
-  struct Ended; ///< thrown on all ranks at once to end an execution
-
-  static int Execute(vtkAlgorithm* self, vtkMultiProcessController* controller,
-    vtkInformation* request, vtkInformationVector* outputs, bool errorsAsData, const Body& body);
   static int UpdateInputs(
     vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
-  Outcome Run(vtkAlgorithm* self, const Body& body) const;
-  Outcome RunTogether(vtkAlgorithm* self, const Body& body) const;
-  void RunStep(vtkAlgorithm* self, const std::function<void()>& step) const;
-  /// Make the error of an exception the error of all ranks. @param mine null if another rank threw
-  /// @return Outcome::Failed
-  Outcome Fail(vtkAlgorithm* self, const char* mine) const noexcept;
-  /// Wait for all ranks. Throws on all ranks if one rank threw. @return the least `mine` of all
+  /// Run the body, and report the first problem of all ranks. @return true after success on all
   /// ranks
-  int Meet(int mine) const;
-  /// Call Meet(), then `work`, in which all ranks send and receive.
+  bool Run(vtkAlgorithm* self, const Body& body) const;
+  double Reduce(double mine, int operation) const;
+  /// Call Meet() and Send(), unless there is only one process.
   template <class Work>
-  void Exchange(Work work) const;
-  /// Share the result of a step with all ranks, and report the first problem.
-  Outcome Share(vtkAlgorithm* self, const std::string& mine, bool meet) const;
+  void Exchange(const Work& work) const;
+  /// Call `work`, in which all ranks send and receive. Throws if `work` returns 0.
+  template <class Work>
+  void Send(const Work& work) const;
   std::vector<vtkMultiProcessStream> GatherStreams(const vtkMultiProcessStream& mine) const;
 
   vtkMultiProcessController* Controller = nullptr; ///< controller of the ranks; null: one process
   int Asked = 0;
   int Mine = 0;
   int Count = 1;
-  mutable std::string Problem;     ///< last problem, the same on all ranks
+  mutable std::string Problem;     ///< problem that Run() reported; empty if the work was stopped
   mutable bool Exchanging = false; ///< true while data are sent
 };
 
-/// Defines ModifyRequest() of a filter whose ranks work together.
-#define vtkAvianLidarCxxModifyRequestMacro(thisClass)               \
+/// Defines what vtkAvianLidarControllerMacro() declares, except SetController().
+#define vtkAvianLidarCxxRanksMacro(thisClass)                       \
+  vtkMultiProcessController* thisClass::GetController()             \
+  {                                                                 \
+    return this->Controller;                                        \
+  }                                                                 \
   int thisClass::ModifyRequest(vtkInformation* request, int when)   \
   {                                                                 \
     return vtkAvianLidarRanks::UpdateInputs(this, request, when) && \
@@ -206,8 +194,8 @@ private:
   }
 
 /// Defines what vtkAvianLidarControllerMacro() declares.
-#define vtkAvianLidarCxxControllerMacro(thisClass)                        \
-  vtkCxxSetObjectMacro(thisClass, Controller, vtkMultiProcessController); \
-  vtkAvianLidarCxxModifyRequestMacro(thisClass)
+#define vtkAvianLidarCxxControllerMacro(thisClass)                              \
+  vtkCxxSetSmartPointerMacro(thisClass, Controller, vtkMultiProcessController); \
+  vtkAvianLidarCxxRanksMacro(thisClass)
 
 #endif

@@ -17,7 +17,6 @@
 #include "vtkAvianLidarSurfaces.h"
 #include "vtkAvianLidarWarnings.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>

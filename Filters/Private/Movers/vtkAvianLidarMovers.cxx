@@ -12,7 +12,6 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
-#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +102,8 @@ vtkSmartPointer<vtkMultiBlockDataSet> Named(vtkDataObject* input)
 }
 
 /// The blocks of all ranks, without blocks that a lower rank has, too.
-vtkSmartPointer<vtkDataObject> United(const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
+vtkSmartPointer<vtkMultiBlockDataSet> United(
+  const std::vector<vtkSmartPointer<vtkDataObject>>& parts)
 {
   auto all = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   std::set<std::uint64_t> known;
@@ -139,10 +139,9 @@ std::size_t ReadNumbers(
   names::RequireShape(array, "field data", components, array->GetNumberOfTuples());
   const auto rows = static_cast<std::size_t>(array->GetNumberOfTuples());
   values.resize(rows * static_cast<std::size_t>(components));
-  for (std::size_t i = 0; i < values.size(); ++i)
+  for (std::size_t i = 0; i < rows; ++i)
   {
-    values[i] = array->GetComponent(
-      static_cast<vtkIdType>(i / static_cast<std::size_t>(components)), i % components);
+    array->GetTuple(static_cast<vtkIdType>(i), &values[i * static_cast<std::size_t>(components)]);
   }
   return rows;
 }
@@ -308,60 +307,30 @@ Mover ReadMover(vtkPolyData* poly, const vtkAvianLidarSurfaces& merged, std::siz
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarMovers::Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
+void vtkAvianLidarMovers::Read(
+  const vtkAvianLidarRanks& ranks, vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces)
 {
-  std::vector<std::string> surfaceNames;
-  vtkAvianLidarContent::State state;
-  bool same = false;
-  ranks.Together(self,
-    [&]()
-    {
-      surfaceNames = surfaces.objectNames;
-      for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
-      {
-        surfaceNames.push_back(std::to_string(surfaceNames.size())); // separator of lists
-        surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
-      }
-      if (input)
-      {
-        state = vtkAvianLidarContent::StateOf(input);
-      }
-      same = this->Known && this->SurfaceNames == surfaceNames && this->ReadBy == ranks.Group() &&
-        state == this->State && (!input || !state.empty());
-    });
+  std::vector<std::string> surfaceNames = surfaces.objectNames;
+  for (const auto* more : { &surfaces.objectClasses, &surfaces.materialNames })
+  {
+    surfaceNames.push_back(std::to_string(surfaceNames.size())); // separator of lists
+    surfaceNames.insert(surfaceNames.end(), more->begin(), more->end());
+  }
+  auto state = input ? vtkAvianLidarContent::StateOf(input) : vtkAvianLidarContent::State();
+  const bool same = this->Known && this->SurfaceNames == surfaceNames &&
+    this->ReadBy == ranks.Group() && state == this->State;
   if (ranks.All(same))
   {
     return;
   }
   this->Known = false;
   vtkSmartPointer<vtkDataObject> all = input;
-  std::vector<vtkSmartPointer<vtkDataObject>> parts;
   if (!ranks.Alone())
   {
-    vtkSmartPointer<vtkMultiBlockDataSet> mine;
-    std::uint64_t hash = 0;
-    ranks.Together(self,
-      [&]()
-      {
-        mine = vtkAvianLidarWithin(MoversPort, [input]() { return Named(input); });
-        hash = HashOfMovers(mine);
-      });
-    all = mine;
-    if (!ranks.Same(hash))
-    {
-      parts = ranks.Gather(mine);
-    }
+    const auto mine = vtkAvianLidarWithin(MoversPort, [input]() { return Named(input); });
+    all = ranks.Same(HashOfMovers(mine)) ? mine : United(ranks.Gather(mine));
   }
-  ranks.Together(self,
-    [&]()
-    {
-      if (!parts.empty())
-      {
-        all = United(parts);
-      }
-      vtkAvianLidarWithin(MoversPort, [&]() { this->ReadAll(all, !ranks.Alone(), surfaces); });
-    });
+  vtkAvianLidarWithin(MoversPort, [&]() { this->ReadAll(all, !ranks.Alone(), surfaces); });
   this->State = std::move(state);
   this->SurfaceNames = std::move(surfaceNames);
   this->ReadBy = ranks.Group();

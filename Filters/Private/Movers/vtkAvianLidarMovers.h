@@ -23,7 +23,6 @@
 #include <string>
 #include <vector>
 
-class vtkAlgorithm;
 class vtkDataObject;
 struct vtkAvianLidarSurfaces;
 
@@ -40,8 +39,8 @@ struct vtkAvianLidarMovers
   /// call this function. Ids of movers are kept if all these ids are larger than the ids of the
   /// surfaces. Otherwise new ids follow the ids of the surfaces.
   /// @param input movers, may be null @param surfaces surfaces, whose ids and names come first
-  void Read(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
-    const vtkAvianLidarSurfaces& surfaces);
+  void Read(
+    const vtkAvianLidarRanks& ranks, vtkDataObject* input, const vtkAvianLidarSurfaces& surfaces);
 
 private:
   /// @param named true if blocks also come from other ranks, with their names as field data

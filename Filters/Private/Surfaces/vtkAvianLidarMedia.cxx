@@ -8,6 +8,7 @@
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarNames.h"
 
 #include "vtkAppendPolyData.h"
@@ -156,11 +157,6 @@ Vec3 VectorOf(const JsonNode& node, const char* key, const Vec3& otherwise)
   return { v[0], v[1], v[2] };
 }
 
-double NumberOr(const JsonNode& node, const char* key, double otherwise)
-{
-  return node.Has(key) ? node.Get(key).Number() : otherwise;
-}
-
 /// Read the closed surface of a text, with the box about the surface.
 void ReadSurface(const JsonNode& node, MediumVolume& volume)
 {
@@ -205,16 +201,17 @@ MediumVolume VolumeOf(const JsonNode& node)
   volume.shape = static_cast<MediumShape>(&ShapeOf(node) - vtkAvianLidarMedia::Shapes().data());
   volume.centre = VectorOf(node, "center", volume.centre);
   volume.velocity = VectorOf(node, "velocity", volume.velocity);
-  volume.bottom = NumberOr(node, "bottom", volume.bottom);
+  volume.bottom = node.Find("bottom", &JsonNode::Number).value_or(volume.bottom);
   volume.top = volume.shape == MediumShape::Layer ? node.Get("top").Number() : volume.top;
-  volume.softness = NumberOr(node, "softness", volume.softness);
+  volume.softness = node.Find("softness", &JsonNode::Number).value_or(volume.softness);
   if (volume.shape == MediumShape::Surface)
   {
     ReadSurface(node, volume);
   }
   else if (volume.isBounded())
   {
-    const double heading = NumberOr(node, "heading", 0.0) * avianlidar::Pi / 180.0;
+    const double heading =
+      node.Find("heading", &JsonNode::Number).value_or(0.0) * avianlidar::Pi / 180.0;
     node.Get("lengths");
     const Vec3 half = 0.5 * VectorOf(node, "lengths", Vec3(0.0));
     volume.halfAxes = { half.x * Vec3(std::cos(heading), -std::sin(heading), 0.0),
@@ -359,15 +356,9 @@ vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& nam
   {
     points->InsertNextPoint(p.x, p.y, p.z);
   }
-  vtkNew<vtkCellArray> polys;
-  for (const auto& t : mesh.triangles)
-  {
-    polys->InsertNextCell(
-      { static_cast<vtkIdType>(t[0]), static_cast<vtkIdType>(t[1]), static_cast<vtkIdType>(t[2]) });
-  }
   auto closed = vtkSmartPointer<vtkPolyData>::New();
   closed->SetPoints(points);
-  closed->SetPolys(polys);
+  closed->SetPolys(vtkAvianLidarMakeTriangles(mesh.triangles, [](std::size_t i) { return i; }));
   return closed;
 }
 
@@ -424,29 +415,24 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarMedia::Surface(
     Read(TextOf(drawn, json.value("name", std::string())), any);
     return drawn;
   }
-  const std::vector<avianlidar::PlacedMedium> all = Read(text, any);
-  MediumVolume volume = all[0].volume;
-  if (!volume.isBounded())
+  vtkNew<vtkAppendPolyData> together;
+  together->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  for (const avianlidar::PlacedMedium& one : Read(text, any))
   {
-    const bool isLayer = volume.shape == MediumShape::Layer;
-    const double low = isLayer ? std::max(volume.bottom, volume.top - size) : -0.5 * size;
-    const double high = isLayer ? volume.top : 0.5 * size;
-    volume.centre += Vec3(0.0, 0.0, 0.5 * (low + high));
-    volume.halfAxes = { Vec3(0.5 * size, 0.0, 0.0), Vec3(0.0, 0.5 * size, 0.0),
-      Vec3(0.0, 0.0, 0.5 * (high - low)) };
-  }
-  drawn = Drawn(volume);
-  if (all.size() > 1)
-  {
-    vtkNew<vtkAppendPolyData> together;
-    together->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-    for (const avianlidar::PlacedMedium& one : all)
+    MediumVolume volume = one.volume;
+    if (!volume.isBounded())
     {
-      together->AddInputData(Drawn(one.volume));
+      const bool isLayer = volume.shape == MediumShape::Layer;
+      const double low = isLayer ? std::max(volume.bottom, volume.top - size) : -0.5 * size;
+      const double high = isLayer ? volume.top : 0.5 * size;
+      volume.centre += Vec3(0.0, 0.0, 0.5 * (low + high));
+      volume.halfAxes = { Vec3(0.5 * size, 0.0, 0.0), Vec3(0.0, 0.5 * size, 0.0),
+        Vec3(0.0, 0.0, 0.5 * (high - low)) };
     }
-    together->Update();
-    drawn->CopyStructure(together->GetOutput());
+    together->AddInputData(Drawn(volume));
   }
+  together->Update();
+  drawn = together->GetOutput();
   vtkAvianLidarArrays::SetFieldStrings(
     drawn->GetFieldData(), vtkAvianLidarArrays::Medium, { text });
   return drawn;

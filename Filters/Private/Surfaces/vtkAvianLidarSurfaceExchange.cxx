@@ -238,8 +238,8 @@ struct vtkAvianLidarSurfaceExchange::Scene
 
 //------------------------------------------------------------------------------
 std::shared_ptr<const vtkAvianLidarSurfaces> vtkAvianLidarSurfaceExchange::Merge(
-  const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
-  const std::string& what, int threads, const std::shared_ptr<const vtkAvianLidarSurfaces>& known)
+  const vtkAvianLidarRanks& ranks, vtkDataObject* input, const std::string& what, int threads,
+  const std::shared_ptr<const vtkAvianLidarSurfaces>& known)
 try
 {
   const int share = ranks.Threads(threads);
@@ -251,20 +251,16 @@ try
   }
   else
   {
-    this->Collect(ranks, self, input, what, scene);
+    this->Collect(ranks, input, what, scene);
   }
   std::shared_ptr<const vtkAvianLidarSurfaces> result = known;
-  ranks.Together(self,
-    [&]()
-    {
-      if (scene.changed)
-      {
-        result = std::make_shared<const vtkAvianLidarSurfaces>(ranks.Alone()
-            ? vtkAvianLidarSurfaces::Merge(input, known.get(), share)
-            : vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, known.get(), share, false));
-      }
-      vtkAvianLidarRequire(result->problem, what);
-    });
+  if (scene.changed)
+  {
+    result = std::make_shared<const vtkAvianLidarSurfaces>(ranks.Alone()
+        ? vtkAvianLidarSurfaces::Merge(input, known.get(), share)
+        : vtkAvianLidarSurfaces::Merge(scene.leaves, this->Fields, known.get(), share, false));
+  }
+  vtkAvianLidarRequire(result->problem, what);
   return result;
 }
 catch (...)
@@ -274,27 +270,23 @@ catch (...)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  vtkDataObject* input, const std::string& what, Scene& scene)
+void vtkAvianLidarSurfaceExchange::Collect(
+  const vtkAvianLidarRanks& ranks, vtkDataObject* input, const std::string& what, Scene& scene)
 {
   std::vector<vtkMultiProcessStream> lists;
   std::uint64_t hash = 0;
-  ranks.Together(self,
-    [&]()
-    {
-      std::string problem;
-      scene.leaves = Leaf::Collect(input, problem);
-      for (const Leaf& leaf : scene.leaves)
-      {
-        const std::string wrong = problem.empty() ? leaf.Check(SurfaceArrays(leaf.data)) : "";
-        problem = wrong.empty() ? problem : leaf.Message(wrong);
-      }
-      scene.fields->GetFieldData()->PassData(input->GetFieldData());
-      vtkAvianLidarScene::Detach(scene.fields); // a scene cannot be sent
-      vtkAvianLidarRequire(problem, what);
-      lists.push_back(ListOf(scene.leaves, scene.fields));
-      hash = HashOf(lists);
-    });
+  std::string problem;
+  scene.leaves = Leaf::Collect(input, problem);
+  for (const Leaf& leaf : scene.leaves)
+  {
+    const std::string wrong = problem.empty() ? leaf.Check(SurfaceArrays(leaf.data)) : "";
+    problem = wrong.empty() ? problem : leaf.Message(wrong);
+  }
+  scene.fields->GetFieldData()->PassData(input->GetFieldData());
+  vtkAvianLidarScene::Detach(scene.fields); // a scene cannot be sent
+  vtkAvianLidarRequire(problem, what);
+  lists.push_back(ListOf(scene.leaves, scene.fields));
+  hash = HashOf(lists);
   const bool same = ranks.Same(hash);
   if (same)
   {
@@ -309,38 +301,34 @@ void vtkAvianLidarSurfaceExchange::Collect(const vtkAvianLidarRanks& ranks, vtkA
   this->Known = hash;
   if (!same && scene.changed)
   {
-    this->Send(ranks, self, what, lists, scene);
+    this->Send(ranks, what, lists, scene);
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self,
-  const std::string& what, std::vector<vtkMultiProcessStream>& lists, Scene& scene)
+void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, const std::string& what,
+  std::vector<vtkMultiProcessStream>& lists, Scene& scene)
 {
   Blocks blocks;
   std::vector<Part*> parts; // parts of all blocks
   int fieldOwner = 0;
-  ranks.Together(self,
-    [&]()
+  std::string wrong = vtkAvianLidarRanks::CheckSize(scene.fields);
+  wrong = wrong.empty() ? wrong : "field data of the surfaces: " + wrong;
+  blocks = BlocksOf(lists, fieldOwner);
+  for (auto& [index, block] : blocks)
+  {
+    for (Part& part : block)
     {
-      std::string wrong = vtkAvianLidarRanks::CheckSize(scene.fields);
-      wrong = wrong.empty() ? wrong : "field data of the surfaces: " + wrong;
-      blocks = BlocksOf(lists, fieldOwner);
-      for (auto& [index, block] : blocks)
+      parts.push_back(&part);
+      if (part.owner == ranks.Rank())
       {
-        for (Part& part : block)
-        {
-          parts.push_back(&part);
-          if (part.owner == ranks.Rank())
-          {
-            part.data = Lean(scene.leaves[part.place].data);
-            const std::string large = vtkAvianLidarRanks::CheckSize(part.data);
-            wrong = large.empty() ? wrong : part.leaf.Message(large);
-          }
-        }
+        part.data = Lean(scene.leaves[part.place].data);
+        const std::string large = vtkAvianLidarRanks::CheckSize(part.data);
+        wrong = large.empty() ? wrong : part.leaf.Message(large);
       }
-      vtkAvianLidarRequire(wrong, what);
-    });
+    }
+  }
+  vtkAvianLidarRequire(wrong, what);
   ranks.Broadcast(scene.fields, fieldOwner, this->BytesSent);
   for (auto next = parts.begin(); next != parts.end();)
   {
@@ -349,30 +337,26 @@ void vtkAvianLidarSurfaceExchange::Send(const vtkAvianLidarRanks& ranks, vtkAlgo
   this->Fields = scene.fields->GetFieldData();
   const std::uint64_t some = this->Fields->GetNumberOfArrays() > 0;
   const bool received = ranks.Same(Leaf::HashOfNames(this->Fields, some));
-  ranks.Together(self,
-    [&]()
+  if (!received)
+  {
+    throw std::bad_alloc(); // VTK leaves out arrays that it has no memory to read
+  }
+  scene.leaves.clear();
+  for (const auto& [index, block] : blocks)
+  {
+    for (auto next = block.begin(); next != block.end();)
     {
-      if (!received)
+      const auto first = next;
+      next = std::find_if(
+        first, block.end(), [&](const Part& part) { return !AreAlike(first->data, part.data); });
+      scene.kept.push_back(Join(first, next));
+      Leaf leaf = block[0].leaf;
+      leaf.data = scene.kept.back();
+      if (!leaf.named && !leaf.name.empty())
       {
-        throw std::bad_alloc(); // VTK leaves out arrays that it has no memory to read
+        leaf.name = Leaf::NameOfBlock(scene.leaves.size());
       }
-      scene.leaves.clear();
-      for (const auto& [index, block] : blocks)
-      {
-        for (auto next = block.begin(); next != block.end();)
-        {
-          const auto first = next;
-          next = std::find_if(first, block.end(),
-            [&](const Part& part) { return !AreAlike(first->data, part.data); });
-          scene.kept.push_back(Join(first, next));
-          Leaf leaf = block[0].leaf;
-          leaf.data = scene.kept.back();
-          if (!leaf.named && !leaf.name.empty())
-          {
-            leaf.name = Leaf::NameOfBlock(scene.leaves.size());
-          }
-          scene.leaves.push_back(leaf);
-        }
-      }
-    });
+      scene.leaves.push_back(leaf);
+    }
+  }
 }

@@ -26,7 +26,6 @@
 #include <optional>
 #include <string>
 
-class vtkAlgorithm;
 class vtkDataObject;
 struct vtkAvianLidarSurfaces;
 
@@ -39,7 +38,7 @@ public:
   /// call, null at first. If no surface changed, `known` is returned. Otherwise the new result
   /// shares the unchanged parts of `known`.
   std::shared_ptr<const vtkAvianLidarSurfaces> Merge(const vtkAvianLidarRanks& ranks,
-    vtkAlgorithm* self, vtkDataObject* input, const std::string& what, int threads,
+    vtkDataObject* input, const std::string& what, int threads,
     const std::shared_ptr<const vtkAvianLidarSurfaces>& known);
 
   /// Treat the next scene as new, because the result of the last call was not used.
@@ -50,9 +49,9 @@ public:
 
 private:
   struct Scene;
-  void Collect(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, vtkDataObject* input,
-    const std::string& what, Scene& scene);
-  void Send(const vtkAvianLidarRanks& ranks, vtkAlgorithm* self, const std::string& what,
+  void Collect(
+    const vtkAvianLidarRanks& ranks, vtkDataObject* input, const std::string& what, Scene& scene);
+  void Send(const vtkAvianLidarRanks& ranks, const std::string& what,
     std::vector<vtkMultiProcessStream>& lists, Scene& scene);
 
   std::optional<std::uint64_t> Known; ///< hash of the ranks' surfaces at the last exchange
