@@ -262,7 +262,7 @@ class Sequences(Applications):
         for name, damage, words in (("truth.csv", "gone", "its files differ from the sha256"),
                                     ("labels/000001.label", "changed", "its files differ from the sha256"),
                                     ("velodyne/000000.bin", "changed", "its files differ from the sha256"),
-                                    ("velodyne/000000.bin", "short", "1 of 2 scans are complete")):
+                                    ("velodyne/000000.bin", "short", "its files differ from the sha256")):
             with self.subTest(name, damage=damage):
                 file = first / name
                 kept = file.read_bytes()

@@ -12,7 +12,7 @@ import numpy as np
 import avianlidar as al
 from avianlidar import _command
 from avianlidar.apps import _bench
-from avianlidar.apps._bench import Bench, Points
+from avianlidar.apps._bench import Points, write_bench
 from helpertools import rows_of
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"
@@ -131,12 +131,12 @@ class Files(unittest.TestCase):
         write_predictions(OUTPUT / "noisy", cls.labels, lambda kind: np.full(len(kind), BIRD + (7 << 16)), lambda kind: next(scores))
 
     def test_right_predictions_have_all(self):
-        scored = Bench([self.home], [OUTPUT / "right"]).write(OUTPUT / "out")[0][0]
+        scored = write_bench([self.home], [OUTPUT / "right"], OUTPUT / "out")[0][0]
         for score, value in {"recall_at_1": 1, "average_precision": 1, "iou": 1, "recall": 1, "precision": 1, "false": 0, "lost": 0, "others": 0}.items():
             self.assertEqual(scored.value(("all", ""), score)[:2], (value, 0), score)
 
     def test_groups_hold_all_points(self):
-        scored = Bench([self.home], [OUTPUT / "all"]).write(OUTPUT / "out")[0][0]
+        scored = write_bench([self.home], [OUTPUT / "all"], OUTPUT / "out")[0][0]
         birds = sum(int((kind == BIRD).sum()) for kind in self.labels.values())
         for by in ("all", "subset", "range", "species"):
             self.assertEqual(sum(scored.points(group) for group in scored.values if group[0] == by), birds, by)
@@ -173,10 +173,10 @@ class Files(unittest.TestCase):
         labels = write_set(OUTPUT / "second", bird_class=259, sequences=1)
         for name, found, bird in (("set", self.labels, BIRD), ("second", labels, 259)):
             write_predictions(OUTPUT / "both" / name, found, lambda kind, bird=bird: np.where(kind == bird, bird, 1))
-        by_set = Bench([self.home, OUTPUT / "second"], [OUTPUT / "both"], ["00"]).write(OUTPUT / "out")
+        by_set = write_bench([self.home, OUTPUT / "second"], [OUTPUT / "both"], OUTPUT / "out", ["00"])
         self.assertEqual([(len(scored.values["all", ""]), scored.value(("all", ""), "iou").value) for scored, in by_set], [(1, 1), (1, 1)])
         with self.assertRaisesRegex(al.Error, "right: holds no predictions for second"):
-            Bench([OUTPUT / "second", self.home], [OUTPUT / "right"])
+            write_bench([OUTPUT / "second", self.home], [OUTPUT / "right"], OUTPUT / "out")
 
     def test_bad_input(self):
         wrong = OUTPUT / "wrong"
@@ -200,7 +200,7 @@ class Files(unittest.TestCase):
             if spoil:
                 spoil()
             with self.subTest(words), self.assertRaisesRegex(al.Error, words):
-                Bench([folder], [wrong], **options).write(OUTPUT / "out-wrong")
+                write_bench([folder], [wrong], OUTPUT / "out-wrong", **options)
             self.assertFalse((OUTPUT / "out-wrong").exists())
         with self.assertRaisesRegex(al.Error, "two are called wrong"):
-            Bench([self.home], [wrong, wrong])
+            write_bench([self.home], [wrong, wrong], OUTPUT / "out")

@@ -10,7 +10,7 @@ import TestSequence
 import avianlidar as al
 from avianlidar import _command
 from avianlidar.apps import _card, _following, _report
-from avianlidar.apps._following import ORIGINS, Input, Live, Scorer
+from avianlidar.apps._following import ORIGINS, TRACK, Input, Live, score
 from avianlidar.apps._inputs import read_plan
 from avianlidar.siting import Runway
 from exampletools import emptied
@@ -40,9 +40,8 @@ def row(bird, time, place, within=True):
 
 def live(time, *tracks, points=()):
     """Tracks (id, confirmed, place, velocity) at a time; points by their tracks."""
-    ids, sure, places, velocities = zip(*tracks) if tracks else ((), (), (), ())
-    return Live(np.array(ids, int), np.array(sure, bool), np.full(len(ids), time), np.array(places, float).reshape(-1, 3),
-                np.array(velocities, float).reshape(-1, 3), np.array(points, int), np.zeros(len(points), bool))
+    states = [(track, sure, time, tuple(place), velocity) for track, sure, place, velocity in tracks]
+    return Live(np.array(states, TRACK), np.array(points, int), np.zeros(len(points), bool))
 
 
 class Scores(unittest.TestCase):
@@ -50,7 +49,7 @@ class Scores(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        scorer = Scorer(10.0, 1.0, [Runway("09/27", (150.0, 0.0), (1000.0, 0.0), 45.0)])
+        scans = []
         for k in range(12):
             time, place = 2.0 * k, (20.0 * k, 3.0, 10.0)
             rows = [row(1, time + 0.5, (20.0 * k + 5.0, 3.0, 10.0), within=k >= 2), row(2, time, (0.0, 500.0, 10.0))]
@@ -59,8 +58,9 @@ class Scores(unittest.TestCase):
                 tracks.append((0 if k < 7 else 5, k >= 5 and k != 6, place, (10.0, 0.0, 0.0)))
             if k >= 4:
                 tracks += [(1, True, (300.0, 300.0, 5.0), (0.0, 0.0, 0.0)), (2, k > 8, (-50.0, 60.0, 1.0), (5.0, 0.0, 0.0))]
-            scorer.add(k, rows, live(time, *tracks, points=[track for track, *_ in tracks]), np.array([{1: CLUTTER, 2: VEHICLE}.get(t, BIRD) for t, *_ in tracks]))
-        cls.found = scorer.results()
+            scans.append((k, rows, live(time, *tracks, points=[track for track, *_ in tracks]),
+                          np.array([{1: CLUTTER, 2: VEHICLE}.get(t, BIRD) for t, *_ in tracks], int)))
+        cls.found = score(scans, 10.0, 1.0, [Runway("09/27", (150.0, 0.0), (1000.0, 0.0), 45.0)])
         cls.birds = {bird["bird"]: bird for bird in cls.found["birds"]}
         cls.tracks = {track["track"]: track for track in cls.found["tracks"]}
 
@@ -74,12 +74,12 @@ class Scores(unittest.TestCase):
 
     def test_from_one_volume_into_the_other(self):
         """Two runways, two ends: birds that begin in a strip or below a glide path are warned of before the other one. One that stays counts nowhere."""
-        scorer = Scorer(10.0, 1.0, [Runway("a", (0.0, 0.0), (1000.0, 0.0), 45.0), Runway("b", (0.0, 400.0), (1000.0, 400.0), 45.0)])
+        runways, scans = [Runway("a", (0.0, 0.0), (1000.0, 0.0), 45.0), Runway("b", (0.0, 400.0), (1000.0, 400.0), 45.0)], []
         for k in range(20):  # north from strip to strip, 20 m a scan; east over a runway from one glide path to the other, 100 m a scan; and back and forth
             rows = [row(1, 2.0 * k, (500.0, 20.0 * k, 10.0)), row(2, 2.0 * k, (100.0 * k - 450.0, 0.0, 40.0)), row(3, 2.0 * k, (500.0, 160.0 * (k % 2), 10.0))]
             tracks = [(0, k >= 5, rows[0]["place"], (0.0, 10.0, 0.0))]
-            scorer.add(k, rows, live(2.0 * k, *tracks, points=[0]), np.array([BIRD]))
-        birds = scorer.results()["birds"]
+            scans.append((k, rows, live(2.0 * k, *tracks, points=[0]), np.array([BIRD])))
+        birds = score(scans, 10.0, 1.0, runways)["birds"]
         self.assertEqual([(bird["strip"], bird["glide path"]) for bird in birds], [(26.0, None), (10.0, 30.0), (None, None)])
         np.testing.assert_allclose(_card.warnings_of(birds, "strip"), [16.0, 0.0])
         np.testing.assert_allclose(_card.warnings_of(birds, "glide path"), [0.0])
@@ -100,30 +100,27 @@ class Scores(unittest.TestCase):
 
     def test_card(self):
         of = _card.of_birds(self.found["birds"])
-        self.assertEqual((of["tracked"].value, of["tracked"].number), (0.5, 2))
-        self.assertAlmostEqual(of["time"].value, 6 / 22)
-        self.assertEqual((of["delay"].value, of["switches"].value), (6.0, 1.0))
+        self.assertEqual((of["birds tracked"][1].value, of["birds tracked"][1].number), (0.5, 2))
+        self.assertAlmostEqual(of["share of time"][1].value, 6 / 22)
+        self.assertEqual((of["delay"][1].value, of["identity switches"][1].value), (6.0, 1.0))
         tracks = _card.of_tracks([{**self.found, "seconds": 24.0}])
-        self.assertAlmostEqual(tracks["false"].value, 150.0)
-        self.assertAlmostEqual(tracks["vehicle"].value, 150.0)
-        self.assertAlmostEqual(tracks["ospa"].value, np.mean([distance for distance, _, _ in self.found["ospa"]]))
+        self.assertAlmostEqual(tracks["false tracks an hour"][1].value, 150.0)
+        self.assertAlmostEqual(tracks["tracks of vehicles an hour"][1].value, 150.0)
+        self.assertAlmostEqual(tracks["OSPA distance"][1].value, np.mean([distance for distance, _, _ in self.found["ospa"]]))
 
     def test_a_second_track_of_a_bird(self):
-        scorer = Scorer(10.0, 2.0, [])
-        for k in range(3):
-            scorer.add(k, [row(1, 2.0 * k, (0.0, 0.0, 10.0))], live(2.0 * k, (0, True, (0.0, 0.0, 10.0), (0, 0, 0)), (1, True, (4.0, 0.0, 10.0), (0, 0, 0)),
-                                                                    points=[0, 1, 1]), np.array([BIRD, BIRD, CLUTTER]))
-        self.assertEqual([track["origin"] for track in scorer.results()["tracks"]], ["bird", "second track of a bird"])
+        scans = [(k, [row(1, 2.0 * k, (0.0, 0.0, 10.0))], live(2.0 * k, (0, True, (0.0, 0.0, 10.0), (0, 0, 0)), (1, True, (4.0, 0.0, 10.0), (0, 0, 0)),
+                                                               points=[0, 1, 1]), np.array([BIRD, BIRD, CLUTTER])) for k in range(3)]
+        found = score(scans, 10.0, 2.0, [])
+        self.assertEqual([track["origin"] for track in found["tracks"]], ["bird", "second track of a bird"])
 
     def test_flocks(self):
         """One track for two birds: one is tracked, both are beside it."""
-        scorer = Scorer(10.0, 2.0, [])
-        for k in range(3):
-            scorer.add(k, [row(1, 2.0 * k, (0.0, 0.0, 10.0)), row(2, 2.0 * k, (2.0, 0.0, 10.0))],
-                       live(2.0 * k, (0, True, (0.5, 0.0, 10.0), (0, 0, 0)), points=[0]), np.array([BIRD]))
-        birds = scorer.results()["birds"]
+        scans = [(k, [row(1, 2.0 * k, (0.0, 0.0, 10.0)), row(2, 2.0 * k, (2.0, 0.0, 10.0))],
+                  live(2.0 * k, (0, True, (0.5, 0.0, 10.0), (0, 0, 0)), points=[0]), np.array([BIRD])) for k in range(3)]
+        birds = score(scans, 10.0, 2.0, [])["birds"]
         self.assertEqual([(bird["tracked"], bird["near"]) for bird in birds], [(3, 3), (0, 3)])
-        self.assertEqual([_card.of_birds(birds)[name].value for name in ("tracked", "near")], [0.5, 1.0])
+        self.assertEqual([value.value for _, value in list(_card.of_birds(birds).values())[:2]], [0.5, 1.0])
 
     def test_origins_of_labels(self):
         labels = np.array([99 | 10001 << 16, 252 | 1001 << 16, 1, 0, 50 | 3 << 16, 0 | 4 << 16], np.uint32)
@@ -132,7 +129,7 @@ class Scores(unittest.TestCase):
     def test_bands_and_warnings_at_their_borders(self):
         self.assertEqual([_card.band_of(h) for h in (-1, 9.9, 10, 59, 60)],
                          ["below 10 m", "below 10 m", "10 to 30 m", "30 to 60 m", "above 60 m"])
-        self.assertEqual([score.value for _, _, score in _card.of_warnings(np.array([0.0, 10, 29, 60]))],
+        self.assertEqual([score.value for _, score in _card.of_warnings(np.array([0.0, 10, 29, 60])).values()],
                          [24.75, 0.75, 0.75, 0.25, 0.25])
 
 
@@ -247,7 +244,7 @@ class Files(unittest.TestCase):
         (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
         (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
         for inputs, settings, words in (
-                ((empty,), {}, "no manifest.json"), ((cut,), {}, "truth.csv: is missing"), ((changed,), {}, "its files differ from the sha256"),
+                ((empty,), {}, "no manifest.json"), ((cut,), {}, "cut.*/01: its files differ"), ((changed,), {}, "its files differ from the sha256"),
                 ((other,), {}, "another sensor"), ((self.made, self.made), {}, "twice"),
                 ((self.made,), {"learning_scans": self.SCANS}, "more than the"),
                 ((self.made,), {"runways": self.home / "none.geojson"}, "holds no runway"), ((self.made,), {"tracker": {"hits": 3}}, "hits"),

@@ -93,13 +93,12 @@ class Volumes(unittest.TestCase):
             found = scores.in_wedge(on + move, (0, 0), (-1.0, 0.0), 3000.0, (75.0, 0.15), (15.0, slope))
             self.assertEqual(bool(found[0]), inside, move)
 
-    def test_entry(self):
-        times = [10.0, 12.0, 14.0, 16.0]
-        for inside, when in (([[0, 0, 1, 1]], 14.0), ([[0, 0, 0, 1]], 16.0), ([[0, 1, 0, 1]], 12.0), ([[0, 0, 0, 1], [0, 1, 0, 0]], 12.0),
-                             ([[1, 1, 0, 0], [0, 0, 1, 1]], 14.0), ([[1, 0, 1, 0], [0, 0, 0, 1]], 16.0)):  # from one volume into the other
-            self.assertEqual(scores.entry(times, np.array(inside, bool)), when)
+    def test_entered(self):
+        for inside, first in (([[0, 0, 1, 1]], 2), ([[0, 0, 0, 1]], 3), ([[0, 1, 0, 1]], 1), ([[0, 0, 0, 1], [0, 1, 0, 0]], 1),
+                              ([[1, 1, 0, 0], [0, 0, 1, 1]], 2), ([[1, 0, 1, 0], [0, 0, 0, 1]], 3)):  # from one volume into the other
+            self.assertEqual(np.flatnonzero(scores.entered(np.array(inside, bool)))[0], first)
         for inside in ([[0, 0, 0, 0]], [[1, 1, 1, 0]], [[1, 0, 0, 1]], [[1, 1, 0, 0], [1, 1, 1, 1]], np.zeros((0, 4))):
-            self.assertTrue(math.isnan(scores.entry(times, np.array(inside, bool))))
+            self.assertFalse(scores.entered(np.array(inside, bool)).any())
 
 
 class Errors(unittest.TestCase):

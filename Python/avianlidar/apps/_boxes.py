@@ -24,13 +24,14 @@ def _rotation(times: np.ndarray, quaternions: np.ndarray, time: float) -> np.nda
 def _parts(n: int) -> np.ndarray:
     """Centres of n*n equal parts of a triangle, in barycentric coordinates."""
     upright = [(i, j) for i in range(n) for j in range(n - i)]
-    corners = [(3 * i + 1, 3 * j + 1) for i, j in upright] + [(3 * i + 2, 3 * j + 2) for i, j in upright if i + j < n - 1]
+    corners = [*((3 * i + 1, 3 * j + 1) for i, j in upright),
+               *((3 * i + 2, 3 * j + 2) for i, j in upright if i + j < n - 1)]
     return np.array([(a, b, 3 * n - a - b) for a, b in corners]) / (3 * n)
 
 
 class Boxes:
-    """Boxes of the movers of scans. Surfaces of the scene hide movers. The field of view cuts movers: it contains the azimuths,
-    elevations and ranges between the sensor's outermost beams."""
+    """Boxes of the movers of scans. Surfaces of the scene hide movers. The field of view cuts movers: it contains the
+    azimuths, elevations and ranges between the sensor's outermost beams."""
 
     def __init__(self, surfaces: vtkPolyData, sensor, pose: np.ndarray):
         """sensor  a Sensor, at rest
@@ -56,10 +57,13 @@ class Boxes:
         return np.arctan2(rows[:, 1], rows[:, 0]), np.arctan2(rows[:, 2], np.hypot(rows[:, 0], rows[:, 1]))
 
     def lines(self, report: Cloud, movers) -> str:
-        """A line for each mover in the field of view. @param report the mover report @param movers the composite of movers of the scan"""
+        """A line for each mover in the field of view. @param report the mover report @param movers of the scan"""
         blocks = {int(block.GetCellData().GetArray("object_id").GetTuple1(0)): block for block in leaves_of(movers)}
-        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes")] if report.number_of_points else [[]]
-        return "".join(self._line(blocks[number], number, 1e-6 * time, points, place) for number, time, points, place in zip(*columns, report.points))
+        if not report.number_of_points:
+            return ""
+        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes")]
+        return "".join(self._line(blocks[number], number, 1e-6 * time, points, place)
+                       for number, time, points, place in zip(*columns, report.points))
 
     def _line(self, block: vtkPolyData, number: int, time: float, points: int, place: np.ndarray) -> str:
         fields = field_values(block)
@@ -74,8 +78,8 @@ class Boxes:
         centre = (rotation @ bounds.mean(axis=1) + place - self.pose[:, 3]) @ self.pose[:, :3]
         ahead = rotation[:, 1] @ self.pose[:, :3]
         name = "_".join(str(fields["object_classes"][0]).split()) or "object"
-        numbers = (*centre, length, width, height, np.arctan2(ahead[1], ahead[0]))
-        return f"{name} {truncated:.2f} {hidden:.2f} {' '.join(f'{value:.4f}' for value in numbers)} {number} {points}\n"
+        numbers = " ".join(f"{value:.4f}" for value in (*centre, length, width, height, np.arctan2(ahead[1], ahead[0])))
+        return f"{name} {truncated:.2f} {hidden:.2f} {numbers} {number} {points}\n"
 
     def _shares(self, triangles: np.ndarray) -> Tuple[float, float]:
         """The share of the visible side that is outside the field of view, and the hidden share of the rest."""
@@ -83,7 +87,7 @@ class Boxes:
         centres = np.einsum("pc,tcx->tpx", parts, triangles).reshape(-1, 3)
         views = centres - place
         ranges = np.linalg.norm(views, axis=1)
-        across = np.repeat(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), len(parts), axis=0)
+        across = np.repeat(np.cross(*np.diff(triangles, axis=1).transpose(1, 0, 2)), len(parts), axis=0)
         weights = np.abs(np.einsum("ij,ij->i", across, views)) / ranges**3  # solid angles
         turned, up = self._angles(views @ self.pose[:, :3])
         inside = (up >= self.low) & (up <= self.high) & ((turned - self.begin) % (2 * np.pi) <= self.width)

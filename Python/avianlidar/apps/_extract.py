@@ -11,7 +11,7 @@ from typing import Any, Counter, Dict, List, Optional, Set, Tuple
 import numpy as np
 from osgeo import ogr
 
-from ._features import HEIGHTS, Feature, Table, fits, height_name, length_of, levels_of, properties_of
+from ._features import HEIGHTS, Feature, Table, height_name, length_of, levels_of, properties_of
 from ._gdal import corners_of, form_of, geometry, is_closed, parts_of, solid, union, valid
 
 COAST = "coastline"
@@ -48,7 +48,8 @@ class Extract:
 
     def __init__(self, known: Dict[str, Any]):
         self.known = known
-        self.kinds = {form: Table((kind, tags) for kind, rule in known["kinds"].items() if form in rule["from"] for tags in rule["tags"])
+        kinds = known["kinds"].items()
+        self.kinds = {form: Table((kind, tags) for kind, rule in kinds if form in rule["from"] for tags in rule["tags"])
                       for form in ("point", "line", "area")}
         self.reasons = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
         self.lines, self.model_tags = (Table(("", tags) for tags in known[name]) for name in ("lines", "models"))
@@ -59,7 +60,8 @@ class Extract:
         self.left: List[Feature] = []
         self.used: Counter[str] = collections.Counter()  # features that the scene follows but does not draw
         self.unknown: Counter[str] = collections.Counter()  # by tag
-        self.seen: Dict[Any, List[Tuple[int, Feature]]] = collections.defaultdict(list)  # with ranks: of two alike the greater counts
+        # With ranks: the greater of two alike features counts.
+        self.seen: Dict[Any, List[Tuple[int, Feature]]] = collections.defaultdict(list)
         self.today = datetime.date.today().isoformat()
         self.cut: Set[str] = set()  # ways of which nodes are missing
 
@@ -67,7 +69,7 @@ class Extract:
         self.left.append(feature.left(reason))
 
     def hear(self, words: str) -> None:
-        """What GDAL's OSM driver says: it leaves out relations that are not complete, and ways of fewer than two nodes."""
+        """What GDAL's OSM driver says: it leaves out incomplete relations, and ways of fewer than two nodes."""
         part = re.search(r"For way (-?\d+), got only", words)
         gone = re.search(r"(Way|Relation) (-?\d+) (?:has missing ways|with \d+ nodes( that)?)", words)
         if part:
@@ -83,9 +85,10 @@ class Extract:
         # GDAL's own idea of polygons: closed ways of aeroway, and others with area=yes, which it drops.
         is_way = form == "line" or ("aeroway" in tags) == ("osm_way_id" in tags)
         solid = closed and (is_area or not is_way or self.lines.find(tags) is None)
-        takes = {"point": is_point, "area": solid, "line": not is_point and (not (closed and is_area) or "barrier" in tags)}
+        is_line = not is_point and (not (closed and is_area) or "barrier" in tags)
+        takes = {"point": is_point, "area": solid, "line": is_line}
         found = {one: self.kinds[one].find(tags) for one, fitting in takes.items() if fitting}
-        known = [(kind, one) for one, kind in found.items() if kind is not None and (one, kind) != ("line", found.get("area"))]
+        known = [(kind, one) for one, kind in found.items() if kind and (one, kind) != ("line", found.get("area"))]
         has_height = any(length_of(tags[name]) for name in HEIGHTS if name in tags)
         if not known and has_height and (is_point or (solid and not any(name in tags for name in self.known["low"]))):
             known = [("obstacle", "point" if is_point else "area")]
@@ -94,8 +97,10 @@ class Extract:
     def take(self, tags: Dict[str, str], shape) -> None:
         """A feature. @param shape ogr, degrees; may be None"""
         tags, form = _as_osm(tags, self.known), form_of(shape)
-        if fits(tags, {"type": "building", "building": "*"}) and not form and shape is not None:  # a relation of outlines and parts
-            shape, form = union([solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]), "area"
+        if tags.get("type") == "building" and "building" in tags and not form and shape is not None:
+            # a relation of outlines and parts
+            areas = [solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]
+            shape, form = union(areas), "area"
         one, corners = Feature("", tags, shape), corners_of(shape) if form else np.empty((0, 2))
         if not len(corners):
             if shape is None or shape.IsEmpty():
@@ -111,7 +116,7 @@ class Extract:
         if tags.get("aeroway") == "threshold" and form == "point":
             use = "threshold"
             self.thresholds.append(one)
-        elif tags.get("aeroway") == "aerodrome" and "heliport" not in (tags.get("aerodrome:type"), tags.get("aerodrome")):
+        elif tags.get("aeroway") == "aerodrome" and "heliport" not in map(tags.get, ("aerodrome:type", "aerodrome")):
             outline = solid(shape) if closed else shape
             if not outline.IsEmpty():
                 use = "aerodrome"
@@ -142,19 +147,22 @@ class Extract:
             if date and (date[0] > today if name == "start_date" else date[0] < today):
                 return reason
         underground = tags.get("building:levels") == "0" and levels_of(tags.get("building:levels:underground"))
-        return self.reasons.find(tags) or ("below ground" if underground and not any(name in tags for name in (*HEIGHTS, "roof:levels")) else None)
+        below = underground and tags.keys().isdisjoint((*HEIGHTS, "roof:levels"))
+        return self.reasons.find(tags) or ("below ground" if below else None)
 
     def _leave_unknown(self, one: Feature, form: str, use: str) -> None:
-        """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all else.
-        @param use what it is used for, or empty"""
-        gone = {rest: (word, self.known["lifecycle"][state]) for name, word in one.tags.items() for state, _, rest in [name.partition(":")]
-                if rest and state in self.known["lifecycle"]}
-        was = self.kinds["area" if form == "line" else form].find({name: word for name, (word, _) in gone.items()})
+        """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all
+        else. @param use what it is used for, or empty"""
+        lifecycle = self.known["lifecycle"]
+        gone = {name: name.split(":", 1) for name in one.tags if ":" in name and name.split(":")[0] in lifecycle}
+        rests = {rest: one.tags[name] for name, (_, rest) in gone.items()}
+        was = self.kinds["area" if form == "line" else form].find(rests)
         one.kind = was or (form != "area" and self.kinds["area"].find(one.tags)) or ""
         if was:
-            self.leave(one, next(iter(gone.values()))[1])
+            self.leave(one, lifecycle[next(iter(gone.values()))[0]])
         elif "height" in self.known["kinds"].get(one.kind, ()):
-            reason = "a point without an outline" if form == "point" else CUT if one.tags.get("osm_way_id") in self.cut else "unclosed"
+            is_cut = one.tags.get("osm_way_id") in self.cut
+            reason = "a point without an outline" if form == "point" else CUT if is_cut else "unclosed"
             self.leave(one, self._reason(one.tags) or reason)
         elif use:
             self.used[use] += 1
@@ -166,8 +174,8 @@ class Extract:
         self.unknown[f"{name}={tags[name]}" if name else "others"] += 1
 
     def _keep(self, one: Feature, form: str, corners: np.ndarray) -> None:
-        """Once each: extracts repeat closed ways as lines and areas, and the outer way of a relation. What stands above or beyond
-        another of the same corners is another."""
+        """Once each: extracts repeat closed ways as lines and areas, and the outer way of a relation. What stands above
+        or beyond another of the same corners is another."""
         alike = self.seen[one.kind, frozenset(map(tuple, np.round(corners, 9).tolist()))]
         rank = 99 if form == "line" else sum(max(part.GetGeometryCount(), 1) for part in parts_of(one.shape))
         for number, (other_rank, other) in enumerate(alike):
@@ -175,20 +183,21 @@ class Extract:
             if greater is not None:
                 lesser = other if greater is one else one
                 self.leave(lesser, TWICE)
-                alike[number] = max(rank, other_rank), Feature(one.kind, {**lesser.tags, **greater.tags}, (one if rank > other_rank else other).shape)
+                shape = (one if rank > other_rank else other).shape
+                alike[number] = max(rank, other_rank), Feature(one.kind, {**lesser.tags, **greater.tags}, shape)
                 return
         alike.append((rank, one))
 
     def _greater(self, one: Feature, other: Feature) -> Optional[Feature]:
-        """Which of two in one place counts: the one whose height is not assumed, else the one that reaches from below to above the
-        other. None where neither does."""
+        """Which of two in one place counts: the one whose height is not assumed, else the one that reaches from below
+        to above the other. None where neither does."""
         rule = self.known["kinds"].get(one.kind, {})
         if "height" not in rule:
             return other
-        name, spans = height_name(rule), []
-        for row in (properties_of(each, self.known) for each in (one, other)):
-            spans.append((row[f"{name}_from"].startswith("assumed") and "min_height" not in row, row.get("min_height", 0.0), row[name]))
-        (is_assumed, low, high), (is_other_assumed, other_low, other_high) = spans
+        name, rows = height_name(rule), [properties_of(each, self.known) for each in (one, other)]
+        is_assumed, is_other_assumed = ("min_height" not in row and row[f"{name}_from"].startswith("assumed")
+                                        for row in rows)
+        (low, high), (other_low, other_high) = ((row.get("min_height", 0.0), row[name]) for row in rows)
         if is_assumed or (not is_other_assumed and other_low <= low and high <= other_high):
             return other
         return one if is_other_assumed or (low <= other_low and other_high <= high) else None
@@ -204,15 +213,16 @@ class Extract:
 
 
 def without_parts(features: List[Feature], known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
-    """Buildings of which parts are drawn lose the ground below these, so that parts may be lower than their outline. @return features,
-    and the buildings that are nothing but their parts"""
+    """Buildings of which parts are drawn lose the ground below these, so that parts may be lower than their outline.
+    @return features, and the buildings that are nothing but their parts"""
     parts = [one for one in features if one.kind == "part" and "min_height" not in properties_of(one, known)]
     boxes = np.array([part.shape.GetEnvelope() for part in parts]).reshape(-1, 4)
     kept: List[Feature] = []
     drawn: List[Feature] = []
     for one in features:
         rule, rest = known["kinds"][one.kind], None
-        if one.kind != "part" and form_of(one.shape) == "area" and ("level_height" in rule or rule["class"] in ("building", "house")):
+        is_building = "level_height" in rule or rule["class"] in ("building", "house")
+        if one.kind != "part" and form_of(one.shape) == "area" and is_building:
             west, east, south, north = one.shape.GetEnvelope()
             near = (boxes[:, 0] <= east) & (boxes[:, 1] >= west) & (boxes[:, 2] <= north) & (boxes[:, 3] >= south)
             whole = valid(one.shape)
@@ -227,8 +237,8 @@ def without_parts(features: List[Feature], known: Dict[str, Any]) -> Tuple[List[
 
 
 def sea(features: List[Feature], box) -> List[Any]:
-    """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. A polygon is an island. None where
-    coastlines end within the box. @param box ogr, degrees, as the areas"""
+    """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. A polygon is an island. None
+    where coastlines end within the box. @param box ogr, degrees, as the areas"""
     lines, right = box.Boundary(), []
     for part in (part for one in features for part in parts_of(one.shape)):
         points = corners_of(part)
@@ -237,7 +247,7 @@ def sea(features: List[Feature], box) -> List[Any]:
         coast = geometry("LineString", points).Intersection(box)
         lines = lines.Union(coast)
         for ends in map(corners_of, parts_of(coast)):
-            ways = np.diff(ends, axis=0)
-            right += [geometry("Point", at) for at in (ends[:-1] + ends[1:]) / 2 + 1e-3 * np.column_stack([ways[:, 1], -ways[:, 0]])]
+            beside = 1e-3 * np.diff(ends, axis=0)[:, ::-1] * (1, -1)
+            right += [geometry("Point", at) for at in (ends[:-1] + ends[1:]) / 2 + beside]
     found = [face for face in parts_of(lines.Polygonize()) if any(map(face.Contains, right))] if right else []
     return [] if sum(face.Area() for face in found) > 0.999 * box.Area() else found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Features of extracts: the kind of each feature by the rules (`airport.json`), and the properties that the scene file reads."""
+"""Features of extracts: their kinds by the rules (`airport.json`), and the properties that the scene file reads."""
 from __future__ import annotations
 
 import collections
@@ -16,10 +16,14 @@ TALLEST = 1000.0  # greatest plausible height, m
 LONGEST_LENGTH = 100  # characters
 THOUSANDS = "[, \u00a0\u202f'\u2019]"  # separators between groups of three digits
 NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
-LENGTH = re.compile(rf"(?:~|<|>|≈|\+|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*(?:(?:±|\+/?-)\s*(?:{NUMBER})|\+)?\s*"
-                    r"(mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|м|метр\w*|米|ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?)?\.?"
-                    rf"\s*-?\s*(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?|high|tall|hoch)?", re.IGNORECASE)
-UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}  # m, by the unit's beginning
+UNIT = (r"mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|м|метр\w*|米|"
+        r"ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?")
+LENGTH = re.compile(rf"(?:~|<|>|≈|\+|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*"
+                    rf"(?:(?:±|\+/?-)\s*(?:{NUMBER})|\+)?\s*({UNIT})?\.?\s*-?\s*"
+                    rf"(?:({NUMBER})\s*(?:\"|''|″|in|inch|inches)\.?)?\s*"
+                    r"(?:\(.*\)|a\.?g\.?l\.?|above ground\w*(?: level)?|high|tall|hoch)?", re.IGNORECASE)
+# m, by the unit's beginning
+UNITS = {"mm": 1e-3, "mil": 1e-3, "c": 1e-2, "k": 1e3, "f": 0.3048, "'": 0.3048, "′": 0.3048, "y": 0.9144}
 HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height", "measuredHeight", "height:hub")
 LEVELS = ("building:levels", "num_floors", "levels", "floors")
 MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
@@ -32,12 +36,14 @@ def number_of(text: str, most: float = np.inf) -> float:
     """The number in "1,200.5", "1 200" or "12,5". @param most value above which a comma is read as a decimal mark"""
     thousands = re.fullmatch(rf"\d{{1,3}}({THOUSANDS}\d{{3}})+(\.\d+)?", text)
     value = float(re.sub(THOUSANDS, "", text) if thousands else text.replace(",", "."))
-    return value if value <= most or "," not in text or "." in text else float(text.replace(",", ".", 1).replace(",", ""))
+    if value <= most or "," not in text or "." in text:
+        return value
+    return float(text.replace(",", ".", 1).replace(",", ""))
 
 
 def length_of(text: Any) -> Optional[float]:
-    """Metres in "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12"; the greatest value in "2;3" and "12-15". None for a text
-    without a length."""
+    """Metres in "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12"; the greatest value in "2;3" and "12-15".
+    None for a text without a length."""
     return _greatest(text, _one_length)
 
 
@@ -48,7 +54,7 @@ def levels_of(text: Any) -> Optional[float]:
 
 def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[float]:
     said = str(text if text is not None else "").strip().strip(";").strip()
-    if not said or len(said) > LONGEST_LENGTH:  # the time of the expressions grows with the third power of a text's size
+    if not said or len(said) > LONGEST_LENGTH:  # the expressions take a time of the third power of a text's size
         return None
     values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
     known = [value for value in values if value is not None]
@@ -78,7 +84,7 @@ def _one_number_of_levels(text: str) -> Optional[float]:
 
 @dataclasses.dataclass
 class Feature:
-    """A feature of an extract that belongs to a kind of the rules: tags and geometry (ogr, degrees, longitude first)."""
+    """A feature of an extract with a kind of the rules: tags and geometry (ogr, degrees, longitude first)."""
 
     kind: str
     tags: Dict[str, str]
@@ -101,9 +107,10 @@ class Feature:
 
 
 def fits(tags: Dict[str, str], wanted: Dict[str, Any]) -> bool:
-    """Whether tags have all wanted values: a word, one of several words, `*` for any word, `-*` for any beginning with the text before."""
+    """Whether tags have all wanted values: a word, one of several words, `*` for any word, a beginning before `*`."""
     return all(name in tags and any(tags[name] == word or (word[-1] == "*" and tags[name].startswith(word[:-1]))
-                                    for word in ([words] if isinstance(words, str) else words)) for name, words in wanted.items())
+                                    for word in ([words] if isinstance(words, str) else words))
+               for name, words in wanted.items())
 
 
 class Table:
@@ -115,24 +122,27 @@ class Table:
             self.rows[next(iter(wanted))].append((number, name, wanted))
 
     def find(self, tags: Dict[str, str]) -> Optional[str]:
-        found = [(number, name) for key in tags if key in self.rows for number, name, wanted in self.rows[key] if fits(tags, wanted)]
-        return min(found, default=(0, None))[1]
+        rows = (row for key in tags if key in self.rows for row in self.rows[key])
+        return min((row[:2] for row in rows if fits(tags, row[2])), default=(0, None))[1]
 
 
 def height_name(rule: Dict[str, Any]) -> str:
-    """The property with the height: `height` for buildings, whose heights siting varies and near which no lidar stands; `top`
-    for plants, fences and masts."""
+    """The property with the height: `height` for buildings, whose heights siting varies and near which no lidar stands;
+    `top` for plants, fences and masts."""
     return "top" if rule["class"] in ("fence", "mast", "pole", "tree", "vegetation") else "height"
 
 
-def _first(tags: Dict[str, str], names: Tuple[str, ...], read: Callable[[Any], Optional[float]]) -> Tuple[Optional[float], str]:
+def _first(tags: Dict[str, str], names: Tuple[str, ...],
+           read: Callable[[Any], Optional[float]]) -> Tuple[Optional[float], str]:
     """The first usable number in some tags, and the name of the tag."""
-    return next(((value, name) for name in names for value in [read(tags.get(name))] if value is not None), (None, "assumed"))
+    values = ((read(tags.get(name)), name) for name in names)
+    return next(((value, name) for value, name in values if value is not None), (None, "assumed"))
 
 
 def _not_understood(tags: Dict[str, str], names: Tuple[str, ...]) -> str:
     """The first of some tags whose text is neither a number nor one of the texts without a height."""
-    return next((f"assumed: {name} is {tags[name][:40]!r}" for name in names if name in tags and not NOTHING.fullmatch(tags[name])), "")
+    strange = (name for name in names if name in tags and not NOTHING.fullmatch(tags[name]))
+    return next((f"assumed: {name} is {tags[name][:40]!r}" for name in strange), "")
 
 
 def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[float, str]:
@@ -146,7 +156,8 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
         each, lowest = rule.get("level_height", floor), rule.get("lowest_level")
         levels, up = levels or 0.0, floor * roof or length_of(tags.get("roof:height")) or 0.0
         if lowest and levels:
-            return lowest + floor * (levels - 1.0) + up, f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed"
+            return (lowest + floor * (levels - 1.0) + up,
+                    f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed")
         return each * levels + up, f"{source if levels else 'roof:levels'}, {each:g} m each assumed"
     return rule["height"], _not_understood(tags, HEIGHTS) or "assumed"
 
@@ -154,9 +165,11 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
 def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
     """The properties that the scene file reads for a feature, and the source of each number."""
     rule, tags = known["kinds"][feature.kind], feature.tags
-    properties: Dict[str, Any] = {"kind": feature.kind, "id": feature.id or None, "name": tags.get("name"), "ref": tags.get("ref")}
+    properties: Dict[str, Any] = {"kind": feature.kind, "id": feature.id or None, "name": tags.get("name"),
+                                  "ref": tags.get("ref")}
     if feature.kind == "obstacle":
-        properties["kind_from"] = f"assumed: no rule knows {next((f'{name}={tags[name]}' for name in known['main'] if name in tags), 'it')}"
+        tag = next((f"{name}={tags[name]}" for name in known["main"] if name in tags), "it")
+        properties["kind_from"] = f"assumed: no rule knows {tag}"
     if "height" in rule:
         name, floor = height_name(rule), known["level_height"]
         height, source = _height(tags, rule, floor)
@@ -181,5 +194,6 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
         said = tags.get("surface", "")
         surface = next((name for name, words in known["surfaces"].items() if said in words), None)
         properties.update(surface=surface or rule["material"], surface_from="surface" if surface else "assumed")
-    properties.update((name, float(tags[name])) for name in ("displaced_start", "displaced_end") if feature.kind == "runway" and name in tags)
+    if feature.kind == "runway":
+        properties.update((name, float(tags[name])) for name in ("displaced_start", "displaced_end") if name in tags)
     return {name: value for name, value in properties.items() if value is not None}

@@ -31,8 +31,8 @@ CLASSES = {int(label): Class(name, here, tuple(color))
 def classes_of(bird: int) -> Dict[int, Class]:
     """The classes if birds have the label `bird`, in the order of their learned numbers."""
     if bird != BIRD and bird in CLASSES and bird not in MOVING.values():
-        raise Error(f"bird_class is {bird}, expected no label of a static class ({CLASSES[bird].name}), but 99, the label of "
-                    "a moving class, or an unused label")
+        raise Error(f"bird_class is {bird}, expected no label of a static class ({CLASSES[bird].name}), but 99, the "
+                    "label of a moving class, or an unused label")
     classes = {0: CLASSES[0], bird: CLASSES.get(bird, CLASSES[BIRD])}
     if bird in MOVING.values():
         classes[bird] = classes[bird]._replace(here=f"birds, {classes[bird].here}")
@@ -59,13 +59,15 @@ def configuration(bird: int, points: Mapping[int, int], sequences: Iterable[int]
     """
     classes, total, numbers = classes_of(bird), max(sum(points.values()), 1), list(sequences)
     learned = {label: number for number, label in enumerate(classes)}  # each class is separate; 0 is not learned
-    lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: birds count as a class, and moving objects",
+    lines = ["# Labels of avian-lidar for programs that read SemanticKITTI's configuration: "
+             "birds count as a class, and moving objects",
              "# have separate classes. Only 0 is left out of loss and score.", 'name: "avian-lidar"']
+    known = sorted(classes.items())
     parts: Tuple[Tuple[str, List[Tuple[Any, Any]]], ...] = (
-        ("labels", [(label, f'"{classes[label].name}"  # {classes[label].here}') for label in sorted(classes)]),
-        ("color_map:  # blue, green, red", [(label, list(classes[label].color)) for label in sorted(classes)]),
-        ("content:  # share of all points", [(label, f"{points.get(label, 0) / total:.9f}") for label in sorted(classes)]),
-        ("learning_map", [(label, learned[label]) for label in sorted(classes)]),
+        ("labels", [(label, f'"{one.name}"  # {one.here}') for label, one in known]),
+        ("color_map:  # blue, green, red", [(label, list(one.color)) for label, one in known]),
+        ("content:  # share of all points", [(label, f"{points.get(label, 0) / total:.9f}") for label, _ in known]),
+        ("learning_map", sorted(learned.items())),
         ("learning_map_inv", [(number, label) for label, number in learned.items()]),
         ("learning_ignore", [(number, number == 0) for number in learned.values()]),
         # Three of five sequences train, one validates and one tests. More sequences change no role.

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes a sequence as one MCAP file of ROS 2 messages: clouds, the pose of the sensor, and boxes around movers.
 
-Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions in common_interfaces and geometry2
-(Humble and later).
-"""
+Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions in
+common_interfaces and geometry2 (Humble and later)."""
 from __future__ import annotations
 
 import math
@@ -11,7 +10,7 @@ import pathlib
 import re
 import struct
 import zlib
-from typing import Dict, Iterator, List, Sequence, Tuple
+from typing import Iterator, List, Sequence, Tuple
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from .._files import read_regular
 from .._version import __version__
 
 _MAGIC = b"\x89MCAP0\r\n"
-_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = 1, 2, 3, 4, 5, 6, 7, 8, 11, 15
+_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = *range(1, 9), 11, 15
 _TF, _POINTS, _BOXES = 1, 2, 3  # numbers of the channels and of their schemas
 _TOPICS = {_TF: ("/tf", "tf2_msgs/TFMessage"), _POINTS: ("/points", "sensor_msgs/PointCloud2"),
            _BOXES: ("/boxes", "visualization_msgs/MarkerArray")}
@@ -51,12 +50,11 @@ _TYPES = {
     "visualization_msgs/MarkerArray": "visualization_msgs/Marker[] markers",
     "visualization_msgs/MeshFile": "string filename, uint8[] data",
     "visualization_msgs/UVCoordinate": "float32 u, float32 v"}
-_CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # format characters of the module struct
+_CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # in module struct
 _CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # type and actions of markers
-_COLOURS = {True: (0.1, 0.7, 0.3, 0.5), False: (0.6, 0.3, 0.8, 0.5)}  # red, green, blue, opacity of birds (True) and of other movers
-_FLOAT, _UINT = ("<f4", 7), ("<u2", 4)  # types in NumPy, and in PointField
-_FIELDS = {"x": _FLOAT, "y": _FLOAT, "z": _FLOAT, "intensity": _FLOAT, "label": _UINT, "instance": _UINT}
-_POINT = np.dtype([(name, kind) for name, (kind, _) in _FIELDS.items()])
+_BIRD, _OTHER = (0.1, 0.7, 0.3, 0.5), (0.6, 0.3, 0.8, 0.5)  # red, green, blue, opacity of birds and of other movers
+_POINT = np.dtype([*((name, "<f4") for name in ("x", "y", "z", "intensity")), ("label", "<u2"), ("instance", "<u2")])
+_DATATYPES = {"f": 7, "u": 4}  # in PointField, by the kind of a field of _POINT
 
 
 def _schema(name: str) -> str:
@@ -96,13 +94,14 @@ def _transform(time: int, pose: np.ndarray) -> bytes:
     """The transform from the sensor's frame to the map."""
     from scipy.spatial.transform import Rotation
     rotation = Rotation.from_matrix(pose[:, :3]).as_quat()
-    return _message(_TF, [((divmod(time, 10**9), "map"), "lidar", (pose[:, 3], rotation * (-1 if rotation[3] < 0 else 1)))])
+    turned = rotation * (-1 if rotation[3] < 0 else 1)
+    return _message(_TF, [((divmod(time, 10**9), "map"), "lidar", (pose[:, 3], turned))])
 
 
 def _cloud(time: int, points: np.ndarray) -> bytes:
-    fields = [(name, _POINT.fields[name][1], number, 1) for name, (_, number) in _FIELDS.items()]  # type: ignore[index]
-    data = points.tobytes()
-    return _message(_POINTS, (divmod(time, 10**9), "lidar"), 1, len(points), fields, False, _POINT.itemsize, len(data), data, True)
+    fields = [(name, offset, _DATATYPES[kind.kind], 1) for name, (kind, offset, *_) in (_POINT.fields or {}).items()]
+    data, stamped = points.tobytes(), (divmod(time, 10**9), "lidar")
+    return _message(_POINTS, stamped, 1, len(points), fields, False, _POINT.itemsize, len(data), data, True)
 
 
 def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> Tuple:
@@ -113,8 +112,8 @@ def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[fl
     """
     pose = numbers[:3], (0, 0, math.sin(numbers[6] / 2), math.cos(numbers[6] / 2))
     texture = ((0, 0), ""), "", b""
-    return ((divmod(time, 10**9), "lidar"), name, number, _CUBE, action, pose, numbers[3:6], _COLOURS[name == "bird"], (0, 0),
-            False, (), (), "", texture, (), words, "", ("", b""), False)
+    return ((divmod(time, 10**9), "lidar"), name, number, _CUBE, action, pose, numbers[3:6],
+            _BIRD if name == "bird" else _OTHER, (0, 0), False, (), (), "", texture, (), words, "", ("", b""), False)
 
 
 def _boxes(time: int, file: pathlib.Path) -> bytes:
@@ -122,10 +121,10 @@ def _boxes(time: int, file: pathlib.Path) -> bytes:
     try:
         markers = [_marker(time, "", 0, _DELETE_ALL, (0,) * 7)]
         for line in read_regular(file).decode().splitlines():
-            name, truncated, hidden, *numbers, number, points = line.split()
-            x, y, z, length, width, height, yaw = map(float, numbers)
+            name, truncated, hidden, x, y, z, length, width, height, yaw, number, points = line.split()
+            numbers = [float(value) for value in (x, y, z, length, width, height, yaw)]
             words = f"truncated {float(truncated):.2f}, hidden {float(hidden):.2f}, points {int(points)}"
-            markers.append(_marker(time, name, int(number), _ADD, (x, y, z, length, width, height, yaw), words))
+            markers.append(_marker(time, name, int(number), _ADD, numbers, words))
         return _message(_BOXES, markers)
     except (ValueError, struct.error):  # also raised for text that is not UTF-8
         raise ValueError(f"{file}: expected lines of a class, 9 numbers, an id and a number of points") from None
@@ -134,37 +133,40 @@ def _boxes(time: int, file: pathlib.Path) -> bytes:
 def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "") -> np.ndarray:
     """The numbers of each line that begins with the key."""
     try:
-        lines = [line[len(key):].split() for line in read_regular(file).decode().splitlines() if line.startswith(key)]
-        rows = np.array(lines, float).reshape(-1, columns)
-        if not ((rows >= least) & (rows < 2e9)).all():
-            raise ValueError
-    except ValueError:
-        raise ValueError(f"{file}: expected lines of {key or 'numbers'}, {columns} in each, from {least:g} to 2e9") from None
-    return rows
+        lines = read_regular(file).decode().splitlines()
+        rows = np.array([line[len(key):].split() for line in lines if line.startswith(key)], float).reshape(-1, columns)
+        if ((rows >= least) & (rows < 2e9)).all():
+            return rows
+    except ValueError:  # also raised for text that is not UTF-8
+        pass
+    raise ValueError(f"{file}: expected lines of {key or 'numbers'}, {columns} in each, from {least:g} to 2e9")
 
 
 def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndarray]]:
-    """Name, time (ns), pose and points of each scan. With a calibration, camera poses become lidar poses, as in SemanticKITTI."""
+    """Name, time (ns), pose and points of each scan. A calibration turns camera poses into lidar poses."""
     if not (folder / "velodyne").is_dir():
-        raise ValueError(f"{folder}: is not a folder of a sequence, expected one with velodyne/, times.txt and poses.txt")
+        raise ValueError(f"{folder}: is not a folder of a sequence, "
+                         "expected one with velodyne/, times.txt and poses.txt")
     files = sorted((folder / "velodyne").glob("*.bin"))
     times, poses = _table(folder / "times.txt", 1, least=0)[:, 0], _table(folder / "poses.txt", 12).reshape(-1, 3, 4)
     if not len(files) == len(times) == len(poses):
-        raise ValueError(f"{folder}: has {len(files)} scans, {len(times)} times and {len(poses)} poses, expected as many of each")
+        raise ValueError(f"{folder}: has {len(files)} scans, {len(times)} times and {len(poses)} poses, "
+                         "expected as many of each")
     last = [0, 0, 0, 1]
     camera = np.vstack([*_table(folder / "calib.txt", 12, key="Tr:").reshape(-1, 4), last])
     if camera.shape != (4, 4) or abs(np.linalg.det(camera)) < 0.5:
-        raise ValueError(f"{folder / 'calib.txt'}: expected one line Tr: with a rotation and a translation in 12 numbers")
+        raise ValueError(f"{folder / 'calib.txt'}: "
+                         "expected one line Tr: with a rotation and a translation in 12 numbers")
     for file, time, pose in zip(files, times, poses):
         content, label = read_regular(file), folder / "labels" / f"{file.stem}.label"
-        labels = np.frombuffer(read_regular(label), "<u4") if label.parent.is_dir() else np.zeros(len(content) // 16, "<u4")
+        labels = np.frombuffer(read_regular(label) if label.parent.is_dir() else bytes(len(content) // 16 * 4), "<u4")
         if len(content) != 16 * len(labels):
             raise ValueError(f"{file}: has {len(content)} bytes, expected 16 for each of {len(labels)} labels")
-        points, rows = np.empty(len(labels), _POINT), np.frombuffer(content, "<f4").reshape(-1, 4)
-        if not ((rows[:, 3] >= 0) & (rows[:, 3] <= 1)).all():
-            raise ValueError(f"{file}: the fourth numbers of its points are not all reflectances, expected 0 to 1, as KITTI has them")
-        points["x"], points["y"], points["z"], points["intensity"] = (rows * np.array([1, 1, 1, 255], "<f4")).T
-        points["label"], points["instance"] = labels & 0xffff, labels >> 16
+        x, y, z, light = np.frombuffer(content, "<f4").reshape(-1, 4).T
+        if not ((light >= 0) & (light <= 1)).all():
+            raise ValueError(f"{file}: the fourth numbers of its points are not all reflectances, "
+                             "expected 0 to 1, as KITTI has them")
+        points = np.rec.fromarrays([x, y, z, 255 * light, labels & 0xffff, labels >> 16], dtype=_POINT)
         yield file.stem, round(1e9 * time), (np.linalg.inv(camera) @ np.vstack([pose, last]) @ camera)[:3], points
 
 
@@ -172,43 +174,47 @@ def _record(kind: int, content: bytes) -> bytes:
     return struct.pack("<BQ", kind, len(content)) + content
 
 
-def _bytes(content: bytes) -> bytes:
-    return struct.pack("<I", len(content)) + content
+def _bytes(*contents: bytes) -> bytes:
+    """Contents, each after its length."""
+    return b"".join(struct.pack("<I", len(content)) + content for content in contents)
 
 
 def write(folder: pathlib.Path, out: pathlib.Path) -> int:
     """Writes a sequence and returns the number of scans. Each scan is a chunk with an index, not compressed."""
     topics = {key: topic for key, topic in _TOPICS.items() if key != _BOXES or (folder / "boxes").is_dir()}
-    known = b"".join(_record(_SCHEMA, struct.pack("<H", key) + b"".join(
-        map(_bytes, (kind.replace("/", "/msg/").encode(), b"ros2msg", _schema(kind).encode()))))
-                     + _record(_CHANNEL, struct.pack("<HH", key, key) + _bytes(topic.encode()) + _bytes(b"cdr") + _bytes(b""))
-                     for key, (topic, kind) in topics.items())
+    known = b"".join(
+        _record(_SCHEMA, struct.pack("<H", key) + _bytes(
+            kind.replace("/", "/msg/").encode(), b"ros2msg", _schema(kind).encode()))
+        + _record(_CHANNEL, struct.pack("<HH", key, key) + _bytes(topic.encode(), b"cdr", b""))
+        for key, (topic, kind) in topics.items())
     indices: List[bytes] = []
     times: List[int] = []
     with replacing(out) as name, open(name, "wb") as file:
-        file.write(_MAGIC + _record(_HEADER, _bytes(b"ros2") + _bytes(f"avian-lidar {__version__}".encode())) + known)
+        file.write(_MAGIC + _record(_HEADER, _bytes(b"ros2", f"avian-lidar {__version__}".encode())) + known)
         for number, (name_of_scan, time, pose, points) in enumerate(_scans(folder)):
             times.append(time)
-            records, offsets = b"", {}  # type: bytes, Dict[int, int]
-            messages = [(_TF, _transform(time, pose)), (_POINTS, _cloud(time, points))]
+            messages = {_TF: _transform(time, pose), _POINTS: _cloud(time, points)}
             if _BOXES in topics:
-                messages.append((_BOXES, _boxes(time, folder / "boxes" / f"{name_of_scan}.txt")))
-            for key, message in messages:
-                offsets[key] = len(records)
+                messages[_BOXES] = _boxes(time, folder / "boxes" / f"{name_of_scan}.txt")
+            records, offsets = b"", []
+            for key, message in messages.items():
+                offsets.append((key, len(records)))
                 records += _record(_MESSAGE, struct.pack("<HIQQ", key, number, time, time) + message)
             chunk = _record(_CHUNK, struct.pack("<QQQI", time, time, len(records), zlib.crc32(records)) + _bytes(b"")
                             + struct.pack("<Q", len(records)) + records)
             begin, places = file.tell(), b""
             file.write(chunk)
-            for key, offset in offsets.items():
+            for key, offset in offsets:
                 places += struct.pack("<HQ", key, file.tell())
                 file.write(_record(_MESSAGES, struct.pack("<HIQQ", key, 16, time, offset)))
-            indices.append(_record(_CHUNKS, struct.pack("<QQQQ", time, time, begin, len(chunk)) + _bytes(places) + struct.pack(
-                "<Q", file.tell() - begin - len(chunk)) + _bytes(b"") + struct.pack("<QQ", len(records), len(records))))
+            indices.append(_record(_CHUNKS, struct.pack("<QQQQ", time, time, begin, len(chunk)) + _bytes(places)
+                                   + struct.pack("<Q", file.tell() - begin - len(chunk)) + _bytes(b"")
+                                   + struct.pack("<QQ", len(records), len(records))))
         file.write(_record(_END, bytes(4)))
         summary, count = file.tell(), len(times)
-        file.write(known + _record(_STATISTICS, struct.pack(
-            "<QHIIIIQQ", count * len(topics), len(topics), len(topics), 0, 0, count, min(times, default=0), max(times, default=0)) + _bytes(
-                b"".join(struct.pack("<HQ", key, count) for key in topics))) + b"".join(indices))
+        times = times or [0]
+        numbers = count * len(topics), len(topics), len(topics), 0, 0, count, min(times), max(times)
+        counts = _bytes(b"".join(struct.pack("<HQ", key, count) for key in topics))
+        file.write(known + _record(_STATISTICS, struct.pack("<QHIIIIQQ", *numbers) + counts) + b"".join(indices))
         file.write(_record(_FOOTER, struct.pack("<QQI", summary, 0, 0)) + _MAGIC)
     return count

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
-from typing import Any, Callable, List, Mapping, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -33,14 +33,14 @@ AROUND = 0.04  # margin around the map on the first page, as a share of the long
 SIDES = (0.35, 1.15)  # least and greatest ratio of height to width of the map on the first page
 PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
 CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
+BAR = (1.03, 0.0, 0.04, 1.0)  # place of a colour bar as high as the map, in parts of the map
 STEP = (10.0, 2.0)  # steps of the section along the runway and upwards, m
 
 
 def gradient() -> List[str]:
     """Colours of nine probabilities from 0 to 1."""
-    from matplotlib import colormaps
-    from matplotlib.colors import to_hex
-    return [to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, 9)]
+    from matplotlib import colormaps, colors
+    return [colors.to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, 9)]
 
 
 def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> None:
@@ -49,19 +49,18 @@ def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: i
 
 
 def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> bytes:
-    """A picture (PNG). @param size inches @param work function that draws into the given axes @param columns number of axes side by side"""
+    """A picture (PNG). @param size inches @param work function that draws into the given axes @param columns axes side
+    by side"""
     from matplotlib import font_manager, rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     content = io.BytesIO()
     known = {font.name for font in font_manager.fontManager.ttflist}
     fonts = ["DejaVu Sans", *(name for name in CJK if name in known)]
-    style = {**dict.fromkeys(("axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 9), "legend.fontsize": 8,
-             "grid.alpha": 0.4, "font.family": fonts, "text.parse_math": False}  # names keep their $
+    style = {"axes.labelsize": 9, "xtick.labelsize": 9, "ytick.labelsize": 9, "legend.fontsize": 8, "grid.alpha": 0.4,
+             "font.family": fonts, "text.parse_math": False}  # names keep their $
     with rc_context(style), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has
         figure = Figure(figsize=size, layout="constrained")
-        FigureCanvasAgg(figure)
         work(figure.subplots(1, columns))
         figure.savefig(content, format="png", dpi=PIXELS)
     return content.getvalue()
@@ -76,15 +75,15 @@ def finish(axes, **settings: Any) -> None:
 
 
 def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: float = 0.0) -> Tuple[float, float]:
-    """Size in inches of a picture filled by a map with labels. @param width width of the map @param beside, above inches for other
-    contents"""
+    """Size in inches of a picture filled by a map with labels. @param width width of the map @param beside, above
+    inches for other contents"""
     x0, x1, y0, y1 = extent
     return width + beside, 0.5 + (width - 0.7) * float(np.clip((y1 - y0) / max(x1 - x0, 1e-9), 0.25, 3.0)) + above
 
 
-def _bar(axes, dots, words: str) -> None:
-    """Draws a colour bar as high as the map."""
-    axes.figure.colorbar(dots, cax=axes.inset_axes([1.03, 0.0, 0.04, 1.0]), label=words)
+def _annotate(axes, words: str, place: Sequence[float], away: int = 7, **style: Any) -> None:
+    axes.annotate(words, place[:2], (away, away), textcoords="offset points", fontsize=9, **style,
+                  bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
 
 
 def draw_land(axes, plan: Plan) -> None:
@@ -95,12 +94,14 @@ def draw_land(axes, plan: Plan) -> None:
         if not polygons.GetNumberOfCells():
             continue
         classes = np.array(field_values(block).get("object_classes", [""]))
-        of = classes[as_numpy(ids)] if ids and len(classes) > 1 else np.full(polygons.GetNumberOfCells(), classes[0])
+        of = classes[as_numpy(ids) if ids and len(classes) > 1 else np.zeros(polygons.GetNumberOfCells(), int)]
         points = vtk_to_numpy(block.GetPoints().GetData())[:, :2]
-        cells = np.split(vtk_to_numpy(polygons.GetConnectivityArray()), vtk_to_numpy(polygons.GetOffsetsArray())[1:-1])
+        offsets = vtk_to_numpy(polygons.GetOffsetsArray())
+        cells = np.split(points[vtk_to_numpy(polygons.GetConnectivityArray())], offsets[1:-1])
         for wanted, colour in ((np.isin(of, PLANTS), "#b5d6a7"), (of == "water", "#a9cfe8")):
             if wanted.any():
-                axes.add_collection(PolyCollection([points[cell] for cell, there in zip(cells, wanted) if there], facecolors=colour, edgecolors=colour, zorder=0.5))
+                drawn = [cells[i] for i in np.flatnonzero(wanted)]
+                axes.add_collection(PolyCollection(drawn, facecolors=colour, edgecolors=colour, zorder=0.5))
 
 
 def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
@@ -116,7 +117,8 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
         if len(classes):
             roofs &= ~np.isin(classes, FLAT)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
         if roofs.any():
-            axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()), cmap=ListedColormap([colour]))
+            axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()),
+                           cmap=ListedColormap([colour]))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
     axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
     axes.locator_params(nbins=5)
@@ -125,32 +127,34 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     """Draws a map of probabilities or of statuses."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
-    number, colour, values, style = len(STATUS_COLOURS), "0.75", cover["status"], {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
+    style: Dict[str, Any] = {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
     if quantity == "status":
-        colour, style = "0.1", {"cmap": ListedColormap(STATUS_COLOURS), "norm": BoundaryNorm(np.arange(number + 1) - 0.5, number)}
-    else:
-        values = plan.mixed(cover, quantity)
-    data = cover.data
-    first, step, count = (np.array(values[:2]) for values in (data.GetOrigin(), data.GetSpacing(), data.GetDimensions()))
+        limits = np.arange(len(STATUS_COLOURS) + 1) - 0.5
+        style = {"cmap": ListedColormap(STATUS_COLOURS), "norm": BoundaryNorm(limits, len(STATUS_COLOURS))}
+    values, data = cover["status"] if quantity == "status" else plan.mixed(cover, quantity), cover.data
+    first, step, count = (np.array(of[:2]) for of in (data.GetOrigin(), data.GetSpacing(), data.GetDimensions()))
     extent = np.transpose([first - 0.5 * step, first + (count - 0.5) * step]).ravel()
     axes.imshow(values[0], origin="lower", extent=extent, interpolation="nearest", **style)
-    draw_airport(axes, plan, colour)
+    draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
 
 
 def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
-    """Extent of the map on the first page, m: all regions of the plan and the sensor, or without runways the plan's map."""
+    """Extent of the map on the first page, m: the plan's regions and the sensor, or without runways the plan's map."""
     outlines = [outline for name, outline in region_outlines(plan.runways).items() if name in plan.ends]
-    corners = np.concatenate([*outlines, [plan.sensor.position[:2]]]) if outlines else np.transpose([plan.extent[:2], plan.extent[2:]])
+    corners = np.reshape(plan.extent, (2, 2)).T
+    if outlines:
+        corners = np.concatenate([*outlines, [plan.sensor.position[:2]]])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    middle, size = 0.5 * (low + high), (1.0 + 2.0 * AROUND) * np.maximum(high - low, 1.0) if outlines else high - low
+    size = (1.0 + 2.0 * AROUND) * np.maximum(high - low, 1.0) if outlines else high - low
     width = max(size[0], size[1] / SIDES[1])
     half = 0.5 * np.array([width, max(size[1], width * SIDES[0])])
-    x0, x1, y0, y1 = np.transpose([middle - half, middle + half]).ravel().tolist()
+    middle = 0.5 * (low + high)
+    (x0, y0), (x1, y1) = (middle - half).tolist(), (middle + half).tolist()
     return x0, x1, y0, y1
 
 
 def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarray]]:
-    """For each height of the plan, m, the number of OUTLINES that the probability reaches over an extent, rows from south to north."""
+    """For each height of the plan, m, the number of OUTLINES that the probability reaches, rows from south to north."""
     x0, x1, y0, y1 = extent
     step = max(x1 - x0, y1 - y0, 1.0) / (SHOWN - 1)
     cover, spacing, classes = plan.coverage, plan.coverage.spacing, []
@@ -163,10 +167,9 @@ def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarra
 
 def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], extent: Tuple[float, float, float, float],
                 shares: Mapping[str, str]) -> None:
-    """Draws the airport with the sensor, the regions of the plan, and for each height the areas where the probability is above OUTLINES.
-    @param found result of `found_at` @param shares shares of each region in words"""
-    from matplotlib import colormaps
-    from matplotlib.patches import Patch
+    """Draws the airport with the sensor, the regions of the plan, and for each height the areas where the probability
+    is above OUTLINES. @param found result of `found_at` @param shares shares of each region in words"""
+    from matplotlib import colormaps, patches
     x0, x1, y0, y1 = extent
     legend = []
     for number, (height, classes) in enumerate(found):
@@ -174,11 +177,12 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
         here = (np.linspace(x0, x1, classes.shape[1]), np.linspace(y0, y1, classes.shape[0]))
         for limit in (1, 2):
             if min(classes.shape) > 1 and classes.min() < limit <= classes.max():
-                axes.contour(*here, classes, [limit - 0.5], colors=[colour], linewidths=1.0, linestyles="--" if limit == 1 else "-")
+                axes.contour(*here, classes, [limit - 0.5], colors=[colour], linewidths=1.0,
+                             linestyles="--" if limit == 1 else "-")
         if min(classes.shape) > 1 and (classes == 2).any():
             axes.contourf(*here, classes, [1.5, 2.5], colors=[colour], alpha=0.45)
         words = {2: "", 1: ": nowhere half", 0: ": nowhere a tenth"}[int(classes.max(initial=0))]
-        legend.append(Patch(facecolor=colour, alpha=0.6, label=f"{height:g} m up{words}"))
+        legend.append(patches.Patch(facecolor=colour, alpha=0.6, label=f"{height:g} m up{words}"))
     draw_land(axes, plan)
     box = {"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0}
     for name, outline in region_outlines(plan.runways).items():
@@ -186,21 +190,21 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
             axes.plot(*np.concatenate([outline, outline[:1]]).T, ":", color="0.3", linewidth=1.0)
         if name in plan.ends or name.startswith("strip "):
             near, far = outline[[0, 3]].mean(axis=0), outline[1:3].mean(axis=0)
-            at = max((near + share * (far - near) for share in (0.75, 0.25) if share == 0.75 or name.startswith("strip ")),
+            parts = (0.75, 0.25) if name.startswith("strip ") else (0.75,)
+            at = max((near + part * (far - near) for part in parts),
                      key=lambda place: np.hypot(*(place - plan.sensor.position[:2])))
             label = "\n".join(filter(None, (name.partition(" ")[2], shares.get(name, ""))))
             axes.text(*at, label, fontsize=7, color="0.1", ha="center", va="center", bbox=box, zorder=4)
     draw_airport(axes, plan, "0.55")
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
     axes.plot(*plan.sensor.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=5)
-    axes.annotate(plan.name, plan.sensor.position[:2], (9, 9), textcoords="offset points", fontsize=9, color="red", zorder=5,
-                  bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
+    _annotate(axes, plan.name, plan.sensor.position, 9, color="red", zorder=5)
     axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(legend), 2), frameon=False)
 
 
 def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
-    """Probabilities above the middle of a runway and its approaches, rows from the ground up, and their extent: m along the
-    runway from its first end, m above ground."""
+    """Probabilities above the middle of a runway and its approaches, rows from the ground up, and their extent: m along
+    the runway from its first end, m above ground."""
     axis, length = runway.axis()
     along = np.arange(-APPROACH_LENGTH, length + APPROACH_LENGTH, STEP[0])
     heights = np.arange(0.0, max(HIGH, 1.1 * plan.asked[1] if plan.asked else 0.0) + 1.0, STEP[1])
@@ -211,8 +215,8 @@ def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float,
             (along[0] - STEP[0] / 2, along[-1] + STEP[0] / 2, -STEP[1] / 2, heights[-1] + STEP[1] / 2))
 
 
-def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: Tuple[float, float, float, float]) -> None:
-    """Draws a section with the runway, glide paths that end 15 m above the runway's ends, and the heights of the plan."""
+def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: Sequence[float]) -> None:
+    """Draws a section with the runway, glide paths that end 15 m above its ends, and the heights of the plan."""
     _, length = runway.axis()
     axes.imshow(values, origin="lower", aspect="auto", extent=extent, cmap="viridis", vmin=0.0, vmax=1.0)
     axes.plot([0.0, length], [0.5, 0.5], color="white", linewidth=3)
@@ -225,19 +229,20 @@ def draw_section(axes, plan: Plan, runway: Runway, values: np.ndarray, extent: T
 
 
 def draw_reach(axes, reaches: Mapping[str, Reach], several: str) -> None:
-    """Draws shares of birds by range, with bars of one standard error. @param reaches by the name of the curve @param several name of the
-    dashed curve, such as "2 of 3 scans" """
+    """Draws shares of birds by range, with bars of one standard error. @param reaches by the name of the curve @param
+    several name of the dashed curve, such as "2 of 3 scans" """
     for number, (name, reach) in enumerate(reaches.items()):
         colour = f"C{number}"
-        axes.errorbar(reach.ranges, reach.one_scan, reach.error, color=colour, linewidth=1.5, elinewidth=1.0, label=f"{name}, one scan")
+        axes.errorbar(reach.ranges, reach.one_scan, reach.error, color=colour, linewidth=1.5, elinewidth=1.0,
+                      label=f"{name}, one scan")
         axes.plot(reach.ranges, reach.several_scans, "--", color=colour, linewidth=1.2)
     axes.plot([], [], "--", color="0.4", linewidth=1.2, label=several)
     finish(axes, xlim=(0.0, None), ylim=(0.0, 1.02), xlabel="range, m", ylabel="share of birds detected")
 
 
-def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], Sequence[float], Sequence[float]]], words: str, logarithmic: bool) -> None:
-    """Draws shares of birds by weather, with bars of one standard error. @param curves by name: weathers, shares, errors @param words
-    label of the weathers' axis"""
+def draw_weather(axes, curves: Mapping[str, Tuple[Sequence[float], ...]], words: str, logarithmic: bool) -> None:
+    """Draws shares of birds by weather, with bars of one standard error. @param curves by name: weathers, shares,
+    errors @param words label of the weathers' axis"""
     for name, (weathers, shares, errors) in curves.items():
         axes.errorbar(weathers, shares, errors, marker="o", markersize=3, linewidth=1.5, elinewidth=1.0, label=name)
     if logarithmic:
@@ -253,20 +258,20 @@ def draw_clutter(axes, plan: Plan, clutter) -> None:
     draw_airport(axes, plan, "0.8")
     often = clutter["detection_probability"]
     order = np.argsort(often)
-    dots = axes.scatter(*clutter.points[order, :2].T, c=often[order], s=1.5, linewidths=0, cmap="plasma_r", vmin=0.0, vmax=1.0)
-    _bar(axes, dots, "share of scans")
+    dots = axes.scatter(*clutter.points[order, :2].T, c=often[order], s=1.5, linewidths=0,
+                        cmap="plasma_r", vmin=0.0, vmax=1.0)
+    axes.figure.colorbar(dots, cax=axes.inset_axes(BAR), label="share of scans")
 
 
 def draw_outline(axes, outline) -> None:
-    """Draws in light grey an area where no lidar may stand. @param outline a ring (n x 2, m), or several rings: the outer ring and holes"""
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
+    """Draws in light grey an area where no lidar may stand. @param outline a ring (n x 2, m), or a ring and holes"""
+    from matplotlib import patches, path
     paths = []
     for number, ring in enumerate([outline] if np.ndim(outline[0]) == 1 else outline):
         turns_left = np.cross(ring, np.roll(ring, -1, axis=0)).sum() > 0.0
         ring = ring if turns_left == (number == 0) else ring[::-1]  # holes turn the other way
-        paths.append(Path([*ring, ring[0]], closed=True))
-    axes.add_patch(PathPatch(Path.make_compound_path(*paths), color="0.9", zorder=0))
+        paths.append(path.Path([*ring, ring[0]], closed=True))
+    axes.add_patch(patches.PathPatch(path.Path.make_compound_path(*paths), color="0.9", zorder=0))
 
 
 def draw_sites(axes, sites) -> None:
@@ -280,18 +285,17 @@ def draw_sites(axes, sites) -> None:
             draw_outline(axes, one.strip)
     x, y, _ = sites.positions[sites.order[::-1]].T
     dots = axes.scatter(x, y, c=sites.values[sites.order[::-1]], s=22, cmap="viridis")
-    _bar(axes, dots, "share by which candidates are ranked")
-    members = sites.networks[-1].sites
-    network = sites.positions[list(members)]
-    axes.scatter(*network[:, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2, label=f"best {len(network)} together" if len(network) > 1 else "best")
+    axes.figure.colorbar(dots, cax=axes.inset_axes(BAR), label="share by which candidates are ranked")
+    members = list(sites.networks[-1].sites)
+    axes.scatter(*sites.positions[members, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2,
+                 label=f"best {len(members)} together" if len(members) > 1 else "best")
     for site in members:
-        axes.annotate(f"rank {sites.rank_of(site)}", sites.positions[site, :2], (7, 7), textcoords="offset points", fontsize=9,
-                      bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
+        _annotate(axes, f"rank {sites.rank_of(site)}", sites.positions[site])
     axes.plot([], [], "r^", markersize=5, label="where the plan puts the sensor")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handletextpad=0.2, columnspacing=1, frameon=False)
-    x0, x1, y0, y1 = sites_extent(sites)
-    axes.set(xlim=(x0, x1), ylim=(y0, y1))
+    extent = sites_extent(sites)
+    axes.set(xlim=extent[:2], ylim=extent[2:])
 
 
 def sites_extent(sites) -> Tuple[float, float, float, float]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import pathlib
+import re
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
@@ -28,7 +28,7 @@ from ._regions import rounded
 from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
 from ._tables import embedded, render, write_table
 
-VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # visibilities in the section on weather, m
+VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # in the section on weather, m
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # rain rates, mm/h
 ANSWERED = 1000.0  # visibility whose share is given in a sentence, m
 BESIDE = (("fog:1000",), ("rain:10",))  # weathers for which best sites are searched if the plan gives no year
@@ -43,137 +43,142 @@ PHOTONS = (("receiver_aperture", "area of the receiver's aperture", "cm²", 1e4)
            ("receiver_efficiency", "efficiency of optics and detector", "", 1.0),
            ("filter_bandwidth", "bandwidth of the filter", "nm", 1.0),
            ("background_radiance", "radiance of the sky", "W/(m² sr nm)", 1.0),
-           ("amplifier_noise", "noise of the amplifier, electrons", "", 1.0), ("excess_noise_factor", "excess noise factor", "", 1.0),
+           ("amplifier_noise", "noise of the amplifier, electrons", "", 1.0),
+           ("excess_noise_factor", "excess noise factor", "", 1.0),
            ("range_noise_floor", "noise of ranges of strong echoes", "cm", 100.0),
            ("false_alarms_per_scan", "false alarms in a scan", "", 1.0), ("dynamic_range", "dynamic range", "dB", 1.0))
-LIMITS = (("lower_energy_limit", "lower energy limit", "J", 1.0), ("upper_energy_limit", "upper energy limit", "J", 1.0))
+LIMITS = (("lower_energy_limit", "lower energy limit", "J", 1.0),
+          ("upper_energy_limit", "upper energy limit", "J", 1.0))
 
 
 def assumptions(plans: List[Plan]) -> List[Dict[str, Any]]:
     """Numbers of the receivers: words, unit, and a pair (text, whether assumed) for each receiver."""
-    rows = [{"words": "elevation of the beams' middles", "unit": "°", "cells": [
-        ("{:.2f} to {:.2f}".format(*reach.band(plan.sensor)), bool({"elevation_step", "minimum_elevation"} & {*plan.assumed})) for plan in plans]}]
+    rows = [{"words": "elevation of the beams' middles", "unit": "°",
+             "cells": [("{:.2f} to {:.2f}".format(*reach.band(plan.sensor)),
+                        not {"elevation_step", "minimum_elevation"}.isdisjoint(plan.assumed)) for plan in plans]}]
     if any(any(plan.sensor.orientation) for plan in plans):
-        rows.append({"words": "yaw, pitch, roll", "unit": "°", "cells": [("{:g}, {:g}, {:g}".format(*plan.sensor.orientation), False) for plan in plans]})
+        rows.append({"words": "yaw, pitch, roll", "unit": "°",
+                     "cells": [("{:g}, {:g}, {:g}".format(*plan.sensor.orientation), False) for plan in plans]})
     fields = [plan.sensor.beams.fields for plan in plans]
     photons = [int(beams["receiver_model"]) == 1 for beams in fields]
     for facts, concerned in ((COMMON, [True] * len(plans)), (PHOTONS, photons), (LIMITS, [not p for p in photons])):
         for name, words, unit, factor in facts if any(concerned) else ():
-            cells = [(f"{factor * float(beams[name]):.4g}", name in plan.assumed) if this and name in beams and
-                     not (name == "number_of_channels" and "prism_wedge_angles" in beams) else ("–", False)
-                     for plan, beams, this in zip(plans, fields, concerned)]
-            rows.append({"words": words, "unit": unit, "cells": cells})
+            known = [this and name in beams and not (name == "number_of_channels" and "prism_wedge_angles" in beams)
+                     for beams, this in zip(fields, concerned)]
+            rows.append({"words": words, "unit": unit, "cells": [
+                (f"{factor * float(beams[name]):.4g}", name in plan.assumed) if there else ("–", False)
+                for plan, beams, there in zip(plans, fields, known)]})
     return rows
 
 
 class Report:
-    """Pictures, tables and words of a plan: for the plan's sensor and each sensor for comparison, at the place in the plan and at
-    the best site of each sensor."""
+    """Pictures, tables and words of a plan: for the plan's sensor and each sensor for comparison, at the place in the
+    plan and at the best site of each sensor."""
 
-    def __init__(self, plan: Dict[str, Any], threads: int = 0, progress: Optional[Callable[[str, int, int], Any]] = None):
-        self.plan, self.progress = plan, progress
+    def __init__(self, plan: Dict[str, Any], threads: int = 0,
+                 progress: Optional[Callable[[str, int, int], Any]] = None):
+        self.plan, self.progress, self.done = plan, progress or (lambda *_: None), 0
         self.plans = Plan.all_of(plan, threads)
         self.asked = f"question: {self.plans[0].bird} {self.plans[0].where}"  # part of every caption
         self.scene = load_json(plan["scene"])
         with naming(f"{plan['file']}: tracks"):
             self.tracks = read_card(plan["tracks"]) if "tracks" in plan else None
-        self.sites = [Sites(one, progress=progress, beside=[words for words in BESIDE if words != one.air]) for one in self.plans] \
-            if "siting" in plan else []
-        self.done = 0
+        self.sites = [Sites(one, progress=progress, beside=[words for words in BESIDE if words != one.air])
+                      for one in self.plans] if "siting" in plan else []
+        views, pictures_of_each = 1 + bool(self.sites), 2 * len(self.plans[0].heights) + 1 + len(self.plans[0].runways)
+        self.pictures = (pictures_of_each * views + 1) * len(self.plans) + 3  # at most
 
-    def _draw(self, file: pathlib.Path, size: Tuple[float, float], alt: str, caption: str, work) -> Dict[str, str]:
+    def _figure(self, file: pathlib.Path, what: str, caption: str) -> Dict[str, str]:
+        """A picture of the page. @param what kind of the picture, for readers who do not see it"""
+        return {"source": embedded(file), "alt": f"{what}. {caption}.", "caption": f"{caption}; {self.asked}"}
+
+    def _draw(self, file: pathlib.Path, size: Tuple[float, float], what: str, caption: str, work) -> Dict[str, str]:
         pictures.draw(file, size, work)
         self.done += 1
-        if self.progress:
-            each = 2 * len(self.plans[0].heights) + 1 + len(self.plans[0].runways)
-            self.progress("pictures", self.done, (each * (2 if self.sites else 1) + 1) * len(self.plans) + 3)
-        return {"source": embedded(file), "alt": alt, "caption": f"{caption}; {self.asked}"}
+        self.progress("pictures", self.done, self.pictures)
+        return self._figure(file, what, caption)
 
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
         """Pictures of a sensor at a place. @param name part of the names of files"""
         names = plan.coverage.status_names
-        maps, reasons, size = [], [], pictures.map_size(plan.extent, 3.3)
+        maps, reasons, sections, size = [], [], [], pictures.map_size(plan.extent, 3.3)
         for height in plan.heights:
-            cover = plan.map_at(height)
+            cover, where = plan.map_at(height), f"{plan.title}, {height:g} m above {plan.above}"
             p = plan.mixed(cover)
-            status = cover["status"]
-            shares = np.bincount(status.ravel(), minlength=len(names)) / status.size
-            caption = f"{height:g} m above {plan.above}: mean {percent(float(p.mean()))}, at least 0.5 on {percent(float(np.mean(p >= 0.5)))} of the map"
-            maps.append(self._draw(folder / f"{name}-probability-{height_name(height)}.png", size,
-                                   f"Map of the probability that one scan of {plan.title} detects a {plan.bird} {caption}.", f"{plan.title}, {caption}",
-                                   lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "detection_probability")))
+            maps.append(self._draw(
+                folder / f"{name}-probability-{height_name(height)}.png", size,
+                f"Map of the probability that one scan detects a {plan.bird}",
+                f"{where}: mean {percent(float(p.mean()))}, {_half(p)} of the map",
+                lambda axes: pictures.draw_map(axes, plan, cover, "detection_probability")))
+            shares = np.bincount(cover["status"].ravel(), minlength=len(names)) / cover["status"].size
             words = ", ".join(f"{names[i]} {percent(shares[i])}" for i in np.argsort(-shares)[:3] if shares[i] > 0.0)
-            reasons.append(self._draw(folder / f"{name}-reasons-{height_name(height)}.png", size,
-                                      f"Map of reasons for {plan.title} {height:g} m above {plan.above}: {words}.",
-                                      f"{plan.title}, {height:g} m above {plan.above}: {words}",
-                                      lambda axes, cover=cover: pictures.draw_map(axes, plan, cover, "status")))
+            reasons.append(self._draw(
+                folder / f"{name}-reasons-{height_name(height)}.png", size, "Map of reasons", f"{where}: {words}",
+                lambda axes: pictures.draw_map(axes, plan, cover, "status")))
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
-        sections: List[Dict[str, str]] = []
-        found = {
-            "name": plan.title, "maps": maps, "reasons": reasons, "overall": plan.overall, "position": place(plan.sensor.position), "sections": sections,
-            "clutter": self._draw(folder / f"{name}-clutter.png", pictures.map_size(plan.extent, 4.0, 0.8),
-                                  f"Map of echoes of surfaces with {plan.title}: {count} in at least every second scan.",
-                                  f"{plan.title}: {count} echoes of surfaces in at least every second scan",
-                                  lambda axes: pictures.draw_clutter(axes, plan, clutter))}
-        for number, runway in enumerate(plan.runways):
+        drawn = self._draw(
+            folder / f"{name}-clutter.png", pictures.map_size(plan.extent, 4.0, 0.8), "Map of clutter",
+            f"{plan.title}: {count} echoes of surfaces in at least every second scan",
+            lambda axes: pictures.draw_clutter(axes, plan, clutter))
+        limits = "; red: heights of the plan" if plan.asked else ""
+        for number, runway in enumerate(plan.runways, 1):
             values, extent = pictures.section(plan, runway)
             sections.append(self._draw(
-                folder / f"{name}-section{number + 1}.png", (5.6, 2.6),
-                f"Section along {runway.name} with {plan.title}: at least 0.5 on {percent(float(np.mean(values >= 0.5)))} of it, mean {percent(float(values.mean()))}.",
-                f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km; dashed: glide paths of "
-                f"{pictures.GLIDE_PATH:g} degrees{'; red: heights of the plan' if plan.asked else ''}; heights are stretched",
-                lambda axes, runway=runway, values=values, extent=extent: pictures.draw_section(axes, plan, runway, values, extent)))
-        return found
+                folder / f"{name}-section{number}.png", (5.6, 2.6), "Section along a runway",
+                f"{plan.title}, along the middle of {runway.name} (white) and its approaches to 3 km: "
+                f"{_half(values)} of it, mean {percent(float(values.mean()))}; "
+                f"dashed: glide paths of {pictures.GLIDE_PATH:g} degrees{limits}; heights are stretched",
+                lambda axes: pictures.draw_section(axes, plan, runway, values, extent)))
+        return {"name": plan.title, "maps": maps, "reasons": reasons, "sections": sections, "clutter": drawn,
+                "overall": plan.overall, "position": place(plan.sensor.position)}
 
     def _tables(self, views: List[Plan]) -> Dict[str, Any]:
-        """Shares by region and height of the bird, by species, and by reason: rows with a row of shares for each view."""
-        first = views[0]
-        bird, shares = first.overall["species"], [plan.shares for plan in views]
+        """Shares by region and height of the bird, by species, and by reason: rows with a share of each view."""
+        first, bird = views[0], views[0].overall["species"]
 
         def height(row):
             low, high = first.heights_of(row["region"])
             low, high = max(low, row["height_from"]), min(high, row["height_to"])
             return f"{low:.3g} to {high:.3g} m" if high > low else f"at {low:.3g} m"
         rows = [{"region": of[0]["region"], "species": of[0]["species"], "heights": height(of[0]), "shares": of,
-                 "all": math.isinf(of[0]["height_from"]) and math.isinf(of[0]["height_to"])} for of in zip(*shares)]
+                 "all": math.isinf(of[0]["height_from"]) and math.isinf(of[0]["height_to"])}
+                for of in zip(*(view.shares for view in views))]
         everywhere = [row for row in rows if row["region"] == first.overall["region"] and row["all"]]
         rows = [row for row in rows if row["shares"][0]["places"] > 0]
         whole = [(row["region"], row["heights"]) for row in rows if row["all"]]
         # a row for a single band repeats the row for all heights
         rows = [row for row in rows if row["all"] or (row["region"], row["heights"]) not in whole]
-        return {"heights": [row for row in rows if row["species"] == bird],
-                "ends": [{"region": of[0]["region"], "shares": of} for of in zip(*(view.by_end for view in views))] if len(first.ends) > 1 else [],
+        ends = [{"region": of[0]["region"], "shares": of} for of in zip(*(view.by_end for view in views))]
+        return {"heights": [row for row in rows if row["species"] == bird], "ends": ends if len(ends) > 1 else [],
                 "species": everywhere if len(everywhere) > 1 else [],
                 "reasons": [(name, f"share_{name.replace(' ', '_')}") for name in first.coverage.status_names]}
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
-        changes = list(sites.look().changes())
+        changes, plan = list(sites.look().changes()), sites.plan
         sites.write(folder, changes)
         best = []
-        for k, i in enumerate(map(int, sites.order[:BEST])):
-            less, error = sites.difference(i)
+        for rank, i in enumerate(sites.order[:BEST].tolist(), 1):
+            less, error = (100.0 * part for part in sites.difference(i))
+            digits = decimals(error) if error > 0.0 else 0
             value, own = sites.share([i])
-            places = f"{100.0 * less:.{decimals(100.0 * error)}f} ± {100.0 * error:.{decimals(100.0 * error)}f}" if error > 0.0 else "–"
-            best.append({"rank": k + 1, "position": rounded(sites.positions[i]), "value": percent(value, own, sites.plan.count), "less": places})
-        gain = sites.gain()
-        words = "; ".join(f"{row['sensors']}: {percent(row['value'], row['std_error'], sites.plan.count)}" for row in gain)
-        pictured = {"map": ("sites.png", f"Map of {len(sites.positions)} candidates for {sites.plan.name}; best alone: "
-                            f"{place(sites.positions[sites.order[0]])}, with {best[0]['value']}.",
-                            f"{sites.plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; light "
-                            "grey: areas where no lidar may stand"),
-                    "curve": ("gain.png", f"Probability of one scan with the best networks of {sites.plan.name}: {words}.",
-                              f"{sites.plan.name}: with more sensors; bars: standard error")}
-        return {"name": sites.plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": sites.count_alike(), "edge": sites.at_the_edge,
-                "degrees": self._degrees(sites), "masts": sites.best_by_mast(), "first": sites.positions[sites.order[0]],
-                "detects": float(sites.values[sites.order[0]]) >= LEAST, "places": sites.plan.count,
+            best.append({"rank": rank, "position": rounded(sites.positions[i]),
+                         "value": percent(value, own, plan.count),
+                         "less": f"{less:.{digits}f} ± {error:.{digits}f}" if error > 0.0 else "–"})
+        gain, first = sites.gain(), sites.order[0]
+        return {"name": plan.name, "best": best, "gain": gain, "lattice": sites.lattice, "alike": sites.count_alike(),
+                "edge": sites.at_the_edge, "degrees": self._degrees(sites), "masts": sites.best_by_mast(),
+                "first": sites.positions[first], "detects": float(sites.values[first]) >= LEAST, "places": plan.count,
                 "by_air": [{**row, "position": rounded(sites.positions[row["site"]])} for row in sites.best_by_air()],
-                "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
-                "taken": sites.stands_wrong(sites.plan.sensor.position), "surfaces": sites.surface_sentence,
+                "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near),
+                "count": len(sites.positions), "taken": sites.stands_wrong(plan.sensor.position),
+                "surfaces": sites.surface_sentence, "draws": int(sites.options.get("draws", DRAWS)),
                 "heights_varied": any("heights" in change.what for change in changes),
-                "draws": int(sites.options.get("draws", DRAWS)),
-                **{key: {"source": embedded(folder / name), "alt": alt, "caption": f"{caption}; {self.asked}"}
-                   for key, (name, alt, caption) in pictured.items()}}
+                "map": self._figure(folder / "sites.png", "Map of candidates",
+                                    f"{plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; "
+                                    "light grey: areas where no lidar may stand"),
+                "curve": self._figure(folder / "gain.png", "Probability of one scan with the best networks",
+                                     f"{plan.name}: with more sensors; bars: standard error")}
 
     def _degrees(self, sites: Sites) -> str:
         """Longitude and latitude of the best site."""
@@ -181,61 +186,76 @@ class Report:
         if origin is None:
             return ""
         longitude, latitude, _ = to_geodetic(sites.positions[sites.order[:1]], origin)[0]
-        return f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}"
+        return (f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, "
+                f"{abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}")
 
     def _reaches(self, plan: Plan, folder: pathlib.Path) -> Dict[str, Any]:
         """The ranges to which the plan's birds are detected."""
-        settings = {name: value for name, value in plan.settings.items() if name not in ("species", "all_species", "height_limits", "clutter")}
+        without = "species", "all_species", "height_limits", "clutter"
+        settings = {name: value for name, value in plan.settings.items() if name not in without}
         of = {species or "target": reach.within_beams(plan.sensor, species, **settings) for species in plan.mix}
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
-        rows: List[Dict[str, Any]] = [{"receiver": plan.name, "species": name, "scans": scans, "to": {share: one.to(share, more) for share in reach.SHARES}}
-                for name, one in of.items() for scans, more in (("one scan", False), (several, True))]
-        words = "; ".join(f"half of them ({row['species']}) by {row['scans']} to {metres(row['to'][0.5])}" for row in rows)
-        table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p), "one_scan_std_error": float(e),
-                  "several_scans": float(k)} for name, one in of.items()
+        rows: List[Dict[str, Any]] = [
+            {"receiver": plan.name, "species": name, "scans": scans,
+             "to": {share: one.to(share, scans == several) for share in reach.SHARES}}
+            for name, one in of.items() for scans in ("one scan", several)]
+        table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p),
+                  "one_scan_std_error": float(e), "several_scans": float(k)} for name, one in of.items()
                  for r, p, e, k in zip(one.ranges, one.one_scan, one.error, one.several_scans)]
-        return {"of": of, "rows": rows, "table": table,
-                "picture": self._draw(folder / f"{plan.name}-range.png", (4.6, 3.4),
-                                      f"Share of birds by range with {plan.name}: {words}.",
-                                      f"{plan.name}: share of birds in its band that are detected, by range, in free air; bars: standard error",
-                                      lambda axes: pictures.draw_reach(axes, of, several))}
+        return {"of": of, "rows": rows, "table": table, "picture": self._draw(
+            folder / f"{plan.name}-range.png", (4.6, 3.4), "Curves",
+            f"{plan.name}: share of birds in its band that are detected, by range, in free air; bars: standard error",
+            lambda axes: pictures.draw_reach(axes, of, several))}
 
     def _weather(self, views: List[Plan], folder: pathlib.Path) -> Dict[str, Any]:
         """Shares of the places in fog, in rain, and over the plan's year, for each view."""
         probability = ("detection_probability", "detection_std_error")
-        found: Dict[str, Any] = {"beside": views[0].air_of()["visibility"], "weaken": [plan.name for plan in self.plans if not gathers_light(plan.sensor)], "pictures": []}
+        year = views[0].year
+        kinds: List[Any] = [("visibility", "visibility", VISIBILITIES, "m"), ("rain", "rain_rate", RAINS, "mm/h")]
+        names = [f"{kind} {value:.10g} {unit}" for kind, _, values, unit in kinds for value in values]
+        names += [air.name for air in year]
         table: List[Dict[str, Any]] = []
-        shares, year = [], views[0].year  # first index view, second index air
-        names = [*(f"visibility {v:.10g} m" for v in VISIBILITIES), *(f"rain {rain:.10g} mm/h" for rain in RAINS), *(air.name for air in year)]
+        shares = []  # first index view, second index air
         for view in views:
-            rows = view.in_airs([*(view.air_of(visibility=v, air_backscatter=True) for v in VISIBILITIES),
-                                 *(view.air_of(rain_rate=rain, air_backscatter=True) for rain in RAINS), *(air.settings for air in view.year)])
+            given = [view.air_of(air_backscatter=True, **{name: value})
+                     for _, name, values, _ in kinds for value in values]
+            rows = view.in_airs(given + [air.settings for air in view.year])
             shares.append([row[-1] for row in rows])
-            table += [{"receiver": view.title, "weather": name, **{key: row[key] for key in ("region", "species", "places", *probability)}}
+            table += [{"receiver": view.title, "weather": name,
+                       **{key: row[key] for key in ("region", "species", "places", *probability)}}
                       for name, of in zip(names, rows) for row in of]
         write_table(folder / "weather.csv", table)
-        first, last = len(VISIBILITIES), len(VISIBILITIES) + len(RAINS)
-        for kind, values, words, part in (("visibility", VISIBILITIES, "visibility, m", slice(first)), ("rain", RAINS, "rain, mm/h", slice(first, last))):
-            curves = {view.title: (values, *([row[name] for row in of[part]] for name in probability)) for view, of in zip(views, shares)}
-            said = "; ".join(f"{name}: {', '.join(f'{value:g}: {percent(share)}' for value, share in zip(values, of))}" for name, (_, of, _) in curves.items())
-            caption = f"{', '.join(view.title for view in views)}: share detected by one scan, by {words}; bars: standard error"
-            found["pictures"].append(self._draw(folder / f"weather-{kind}.png", (4.6, 3.4), f"Share of birds detected by {words}. {said}.", caption,
-                                                lambda axes, curves=curves, words=words, kind=kind:
-                                                pictures.draw_weather(axes, curves, words, kind == "visibility")))
-            found[kind] = [{"value": value, "shares": of} for value, of in zip(values, zip(*(of[part] for of in shares)))]
-        found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*(of[last:] for of in shares)))]
+        found: Dict[str, Any] = {
+            "beside": views[0].air_of()["visibility"], "pictures": [],
+            "weaken": [plan.name for plan in self.plans if not gathers_light(plan.sensor)],
+            "answered": [of[VISIBILITIES.index(ANSWERED)] for of in shares]}
+        titles, first = ", ".join(view.title for view in views), 0
+        for kind, _, values, unit in kinds:
+            of_kind = [of[first:first + len(values)] for of in shares]
+            first += len(values)
+            curves = {view.title: (values, *([row[name] for row in of] for name in probability))
+                      for view, of in zip(views, of_kind)}
+            found["pictures"].append(self._draw(
+                folder / f"weather-{kind}.png", (4.6, 3.4), "Curves",
+                f"{titles}: share detected by one scan, by {kind}, {unit}; bars: standard error",
+                lambda axes: pictures.draw_weather(axes, curves, f"{kind}, {unit}", kind == "visibility")))
+            found[kind] = [{"value": value, "shares": of} for value, of in zip(values, zip(*of_kind))]
+        of_year = [of[first:] for of in shares]
+        found["year"] = [{"name": air.name, "share": air.share, "shares": of} for air, of in zip(year, zip(*of_year))]
         # Places are equal in all weathers, so the error of the mean is at most the mean of the errors.
-        found["over_the_year"] = [{"places": of[0]["places"], **{name: sum(air.share * row[name] for air, row in zip(year, of[last:]))
-                                                                 for name in probability}} for of in shares]
-        found["answered"] = [of[VISIBILITIES.index(ANSWERED)] for of in shares]
+        found["over_the_year"] = [
+            {"places": view.overall["places"],
+             **{name: sum(air.share * row[name] for air, row in zip(year, of)) for name in probability}}
+            for view, of in zip(views, of_year)]
         return found
 
     def _weather_words(self, number: int, view: Plan, weather: Dict[str, Any]) -> str:
         """A sentence on fog and, if the plan has a year, on the year. @param number number of the view"""
-        birds = birds_of(view)
-        said = f"At 1\u00a0km visibility one scan of {view.title} detects {share_of(weather['answered'][number])} of {birds} {view.where}."
+        said = (f"At 1\u00a0km visibility one scan of {view.title} detects {share_of(weather['answered'][number])} "
+                f"of {birds_of(view)} {view.where}.")
         if view.year:
-            said += f" Over the year, by the hours of its weather, the share is {share_of(weather['over_the_year'][number])}."
+            share = share_of(weather["over_the_year"][number])
+            said += f" Over the year, by the hours of its weather, the share is {share}."
         return said
 
     def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
@@ -245,10 +265,13 @@ class Report:
             low, high = reach.band(view.sensor)
             found.update(name=view.title, low=low, high=high, now=view.overall)
             for way in found["ways"]:
-                tried = [(view.at(view.sensor.position, view.title, **changes).in_airs([{}])[0][-1], changes) for changes in way["changes"]]
+                tried = [(view.at(view.sensor.position, view.title, **changes).in_airs([{}])[0][-1], changes)
+                         for changes in way["changes"]]
                 way["then"], changes = max(tried, key=lambda one: one[0]["detection_probability"])
-                way["what"] = f"{way['what'](changes)} ({', '.join(f'{name} {value:.4g}' for name, value in changes.items())})"
-            found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > view.overall["detection_probability"]]
+                words = ", ".join(f"{name} {value:.4g}" for name, value in changes.items())
+                way["what"] = f"{way['what'](changes)} ({words})"
+            now = view.overall["detection_probability"]
+            found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > now]
         return found
 
     def _besides(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]]) -> List[str]:
@@ -258,25 +281,28 @@ class Report:
         said = [sentence for sentences in how_sure(site) for sentence in sentences]
         if plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
-            said.append(f"At the position of {who}, {place(plan.sensor.position)}, the share is {share_of(plan.overall)}"
-                        f"{', but no lidar may stand there' if site['taken'] else ''}.")
+            but = ", but no lidar may stand there" if site["taken"] else ""
+            said.append(f"At the position of {who}, {place(plan.sensor.position)}, the share is "
+                        f"{share_of(plan.overall)}{but}.")
         return said
 
     def _first_picture(self, view: Plan, folder: pathlib.Path) -> Dict[str, str]:
-        """The airport with the sensor, all regions of the plan, and the areas where birds are detected at each height."""
+        """The airport with the sensor, the regions of the plan, and where birds are detected at each height."""
         extent = pictures.answer_extent(view)
         found = pictures.found_at(view, extent)
-        seen = "; ".join(f"{height:g} m above {view.above}: half or more on {percent(float(np.mean(classes == 2)))} of the map" for height, classes in found)
+        seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} at {height:g} m" for height, classes in found)
         shares = {row["region"]: share_of(row) for row in view.by_end}
         regions = "; dotted: the plan's strips and approaches, with the share detected in each" if view.runways else ""
-        return self._draw(folder / "answer.png", pictures.map_size(extent, 4.6, 0.0, 0.2 * math.ceil(len(found) / 2) + 0.1),
-                          f"Map of the airport with {view.title}, {place(view.sensor.position)}. {view.bird}, {seen}.",
-                          f"{view.name} (red triangle), {place(view.sensor.position)}. Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
-                          lambda axes: pictures.draw_answer(axes, view, found, extent, shares))
+        return self._draw(
+            folder / "answer.png", pictures.map_size(extent, 4.6, 0.0, 0.2 * math.ceil(len(found) / 2) + 0.1),
+            f"Map of the airport: one scan detects half or more of the birds on {seen} above {view.above}",
+            f"{view.name} (red triangle), {place(view.sensor.position)}. "
+            f"Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
+            lambda axes: pictures.draw_answer(axes, view, found, extent, shares))
 
     def write(self, file) -> pathlib.Path:
-        """Writes the page. Beside the page, a folder with the page's name and `_files` gets shares.csv, ends.csv, range.csv, weather.csv,
-        pictures and tables of sites. @return this folder"""
+        """Writes the page. Beside the page, a folder with the page's name and `_files` gets shares.csv, ends.csv,
+        range.csv, weather.csv, pictures and tables of sites. @return this folder"""
         file = pathlib.Path(file)
         if file.suffix not in (".html", ".htm") or file.is_dir():
             raise Error(f"{file}: is not the name of a page, expected one that ends in .html")
@@ -288,14 +314,17 @@ class Report:
     def _page(self, folder: pathlib.Path) -> bytes:
         """The page. Its tables and pictures are written to the folder."""
         first = self.plans[0]
-        sited = [self._siting(sites, folder if number == 0 else folder / sites.plan.name) for number, sites in enumerate(self.sites)]
-        best = [plan.at(site["first"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES) for plan, site in zip(self.plans, sited) if site["detects"]]
+        sited = [self._siting(sites, folder if number == 0 else folder / sites.plan.name)
+                 for number, sites in enumerate(self.sites)]
+        best = [plan.at(site["first"], f"{plan.name} at its best site", plan.seed + OTHER_PLACES)
+                for plan, site in zip(self.plans, sited) if site["detects"]]
         views = [*self.plans, *best]
         if "extent" not in self.plan:
-            points = np.array([point for view in views for point in (view.extent[::2], view.extent[1::2], view.sensor.position[:2])])
-            low, high = points.min(axis=0), points.max(axis=0)
+            points = np.array([point for view in views
+                               for point in (view.extent[::2], view.extent[1::2], view.sensor.position[:2])])
+            (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
             for view in views:
-                view.extent = (low[0], high[0], low[1], high[1])
+                view.extent = (x0, x1, y0, y1)
         reaches = [self._reaches(plan, folder) for plan in self.plans]
         shown = [self._view(view, folder, view.name if view in self.plans else f"{view.name}-best") for view in views]
         answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
@@ -306,7 +335,6 @@ class Report:
         answers = [sentence for words, plan, view, site in zip(said, self.plans, answering, site_of)
                    for sentence in (*words, *self._besides(plan, view, site))]
         weather["words"] = [self._weather_words(views.index(view), view, weather) for view in answering]
-        answers.append(weather["words"][0])
         advices = [self._advice(view, of) for view, of in zip(answering, reaches)]
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "ends.csv", [{"receiver": view.title, **row} for view in views for row in view.by_end])
@@ -314,36 +342,33 @@ class Report:
         known = field_values(first.regions.data)
         made = ("file", "hours", "options", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
+        # the plan without folders of this computer
+        text = re.sub(r'"/(?:[^"\\]|\\.)*/', '"', json.dumps(asked, indent=1, ensure_ascii=False))
         return render(
-            "report.html.jinja", filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell, filter_rounded=rounded,
+            "report.html.jinja",
+            filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell,
+            filter_rounded=rounded, asked=self.asked, chance=share_of(answering[0].overall), said=said[0],
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            asked=self.asked, chance=share_of(answering[0].overall),
-            said=said[0],
             first=self._first_picture(answering[0], folder),
-            steps=_answer.next_steps(first, answering[0], site_of[0], advices[0]), answer=answers,
-            bird=first.bird, cover=first.coverage, area=float(np.ravel(known["effective_area"])[0]),
-            attenuation=float(known["attenuation_coefficient"]), plan=first, places=int(first.overall["places"]),
-            assumptions=assumptions(self.plans), names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
+            steps=_answer.next_steps(first, answering[0], site_of[0], advices[0]),
+            answer=[*answers, weather["words"][0]], bird=first.bird, cover=first.coverage,
+            area=float(np.ravel(known["effective_area"])[0]), attenuation=float(known["attenuation_coefficient"]),
+            plan=first, places=int(first.overall["places"]), assumptions=assumptions(self.plans),
+            names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
             advice=[one for one in advices if one],
-            tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""), fewest=FEWEST_DRAWS, least=LEAST,
-            least_words=LEAST_WORDS, colours=pictures.gradient(),
-            statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)),
-            tracks=self.tracks,
+            tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""),
+            fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
+            statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)), tracks=self.tracks,
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},
-            files=folder.name, version=__version__, json=json.dumps(_shown(asked), indent=1, ensure_ascii=False))
+            files=folder.name, version=__version__, json=text)
+
+
+def _half(p: np.ndarray) -> str:
+    return f"at least 0.5 on {percent(float(np.mean(p >= 0.5)))}"
 
 
 def _lines(value: Any) -> List[str]:
     """A comment, which may be any value, in lines."""
     parts = value if isinstance(value, list) else [] if value is None else [value]
     return [part if isinstance(part, str) else json.dumps(part, ensure_ascii=False) for part in parts]
-
-
-def _shown(value: Any) -> Any:
-    """A plan without folders of this computer."""
-    if isinstance(value, dict):
-        return {name: _shown(part) for name, part in value.items()}
-    if isinstance(value, list):
-        return [_shown(part) for part in value]
-    return os.path.basename(value) if isinstance(value, str) and os.path.isabs(value) else value

@@ -31,14 +31,17 @@ from ._simulation import STATUSES, SUBSETS, TRUTH, Simulation
 
 DONE = "done.json"
 PART = ".part"  # suffix of a folder that is being written
-FOLDERS = (("velodyne", ".bin", 16), ("labels", ".label", 4), ("subsets", ".subset", 1))  # suffix of the files, and bytes for a point
-ALL = (*FOLDERS, ("boxes", ".txt", 1))
+FOLDERS = {"velodyne": ".bin", "labels": ".label", "subsets": ".subset", "boxes": ".txt"}  # suffix of the files
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # files of a whole sequence
 TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # tables in DONE
 COUNTS = ("scans", "scans_with_birds_seen")
 _AGAIN = "Remove the folder, and run again to make a new folder"
+_OTHER = "choose another folder or remove this folder"
 _FEWER = "choose at least as many scans as the folder has, or another folder"
 SHOWN = 3  # number of differing inputs in an error
+# Settings that change no bit of a scan; numbers of scans and of revolutions decide which scans exist.
+NO_BIT = ("number_of_threads", "controller", "maximum_cache_size", "batch_collision_detection", "number_of_revolutions",
+          "number_of_scans")
 CONFIGURATION = "semantic-kitti.yaml"
 Progress = Callable[[int, int, int], None]
 
@@ -52,11 +55,11 @@ class Sequence(Simulation):
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
         """Writes the files of a sequence. @return a description of the content"""
-        for name, _, _ in ALL:
+        for name in FOLDERS:
             (folder / name).mkdir(parents=True)
         boxes = Boxes(self.scene.tree.GetOutput(), self.at_rest, self._pose())
         writer = _wrapped.vtkAvianLidarKITTIWriter()
-        table: List[Any] = []
+        table: List[Dict[str, Any]] = []
         classes: Counter[int] = collections.Counter()
         scans = self.span(number)
         with Updates(writer) as write:
@@ -77,26 +80,28 @@ class Sequence(Simulation):
                 classes.update((labels & 0xffff).tolist())
                 if progress:
                     progress(number, k - scans.start + 1, len(scans))
-        pose = " ".join(f"{value:.9g}" for value in self._pose().ravel())
-        texts = {"times.txt": "".join(f"{k / self.sensor.rotation_rate:.6f}\n" for k in scans), "poses.txt": f"{pose}\n" * len(scans),
-                 "calib.txt": "".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in ("P0", "P1", "P2", "P3", "Tr"))}
-        for name, text in {**texts, "truth.csv": as_csv([TRUTH, *table]).decode()}.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        statuses, seen = [row[3] for row in table], [row for row in table if row[3] == "seen"]
-        return {"scans": len(scans), "scans_with_birds_seen": len({row[0] for row in seen}), "points_of_classes": dict(classes),
+        np.savetxt(folder / "times.txt", np.array(scans) / self.sensor.rotation_rate, "%.6f")
+        np.savetxt(folder / "poses.txt", [self._pose().ravel()] * len(scans), "%.9g")
+        names = "P0", "P1", "P2", "P3", "Tr"
+        (folder / "calib.txt").write_text("".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in names))
+        (folder / "truth.csv").write_bytes(as_csv([TRUTH, *([*row.values()] for row in table)]))
+        seen = [row for row in table if row["status"] == "seen"]
+        statuses, subsets = [row["status"] for row in table], [row["subset"] for row in seen]
+        return {"scans": len(scans), "scans_with_birds_seen": len({row["scan"] for row in seen}),
+                "points_of_classes": dict(classes),
                 "birds_of_statuses": {name: statuses.count(name) for name in STATUSES},
-                "birds_seen_of_subsets": {name: [row[4] for row in seen].count(name) for name in SUBSETS}}
+                "birds_seen_of_subsets": {name: subsets.count(name) for name in SUBSETS}}
 
     def _inputs(self) -> Dict[str, str]:
-        """Everything that the files depend on, by name, as found: the scenario, the files that the scenario names, the scene, and each
-        property of sensor and scan, whether set or default."""
-        scenario = with_files({**self.scenario, "scene": ""}, lambda name: name and hashlib.sha256(read_regular(name)).hexdigest())
-        no_bit = ("number_of_threads", "controller", "maximum_cache_size", "batch_collision_detection",
-                  "number_of_revolutions")  # the number of revolutions decides which scans exist
-        parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan", "number_of_scans")},
+        """Everything that the files depend on, by name, as found: the scenario, the files that the scenario names, the
+        scene, and each property of sensor and scan, whether set or default."""
+        scenario = with_files({**self.scenario, "scene": ""},
+                              lambda name: name and hashlib.sha256(read_regular(name)).hexdigest())
+        parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan")},
                  "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.at_rest.beams.data)},
                  "scan": self.scan.properties()}
-        found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items() if name not in no_bit}
+        found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items()
+                 if name not in NO_BIT}
         return {"version": __version__, "scene": digest_of(self.scene.tree.GetOutput()), **found}
 
     def decides(self) -> Any:
@@ -104,67 +109,65 @@ class Sequence(Simulation):
         return self.scans, sorted(self._inputs().items())
 
     def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
-        """Makes the missing sequences of `folder`/sequences/NN, then manifest.json and datasheet.md. Returns the manifest.
+        """Makes the missing sequences of `folder`/sequences/NN, manifest.json and datasheet.md. @return the manifest
 
         A sequence gets its name when it is complete, so a killed run can be started again and continues with the next
-        sequence. More scans add sequences; a sequence that had fewer scans is made again, with a warning. Sequences of another scenario,
-        more scans than requested, and changed files are errors. Each rank makes whole sequences.
+        sequence. More scans add sequences; a sequence that had fewer scans is made again, with a warning. Sequences of
+        another scenario, more scans than requested, and changed files are errors. Each rank makes whole sequences.
         semantic-kitti.yaml beside the manifest is the configuration for programs that read SemanticKITTI.
 
         progress  called with the number of the sequence, its finished scans and all its scans
         """
         ranks, out = ranks or Ranks(), pathlib.Path(folder)
         with only_run(out, ranks, goes_on=True, known=self.decides), ranks.together():
-            return self._write(out, ranks, progress)
-
-    def _write(self, out: pathlib.Path, ranks: Ranks, progress: Optional[Progress]) -> Dict[str, Any]:
-        home, common = out / "sequences", self._inputs()
-        home.mkdir(exist_ok=True)
-        for folder in sorted(home.glob("[0-9]*")):
-            if folder.name.isdigit() and int(folder.name) >= len(self):
-                raise Error(f"{folder}: exists, but number_of_scans is {self.scans}: {_FEWER}")
-        missing = [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
-        mine = missing[ranks.rank::ranks.size]
-        self.scans_to_do = sum(len(self.span(k)) for k in mine)
-        shorter = [home / f"{k:02d}" for k in missing if (home / f"{k:02d}").exists()]
-        if shorter and ranks.rank == 0:
-            warnings.warn(f"{shorter[0]}: has fewer scans than requested, and is made again, because flights depend on the length of a "
-                          "sequence", RuntimeWarning, stacklevel=callers_level())
-        ranks.wait()  # all ranks have read before any rank writes
-        if ranks.rank == 0:
-            for part in home.glob(f".*{PART}"):
-                shutil.rmtree(part)
-        ranks.wait()
-        for number in mine:
-            name, inputs = f"{number:02d}", self._inputs_of(common, number)
-            part, old = (home / f".{name}.{secrets.token_hex(4)}{PART}" for _ in range(2))
-            try:
-                content = self._write_one(part, number, progress)
-                _check_scans(part, len(self.span(number)))
-                write_whole(part / DONE, as_json({**content, "inputs": inputs, "identity": _identity(inputs), "sha256": _digest(part)}))
-                os.sync()
-                if home / name in shorter:
-                    os.replace(home / name, old)
-                os.replace(part, home / name)
-            except BaseException:
-                shutil.rmtree(part, ignore_errors=True)
-                raise
-            shutil.rmtree(old, ignore_errors=True)
-            synchronize(home)
-        ranks.wait()
-        contents = {f"{k:02d}": {key: value for key, value in load_json(home / f"{k:02d}" / DONE).items() if key != "inputs"}
-                    for k in range(len(self))}
-        manifest = {"scenario": with_files(self.scenario, lambda name: os.path.relpath(name, out)),
-                    "scene_digest": digest_of(self.scene.tree.GetOutput()), "avian_lidar_version": __version__,
-                    "beams": self.sensor.beams.number_of_points,
-                    "assumed": self.sensor.beams.fields.get("assumed", []), "sequences": contents}
-        if ranks.rank == 0:
-            points = {int(label): count for label, count in _sums(manifest, "points_of_classes").items()}
-            write_whole(out / "manifest.json", as_json(manifest))
-            write_whole(out / "datasheet.md", datasheet(manifest).encode())
-            write_whole(out / CONFIGURATION, configuration(self.bird_class, points, map(int, contents)).encode())
-        ranks.wait()
-        return manifest
+            home, common = out / "sequences", self._inputs()
+            home.mkdir(exist_ok=True)
+            for folder in sorted(home.glob("[0-9]*")):
+                if folder.name.isdigit() and int(folder.name) >= len(self):
+                    raise Error(f"{folder}: exists, but number_of_scans is {self.scans}: {_FEWER}")
+            missing = [k for k in range(len(self)) if not self._is_there(home / f"{k:02d}", k, common)]
+            mine = missing[ranks.rank::ranks.size]
+            self.scans_to_do = sum(len(self.span(k)) for k in mine)
+            shorter = [home / f"{k:02d}" for k in missing if (home / f"{k:02d}").exists()]
+            if shorter and ranks.rank == 0:
+                warnings.warn(f"{shorter[0]}: has fewer scans than requested, and is made again, because flights "
+                              "depend on the length of a sequence", RuntimeWarning, stacklevel=callers_level())
+            ranks.wait()  # all ranks have read before any rank writes
+            if ranks.rank == 0:
+                for part in home.glob(f".*{PART}"):
+                    shutil.rmtree(part)
+            ranks.wait()
+            for number in mine:
+                name, inputs = f"{number:02d}", self._inputs_of(common, number)
+                part, old = (home / f".{name}.{secrets.token_hex(4)}{PART}" for _ in range(2))
+                try:
+                    content = self._write_one(part, number, progress)
+                    content.update(inputs=inputs, identity=_identity(inputs), sha256=_digest(part))
+                    write_whole(part / DONE, as_json(content))
+                    os.sync()
+                    if home / name in shorter:
+                        os.replace(home / name, old)
+                    os.replace(part, home / name)
+                except BaseException:
+                    shutil.rmtree(part, ignore_errors=True)
+                    raise
+                shutil.rmtree(old, ignore_errors=True)
+                synchronize(home)
+            ranks.wait()
+            contents = {f"{k:02d}": load_json(home / f"{k:02d}" / DONE) for k in range(len(self))}
+            for content in contents.values():
+                del content["inputs"]
+            manifest = {"scenario": with_files(self.scenario, lambda name: os.path.relpath(name, out)),
+                        "scene_digest": digest_of(self.scene.tree.GetOutput()), "avian_lidar_version": __version__,
+                        "beams": self.sensor.beams.number_of_points,
+                        "assumed": self.sensor.beams.fields.get("assumed", []), "sequences": contents}
+            if ranks.rank == 0:
+                points = {int(label): count for label, count in _sums(manifest, "points_of_classes").items()}
+                write_whole(out / "manifest.json", as_json(manifest))
+                write_whole(out / "datasheet.md", datasheet(manifest).encode())
+                write_whole(out / CONFIGURATION, configuration(self.bird_class, points, map(int, contents)).encode())
+            ranks.wait()
+            return manifest
 
     def _inputs_of(self, common: Dict[str, str], number: int, scans: Optional[int] = None) -> Dict[str, str]:
         """Inputs of a sequence with a number of scans; default: the scans of the sequence in this scenario."""
@@ -172,35 +175,28 @@ class Sequence(Simulation):
         return {**common, "scans": f"{span.start} to {span.start + scans if scans else span.stop}"}
 
     def _is_there(self, folder: pathlib.Path, number: int, common: Dict[str, str]) -> bool:
-        """Whether a sequence is complete; also False if it has fewer scans. `Error` if the sequence is damaged or was made from other
-        inputs."""
+        """Whether a sequence is complete and has its scans. `Error` if it is damaged or was made from other inputs."""
         if not folder.exists():
             return False
         if not (folder / DONE).exists():
-            raise Error(f"{folder}: has no {DONE}, so the sequence is incomplete; choose another folder or remove this folder")
+            raise Error(f"{folder}: has no {DONE}, so the sequence is incomplete; {_OTHER}")
         content = load_json(folder / DONE)
         known: Dict[str, Any] = content if isinstance(content, dict) else {}
         scans, wanted = known.get("scans"), len(self.span(number))
         scans = scans if isinstance(scans, int) and 0 < scans <= self.length else wanted
         if known.get("identity") != _identity(self._inputs_of(common, number, scans)):
-            inputs = self._inputs_of(common, number)
-            raise Error(f"{folder} was made from another scenario, scene or version: "
-                        f"{_difference(known.get('inputs'), inputs)}; choose another "
-                        "folder or remove this folder")
+            difference = _difference(known.get("inputs"), self._inputs_of(common, number))
+            raise Error(f"{folder} was made from another scenario, scene or version: {difference}; {_OTHER}")
         if scans > wanted:
             raise Error(f"{folder}: has {scans} scans, but number_of_scans is {self.scans}: {_FEWER}")
         if scans < wanted:
             return False
-        wrong = [name for name, keys in zip(TABLES, (map(str, classes_of(self.bird_class)), STATUSES, SUBSETS)) if not isinstance(known.get(name), dict)
-                 or not {*known[name]} <= {*keys} or not all(isinstance(count, int) for count in known[name].values())]
-        wrong += [name for name in COUNTS if not isinstance(known.get(name), int)]
-        if wrong:
-            raise Error(f"{folder / DONE}: {wrong[0]} is missing or is not a count. {_AGAIN}")
-        _check_scans(folder, wanted)
-        if known.get("sha256") != _digest(folder):
-            raise Error(f"{folder}: its files differ from the sha256 in its {DONE}: another program has changed, added or removed "
-                        f"files. {_AGAIN}")
-        return True
+        keys: List[Any] = [map(str, classes_of(self.bird_class)), STATUSES, SUBSETS]
+        for name, allowed in [*zip(TABLES, keys), *((name, [name]) for name in COUNTS)]:
+            table = known.get(name) if name in TABLES else {name: known.get(name)}
+            if not isinstance(table, dict) or not {*table} <= {*allowed} or {*map(type, table.values())} - {int}:
+                raise Error(f"{folder / DONE}: {name} is missing or is not a count. {_AGAIN}")
+        return bool(content_of(folder))
 
 
 def _short(value: Any) -> str:
@@ -223,18 +219,18 @@ def _difference(before: Any, now: Dict[str, str]) -> str:
     return "; ".join(words + ([f"and {len(names) - SHOWN} more"] if len(names) > SHOWN else []))
 
 
-def _check_scans(folder: pathlib.Path, count: int) -> None:
-    """`Error` unless a sequence has exactly its scans, with a label and a subset for each point."""
-    points = [{file.stem: file.stat().st_size / size for file in (folder / name).glob(f"*{suffix}")} for name, suffix, size in ALL]
-    whole = sum(len({of.get(f"{number:06d}", ~i) for i, of in enumerate(points[:len(FOLDERS)])}) == 1 for number in range(count))
-    if whole < count or any(len(of) != count for of in points):
-        raise Error(f"{folder}: {whole} of {count} scans are complete, and the folder has {len(points[0])}: "
-                    f"another program has changed files in the folder. {_AGAIN}")
+def content_of(folder: pathlib.Path) -> Dict[str, Any]:
+    """The content of DONE; `Error` unless all files are those with which the sequence was made."""
+    content = load_json(folder / DONE)
+    if not isinstance(content, dict) or content.get("sha256") != _digest(folder):
+        raise Error(f"{folder}: its files differ from the sha256 in its {DONE}: "
+                    f"another program has changed, added or removed files. {_AGAIN}")
+    return content
 
 
 def _digest(folder: pathlib.Path) -> str:
     """Checksum of names and contents of all files of a sequence. Other files beside them are ignored."""
-    scans = [path for name, suffix, _ in ALL for path in (folder / name).glob(f"*{suffix}")]
+    scans = [path for name, suffix in FOLDERS.items() for path in (folder / name).glob(f"*{suffix}")]
     digest = hashlib.sha256()
     for path in sorted([*scans, *map(folder.joinpath, TEXTS)]):
         digest.update(str(path.relative_to(folder)).encode() + b"\0" + (path.read_bytes() if path.is_file() else b""))

@@ -40,19 +40,18 @@ LONGEST = 1e9  # greatest time of a route and greatest start time of an object, 
 class Clutter:
     """The static echoes of every beam, without noise, and the clutter before or behind a point of the same beam.
 
-    A point is in the subset `sky` if its beam has no static echo; in `through_edges` if a static echo lies more than `near` metres before
-    the point, so that the beam continues past an edge; else in `near_clutter`.
-    """
+    A point is in the subset `sky` if its beam has no static echo; in `through_edges` if a static echo lies more than
+    `near` metres before the point, so that the beam continues past an edge; else in `near_clutter`."""
 
     def __init__(self, scan: Scan, near: float):
         echoes = scan.echoes
         order = np.lexsort((echoes["distance_m"], echoes["beam_id"]))
         order = order[echoes["object_id"][order] != AIR]  # echoes of the air are not clutter
-        self.beams, self.ranges, self.energies = (echoes[name][order] for name in ("beam_id", "distance_m", "energy_received"))
-        self.near = near
+        self.beams, self.ranges = echoes["beam_id"][order], echoes["distance_m"][order]
+        self.energies, self.near = echoes["energy_received"][order], near
 
     def look(self, beams, ranges) -> Tuple[np.ndarray, np.ndarray]:
-        """(distance in range to the nearest static echo of the same beam, m, infinite without an echo; index in SUBSETS)."""
+        """(distance to the nearest static echo of the same beam, m, infinite without one; index in SUBSETS)."""
         beams, ranges = np.asarray(beams), np.asarray(ranges)
         distance = np.full(len(beams), np.inf)
         begin, end = np.searchsorted(self.beams, beams, "left"), np.searchsorted(self.beams, beams, "right")
@@ -79,8 +78,9 @@ class Simulation:
         changes   changes of keys of the scenario, for example number_of_scans
         """
         self.file = "scenario" if isinstance(scenario, dict) else os.fspath(scenario)
-        self.scenario = checked({**(scenario if isinstance(scenario, dict) else read_scenario(scenario)), **changes}, self.file)
-        self.threads = threads
+        known = scenario if isinstance(scenario, dict) else read_scenario(scenario)
+        self.scenario = checked({**known, **changes}, self.file)
+        self.near = float(self.scenario.get("near_clutter_distance", 15.0))
         self.scans = int(self.scenario["number_of_scans"])
         self.scans_to_do = 0  # number of scans of this process, known after `write` has read the folder
         self.length, self.seed, self.bird_class = (int(self.scenario.get(name, default)) for name, default in (
@@ -91,8 +91,8 @@ class Simulation:
             self.scene = load_scene(self.scenario["scene"])
             update(self.scene.tree)
         if len(self.scene.objects) > FIRST_OBJECT:
-            raise Error(f"{self.scenario['scene']}: has {len(self.scene.objects)} objects, expected at most {FIRST_OBJECT}: "
-                        "labels hold no more")
+            raise Error(f"{self.scenario['scene']}: has {len(self.scene.objects)} objects, "
+                        f"expected at most {FIRST_OBJECT}: labels hold no more")
         sensor: Dict[str, Any] = {"position": self.scene.lidar_position or (0, 0, 0), "motion_seed": self.seed,
                                   **self.scenario["sensor"], "number_of_revolutions": self.scans}
         with naming(f"{self.file}: weather"):
@@ -108,7 +108,8 @@ class Simulation:
         crowns = [text for text in media if "leaf_area_density" in json.loads(text)]
         self.clear = self.bare = self.scan  # scans without air that scatters, and without crowns of trees
         others = dict(settings)
-        if self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0) or len(crowns) < len(media):
+        scatters = self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0)
+        if scatters or len(crowns) < len(media):
             others.update(visibility=0.0, air_backscatter=False, rain_rate=0.0)
             self.clear = self.bare = self._in_media(crowns, others)
         if crowns:
@@ -120,7 +121,7 @@ class Simulation:
         self.at_rest = Sensor(**sensor)
         with naming(f"{self.file}: scan"):
             self._still = Scan(self.scene, self.at_rest, **settings)
-            self.clutter = self._clutter()
+            self.clutter = Clutter(self._still, self.near)
 
     def _in_media(self, media: List[str], settings: Dict[str, Any]) -> Scan:
         """A scan for comparison, of the scene's surfaces with other media."""
@@ -131,9 +132,6 @@ class Simulation:
         add_array(surfaces.GetFieldData(), "media", media)
         scan.algorithm.SetSurfacesData(surfaces)
         return scan
-
-    def _clutter(self) -> Clutter:
-        return Clutter(self._still, float(self.scenario.get("near_clutter_distance", 15.0)))
 
     def __len__(self) -> int:
         """Number of sequences."""
@@ -160,7 +158,8 @@ class Simulation:
         for place, group in enumerate(self.scenario.get("birds", ())):
             tracks = _wrapped.vtkAvianLidarTracks()
             seed = hashlib.sha256(json.dumps((self.seed, number, place)).encode()).digest()[:4]
-            ours = {"time_range": time, "first_object_id": FIRST_BIRD + len(blocks), "seed": int.from_bytes(seed, "little", signed=True), **group}
+            ours = {"time_range": time, "first_object_id": FIRST_BIRD + len(blocks),
+                    "seed": int.from_bytes(seed, "little", signed=True), **group}
             with naming(f"{self.file}: birds[{place}]"):
                 set_properties(tracks, "vtkAvianLidarTracks", **ours)
                 update(tracks)
@@ -168,7 +167,8 @@ class Simulation:
                 species[FIRST_BIRD + len(blocks)] = field_values(block)["species"][0]
                 blocks.append(block)
             if len(blocks) > LAST_ID - FIRST_BIRD:
-                raise Error(f"{self.file}: birds: {len(blocks)} and more, expected at most {LAST_ID - FIRST_BIRD}: labels hold no more")
+                raise Error(f"{self.file}: birds: {len(blocks)} and more, "
+                            f"expected at most {LAST_ID - FIRST_BIRD}: labels hold no more")
         return blocks, species
 
     def _objects(self, begin: float, end: float) -> List[vtkPolyData]:
@@ -184,11 +184,12 @@ class Simulation:
                 times = np.concatenate([[0.0], np.cumsum(lengths) / thing["speed"]])
             first, every = float(thing.get("first", 0)), float(thing.get("every", math.inf))
             if not times[-1] <= LONGEST or abs(first) > LONGEST:
-                raise Error(f"{self.file}: objects[{place}]: is under way from {first:g} s for {times[-1]:g} s, expected at most "
-                            f"{LONGEST:g} s")
+                raise Error(f"{self.file}: objects[{place}]: is under way from {first:g} s for {times[-1]:g} s, "
+                            f"expected at most {LONGEST:g} s")
             most = FIRST_BIRD - FIRST_OBJECT
-            if every * most < times[-1] + end - begin or len(blocks) > most:
-                raise Error(f"{self.file}: objects[{place}].every: more than {most} objects would be under way in one sequence")
+            if not every * (most - len(blocks)) >= times[-1] + end - begin:
+                raise Error(f"{self.file}: objects[{place}].every: "
+                            f"more than {most} objects would be under way in one sequence")
             start = first
             if math.isfinite(every) and begin - times[-1] > first:
                 start = first + every * math.ceil((begin - times[-1] - first) / every)
@@ -196,9 +197,6 @@ class Simulation:
                 with naming(f"{self.file}: objects[{place}]"):
                     blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
                 start += every
-        if FIRST_OBJECT + len(blocks) > FIRST_BIRD:
-            raise Error(f"{self.file}: objects: {len(blocks)} under way in one sequence, expected at most "
-                        f"{FIRST_BIRD - FIRST_OBJECT}")
         return blocks
 
     @staticmethod
@@ -224,52 +222,62 @@ class Simulation:
         return mover(surface, np.repeat(route, 2, axis=0)[1:-1], when, np.repeat(turn, 2, axis=0))
 
     def frames(self, number: int) -> Iterator[Tuple[int, Scan, Dict[int, str]]]:
-        """The scans of a sequence: (number of the scan, the scan in its state at that time, species of the birds by id)."""
+        """The scans of a sequence: (number, the scan in its state at that time, species of the birds by id)."""
         movers, species = self._moving(number)
         scans = [*dict.fromkeys((self.scan, self.clear, self.bare))]
         for scan in scans:
             scan.movers = movers
         differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams of rotating prisms differ from scan to scan
         with contextlib.ExitStack() as stack:
-            runs = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep) for scan in scans + [self._still] * differ]
+            runs = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep)
+                    for scan in scans + [self._still] * differ]
             for k in self.span(number):
                 for run, step in runs:
                     run(functools.partial(step, k / self.sensor.rotation_rate))
                 if differ:
-                    self.clutter = self._clutter()
+                    self.clutter = Clutter(self._still, self.near)
                 yield k, self.scan, species
 
-    def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
-        """A row of `TRUTH` for each bird, for the current state of the scan."""
+    def truth(self, k: int, species: Dict[int, str]) -> List[Dict[str, Any]]:
+        """A row for each bird, with the values of `TRUTH` by name, for the current state of the scan."""
+        weather = {"visibility_m": f"{self.scan.visibility:g}" if self.scan.visibility > 0.0 else "",
+                   "rain_mm_h": f"{self.scan.rain_rate:g}"}
+        rows: Dict[int, Dict[str, Any]] = {
+            bird: {**dict.fromkeys(TRUTH, ""), "scan": k, "bird": bird, "species": name, "status": "absent", "beams": 0,
+                   "points": 0, **weather} for bird, name in species.items()}
         report = Cloud(self.scan.algorithm.GetOutput(2))
-        weather = [f"{self.scan.visibility:g}" if self.scan.visibility > 0.0 else "", f"{self.scan.rain_rate:g}"]
-        rows = {bird: [k, bird, name, "absent", ""] + [""] * 8 + [0, "", "", "", 0] + [""] * 10 + [*weather, ""] for bird, name in species.items()}
         if report.number_of_points == 0:
             return list(rows.values())
-        without, bare = ({bird: both for bird, *both in zip(found["object_id"], found["energy_received"], found["detection_probability"])}
+        without, bare = (dict(zip(found["object_id"], zip(found["energy_received"], found["detection_probability"])))
                          for found in (Cloud(scan.algorithm.GetOutput(2)) for scan in (self.clear, self.bare)))
         distances, subsets = self.clutter.look(report["beam_id"], report["distance_m"])
         for one, place, distance, subset in zip(report.structured(), report.points, distances, subsets):
-            bird, beams, energy, probability, points = (one[name].item() for name in (
-                "object_id", "number_of_beams", "energy_received", "detection_probability", "number_of_echoes"))
-            if bird not in rows:  # a moving object that is not a bird
+            row = rows.get(one["object_id"].item())
+            if row is None:  # a moving object that is not a bird
                 continue
-            light, chance = without.get(bird, (energy, probability))
+            beams, energy, probability, points = (one[name].item() for name in (
+                "number_of_beams", "energy_received", "detection_probability", "number_of_echoes"))
+            light, chance = without.get(row["bird"], (energy, probability))
             in_gate = self.sensor.minimum_range <= one["distance_m"] <= self.sensor.range_gate
             outside = not in_gate or (beams == 0 and light == 0)
             static = self.clutter.energy(one["beam_id"])
             status = ("seen" if points else "outside" if outside else "hidden" if light == 0 else
                       "missed" if probability >= WEAK else "air" if chance >= WEAK else
-                      "hidden" if bare.get(bird, (0.0, chance))[1] >= WEAK else "too weak")
-            times, places = zip(*((one[f"{when}timestamp"], one[f"{when}position"] if when else place) for when in ("", "first_", "last_")))
-            now, first, last = ([f"{1e-6 * time:.6f}", *(f"{x:.4f}" for x in at)] for time, at in zip(times, places))
-            rows[bird] = [k, bird, species[bird], status, SUBSETS[subset] if status != "outside" else "", *now,
-                          f"{one['distance_m']:.4f}", f"{one['azimuth'] / 100:.4f}",
-                          f"{one['vertical_angle']:.4f}", f"{one['effective_area']:.6g}", beams,
-                          f"{energy:.6g}", f"{one['photoelectrons']:.6g}" if "photoelectrons" in report else "",
-                          f"{probability:.6g}", points, f"{distance:.4f}" if status != "outside" else "",
-                          f"{static / (static + energy):.4f}" if static + energy > 0 else "", *first, *last,
-                          *weather, f"{chance:.6g}" if self.clear is not self.scan else ""]
+                      "hidden" if bare.get(row["bird"], (0.0, chance))[1] >= WEAK else "too weak")
+            row.update(
+                status=status, subset=SUBSETS[subset] if status != "outside" else "",
+                range_m=f"{one['distance_m']:.4f}", azimuth_deg=f"{one['azimuth'] / 100:.4f}",
+                elevation_deg=f"{one['vertical_angle']:.4f}", effective_area_m2=f"{one['effective_area']:.6g}",
+                beams=beams, expected_energy_J=f"{energy:.6g}",
+                expected_photoelectrons=f"{one['photoelectrons']:.6g}" if "photoelectrons" in report else "",
+                expected_probability=f"{probability:.6g}", points=points,
+                clutter_distance_m=f"{distance:.4f}" if status != "outside" else "",
+                clutter_share=f"{static / (static + energy):.4f}" if static + energy > 0 else "",
+                clear_probability=f"{chance:.6g}" if self.clear is not self.scan else "")
+            for when in ("", "first_", "last_"):
+                row[f"{when}time_s"] = f"{1e-6 * one[f'{when}timestamp']:.6f}"
+                at = one[f"{when}position"] if when else place
+                row.update({f"{when}{name}_m": f"{x:.4f}" for name, x in zip("xyz", at)})
         return list(rows.values())
 
     def _pose(self) -> np.ndarray:
@@ -277,5 +285,5 @@ class Simulation:
         place = np.array(self.sensor.position, float)
         ends = mesh(np.vstack([place + axis for axis in np.eye(3)]), [(0, 1, 2)])
         ends.GetFieldData().PassData(self.sensor.beams.data.GetFieldData())
-        right, forward, up = Cloud(ends).coordinates("sensor").T  # coordinates of the scene's axes in the sensor's frame
+        right, forward, up = Cloud(ends).coordinates("sensor").T  # the scene's axes in the sensor's frame
         return np.column_stack([forward, -right, up, place])

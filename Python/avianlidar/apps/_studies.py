@@ -83,9 +83,9 @@ def track(options) -> None:
 
 
 def bench(options) -> None:
-    from ._bench import Bench, verdict
+    from ._bench import verdict, write_bench
     _pictures.gradient()  # raises an error without Matplotlib before the work
-    found = Bench(options.folders, options.predictions, options.sequences, options.first).write(options.out, bar)
+    found = write_bench(options.folders, options.predictions, options.out, options.sequences, options.first, bar)
     tell(*(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}" for scored in found),
          f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
 

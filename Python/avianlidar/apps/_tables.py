@@ -7,7 +7,7 @@ import csv
 import io
 import math
 import pathlib
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from ._geojson import to_geodetic
 
 
 def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
-    """Rows of CSV by the names of the columns. @param columns required columns @param expected what the file should be"""
+    """Rows of CSV by the names of the columns. @param columns required @param expected what the file should be"""
     rows = csv.DictReader(io.StringIO(read_regular(file).decode(), newline=""))
     missing = [name for name in columns if name not in (rows.fieldnames or ())]
     if missing:
@@ -36,9 +36,16 @@ def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
     write_whole(file, as_csv(head + table, "\r\n"))
 
 
+def texts(row: Iterable[Any]) -> List[Any]:
+    """A row of CSV: numbers with six digits, nothing for None and nan."""
+    return ["" if value is None or value != value else f"{value:.6g}" if isinstance(value, float) else value
+            for value in row]
+
+
 def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
                 description: str = "") -> None:
-    """Writes sites.csv and sites.vtp, and sites.geojson if the scene has an origin: one point for each site, in the given order.
+    """Writes sites.csv and sites.vtp, and sites.geojson if the scene has an origin: one point for each site, in the
+    given order.
 
     sites        n x 3, m
     columns      numbers by name, n each
@@ -57,10 +64,12 @@ def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequ
     save(data, out / "sites.csv")
     if origin is None:
         return
-    features = [{"type": "Feature", "properties": {name: np.asarray(values)[i].item() for name, values in columns.items()},
-                 "geometry": {"type": "Point", "coordinates": [round(float(lon), 9), round(float(lat), 9), round(float(height), 4)]}}
-                for i, (lon, lat, height) in enumerate(degrees)]
-    write_whole(out / "sites.geojson", as_json({"type": "FeatureCollection", "description": description, "features": features}))
+    rows = zip(degrees.tolist(), *(np.asarray(values).tolist() for values in columns.values()))
+    features = [{"type": "Feature", "properties": dict(zip(columns, row)), "geometry": {
+        "type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
+        for (lon, lat, height), *row in rows]
+    write_whole(out / "sites.geojson", as_json({
+        "type": "FeatureCollection", "description": description, "features": features}))
 
 
 def embedded(file: pathlib.Path) -> str:
@@ -69,7 +78,7 @@ def embedded(file: pathlib.Path) -> str:
 
 
 def render(template: str, **values: Any) -> bytes:
-    """A page of HTML. @param template file in this folder @param values values by the template's names; filters begin with `filter_`"""
+    """A page of HTML. @param template file in this folder @param values by name; filters begin with `filter_`"""
     import jinja2
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
