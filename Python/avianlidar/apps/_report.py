@@ -15,7 +15,7 @@ from .._disk import only_run, write_whole
 from .._pipeline import Error
 from .._version import __version__
 from .. import reach
-from . import _answer
+from . import _answer, _sites_page
 from . import _pictures as pictures
 from ._air import gathers_light
 from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, how_sure, metres, percent, place, share_of
@@ -23,9 +23,9 @@ from ._card import read_card
 from ._geojson import to_geodetic
 from ._json import load_json, naming
 from ._maps import height_name
-from ._plan import Plan
+from ._plan import OTHER_PLACES, Plan
 from ._regions import rounded
-from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
+from ._sites import BEST, FEWEST_DRAWS, Sites
 from ._tables import embedded, render, write_table
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # visibilities in the section on weather, m
@@ -149,7 +149,7 @@ class Report:
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
         changes = list(sites.look().changes())
-        sites.write(folder, changes)
+        _sites_page.write(sites, folder, changes)
         best = []
         for k, i in enumerate(map(int, sites.order[:BEST])):
             less, error = sites.difference(i)
@@ -168,10 +168,9 @@ class Report:
                 "degrees": self._degrees(sites), "masts": sites.best_by_mast(), "first": sites.positions[sites.order[0]],
                 "detects": float(sites.values[sites.order[0]]) >= LEAST, "places": sites.plan.count,
                 "by_air": [{**row, "position": rounded(sites.positions[row["site"]])} for row in sites.best_by_air()],
-                "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near), "count": len(sites.positions),
-                "taken": sites.stands_wrong(sites.plan.sensor.position), "surfaces": sites.surface_sentence,
-                "heights_varied": any("heights" in change.what for change in changes),
-                "draws": int(sites.options.get("draws", DRAWS)),
+                "robustness": sites.robustness(changes), "words": _sites_page.words(sites), "near": len(sites.near), "count": len(sites.positions),
+                "taken": sites.stands_wrong(sites.plan.sensor.position), "surfaces": _sites_page.surface_sentence(sites),
+                "heights_varied": sites.varies_heights, "draws": sites.draws,
                 **{key: {"source": embedded(folder / name), "alt": alt, "caption": f"{caption}; {self.asked}"}
                    for key, (name, alt, caption) in pictured.items()}}
 
@@ -301,7 +300,7 @@ class Report:
         answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
         weather = self._weather(views, folder)
         site_of: List[Any] = [*sited] or [None] * len(self.plans)
-        said = [_answer.two_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)])
+        said = [_answer.first_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)])
                 for plan, view, site, of in zip(self.plans, answering, site_of, reaches)]
         answers = [sentence for words, plan, view, site in zip(said, self.plans, answering, site_of)
                    for sentence in (*words, *self._besides(plan, view, site))]
