@@ -70,8 +70,8 @@ def cell(row: Dict[str, Any], column: str) -> str:
 
 def metres(value: float) -> str:
     """A range with two digits, or in tens of metres."""
-    rounded_to = float(f"{value:.2g}") if value < 100.0 else 10.0 * round(value / 10.0)
-    return f"{rounded_to:g}\u00a0m" if value > 0.0 else "no range"
+    return (f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else
+            "no range")
 
 
 def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:

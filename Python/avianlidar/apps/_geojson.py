@@ -8,38 +8,35 @@ import re
 from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .. import vtkAvianLidar as _wrapped
+from .._cloud import Cloud
 from .._coverage import places_of
 from .._pipeline import Error, update
+from .._properties import set_properties
 from ._json import load_json, naming
 from ._regions import Runway
 
 
-def _transformed(points, origin: Sequence[float], to_geodetic: bool) -> np.ndarray:
+def _transformed(points, origin: Sequence[float], source: str, target: str) -> np.ndarray:
     transform = _wrapped.vtkAvianLidarGeodeticTransform()
     transform.SetInputData(places_of(points))
-    frames = (transform.FRAME_ENU, transform.FRAME_GEODETIC)
-    transform.SetSourceFrame(frames[not to_geodetic])
-    transform.SetTargetFrame(frames[to_geodetic])
-    transform.SetUseFieldDataOrigin(False)
-    transform.SetOrigin(*origin)
-    transform.SetMovePoints(True)
+    set_properties(transform, source_frame=source, target_frame=target, origin=tuple(origin), move_points=True,
+                   use_field_data_origin=False)
     update(transform)
-    return vtk_to_numpy(transform.GetOutputDataObject(0).GetPoints().GetData()).copy()
+    return Cloud(transform.GetOutputDataObject(0)).points.copy()
 
 
 def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
     """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
     degrees = np.asarray(longitudes_latitudes, dtype=float)
-    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, False)[:, :2]
+    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, "geodetic", "enu")[:, :2]
 
 
 def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
     """Longitude, latitude (deg) and height above the ellipsoid (m). @param points n x 3, m east, north and up
     @param origin latitude, longitude (deg), height (m)"""
-    return _transformed(points, origin, True)
+    return _transformed(points, origin, "enu", "geodetic")
 
 
 def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:

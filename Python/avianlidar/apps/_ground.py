@@ -196,8 +196,8 @@ def terrain(heights: np.ndarray, corner: Sequence[float], spacing: float, origin
         found = mesh.find_simplex(posts, tol=1e-9)
         frame = mesh.transform[found]
         two = np.einsum("nij,nj->ni", frame[:, :2], posts - frame[:, 2])
-        shares = np.column_stack([two, 1.0 - two.sum(axis=1)])
-        off = np.abs((shares * z[numbers][mesh.simplices[found]]).sum(axis=1) - z)
+        off = np.abs((np.column_stack([two, 1.0 - two.sum(axis=1)])
+                      * z[numbers][mesh.simplices[found]]).sum(axis=1) - z)
         off[chosen] = 0.0
         order = np.lexsort((-off, found))
         worst = order[np.r_[True, np.diff(found[order]) != 0]]

@@ -31,9 +31,8 @@ def coordinate_system(origin: Sequence[float]):
     flattening = 1.0 / osr.SRS_WGS84_INVFLATTENING
     bulge = 1.0 - flattening * (2.0 - flattening) * math.sin(math.radians(origin[0])) ** 2
     radius = osr.SRS_WGS84_SEMIMAJOR * (1.0 - flattening) / bulge
-    scale = 1.0 + origin[2] / radius
-    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} +k={scale:.12g} +x_0=0 +y_0=0 "
-                           "+datum=WGS84 +units=m +no_defs")
+    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} "
+                           f"+k={1.0 + origin[2] / radius:.12g} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
     system.SetProjCS("metres east and north of the scene's origin")
     return system
 

@@ -93,8 +93,7 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
         raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation "
                     f"(and unit, kind, name), found {', '.join(names)[:200]}")
     is_faa = {"latdec", "londec", "agl"} <= set(names)  # the Digital Obstacle File of the FAA, in feet
-    found = {column: UNIT.search(names[place]) for column, place in at.items()}
-    units = {column: own[1] or own[2] for column, own in found.items() if own}
+    units = {column: own[1] or own[2] for column, place in at.items() for own in UNIT.finditer(names[place])}
     for number, row in enumerate(rows, 2):
         if not any(cell.strip() for cell in row):
             continue
@@ -106,8 +105,8 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
             unit = cells["unit"] or units.get(column) or ("ft" if is_faa else "")
             value = _metres(cells[column], unit or "m", f"{file}: row {number}", most)
             if value is not None:
-                tags[column] = f"{value:.3f}"
-                tags["note"] = "" if unit or not cells[column][-1].isdigit() else ", m assumed"
+                tags.update({column: f"{value:.3f}",
+                             "note": "" if unit or not cells[column][-1].isdigit() else ", m assumed"})
         longitude, latitude = _angle(cells["longitude"]), _angle(cells["latitude"])
         is_place = abs(longitude) <= 180.0 and abs(latitude) <= 90.0
         yield tags, geometry("Point", [longitude, latitude]) if is_place else None

@@ -151,9 +151,8 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                 if own is not None:
                     own.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
                 names = [frame.GetFieldDefn(number).GetName() for number in range(frame.GetFieldCount())]
-                is_other = own is not None and not own.IsSame(degrees())
-                layers[layer.GetName()] = ([aliases.get(name, name) for name in names],
-                                           osr.CoordinateTransformation(own, degrees()) if is_other else None)
+                layers[layer.GetName()] = [aliases.get(name, name) for name in names], (
+                    None if own is None or own.IsSame(degrees()) else osr.CoordinateTransformation(own, degrees()))
             names, to_degrees = layers[layer.GetName()]
             tags = _tags(feature, names)
             if driver != "OSM":

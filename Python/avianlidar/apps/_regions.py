@@ -152,8 +152,8 @@ def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]
                 raise ValueError(f"{kind} has {word!r}, expected some of {', '.join(short)}")
             found[kind] = {**dict.fromkeys(names, 0.0), **{known[word]: float(share) for word, share in given.items()}}
         else:
-            by_length = (kind, spread) == ("strips", "area")
-            sizes = [runway.axis()[1] for runway in runways] if by_length else [1.0] * len(names)
+            sizes = ([runway.axis()[1] for runway in runways] if (kind, spread) == ("strips", "area") else
+                     [1.0] * len(names))
             found[kind] = {name: float(given) * size / sum(sizes) for name, size in zip(names, sizes)}
     each = [share for of in found.values() for share in of.values()]
     if not 0.0 < sum(each) < np.inf or min(each) < 0.0:

@@ -135,8 +135,8 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
 
     pieces = []
     for one in lines:
-        ways = [points_of(part) for part in parts_of(one.shape)]
-        ways = [points for points in ways if np.linalg.norm(points[-1] - points[0]) > 1.0]
+        ways = [points for points in map(points_of, parts_of(one.shape))
+                if np.linalg.norm(points[-1] - points[0]) > 1.0]
         pieces += [_Piece(one, points) for points in ways]
         if not ways:
             extract.leave(one, "a runway of no length")

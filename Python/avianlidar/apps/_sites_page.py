@@ -48,8 +48,8 @@ def words(sites: Sites) -> Dict[str, str]:
     plan, margin = sites.plan, sites.options.get("margin", 0.0)
     files = [f"the buildings (polygons with a height) of {pathlib.Path(plan.plan['runways']).name}",
              *(f"the polygons of {pathlib.Path(name).name}" for name in sites.options.get("exclusions", ()))]
-    year = "; ".join(f"{air.name} {100 * air.share:.3g} %" for air in plan.year)
-    weather = f"by the year's share of the hours: {year}" if plan.year else sites.airs[0].name
+    weather = sites.airs[0].name if not plan.year else "by the year's share of the hours: " + "; ".join(
+        f"{air.name} {100 * air.share:.3g} %" for air in plan.year)
     return {"sensor": plan.name, "birds (sizes assumed)": f"{plan.bird} {plan.where}",
             "candidates": (f"{len(sites.positions)}, of {sites.lattice}; "
                            "places between the candidates were not computed"),
