@@ -85,6 +85,7 @@ set(avianlidar_python_files
   apps/_sequence.py
   apps/_simulation.py
   apps/_sites.py
+  apps/_sites_page.py
   apps/_studies.py
   apps/_tables.py
   apps/_tracks.py

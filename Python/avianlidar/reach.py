@@ -23,7 +23,7 @@ from ._sensor import Sensor
 from ._weather import weather
 from .apps._air import as_received
 from .apps._plan import Plan
-from .apps._candidates import table
+from .apps._candidates import TABLE
 
 RANGES = 48
 NEAR = 200  # beams nearest to an elevation from which the azimuths of a pattern without columns are found
@@ -148,7 +148,7 @@ def half(sensor: Sensor, found: Reach) -> str:
 
 def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
     """Sentence on the range to which half of the birds are detected, compared with the width of a runway's strip."""
-    to, width = found.to(0.5), 2.0 * table()["precision"]["4"]["strip"]["half_width"]
+    to, width = found.to(0.5), 2.0 * TABLE["precision"]["4"]["strip"]["half_width"]
     if to == 0.0:
         return f"{name} sees half of the {species}s in its beams at no range."
     return (f"{name} sees half of the {species}s in its beams to {half(sensor, found)}, "

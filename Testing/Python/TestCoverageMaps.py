@@ -10,6 +10,7 @@ import numpy as np
 
 import avianlidar as al
 import exampletools
+import helpertools
 from avianlidar import siting
 from avianlidar._command import main
 from avianlidar.apps._maps import coordinate_system
@@ -58,6 +59,15 @@ class Maps(unittest.TestCase):
         said = json.loads(run("gdalinfo", "-json", "-stats", os.path.join(self.folder, "minimum_effective_area_30m.tif")))["bands"][0]
         self.assertTrue(np.isfinite(said["maximum"]) and np.isfinite(said["mean"]))  # what is no number is marked
         self.assertGreater(al.load_cloud(os.path.join(self.folder, "clutter.vtp")).number_of_points, 100)
+
+    def test_the_birds_of_a_mix_are_named(self):
+        """The share that the command prints is the mean over the species, not that of the first species."""
+        plan = airport(heights=[30], extent=[-100, 100, -100, 100], spacing=100, places=50, coverage={"clutter": False},
+                       mix={"crow": 3, "herring gull": 1})
+        folder = exampletools.folder("TestCoverageMapsMix")
+        code, words, _ = helpertools.run("coverage", written("mix", plan), "-o", folder)
+        self.assertEqual(code, 0)
+        self.assertIn("bird (crow 75 %, herring gull 25 %) detected in one scan", words)
 
     def test_areas_are_those_of_the_map(self):
         p = self.cover["detection_probability"][0]

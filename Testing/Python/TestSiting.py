@@ -18,7 +18,7 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar.apps import _pictures, _sites
+from avianlidar.apps import _pictures, _sites, _sites_page
 from avianlidar.apps._json import load_json
 from avianlidar.apps._plan import Plan
 from avianlidar.apps._inputs import read_plan
@@ -352,12 +352,12 @@ class Airport(unittest.TestCase):
                                "siting": {"spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0, **of}}))
         whole, kept = sites(surfaces=False), sites()
         self.assertEqual(whole.pierced, {})
-        self.assertIn("no surface is used", whole.words()["obstacle limits"])
+        self.assertIn("no surface is used", _sites_page.words(whole)["obstacle limits"])
         high = pierced([Surfaces.of(runway, self.scene) for runway in self.runways], whole.positions) > 0
         np.testing.assert_array_equal(kept.positions, whole.positions[~high])
         self.assertEqual(sum(kept.pierced.values()), np.count_nonzero(high))
         self.assertGreater(min(kept.pierced.values()), 0)
-        self.assertIn(f"{np.count_nonzero(high)} of {len(high)} candidates", kept.words()["obstacle limits"])
+        self.assertIn(f"{np.count_nonzero(high)} of {len(high)} candidates", _sites_page.words(kept)["obstacle limits"])
         with self.assertRaisesRegex(al.Error, "siting.surfaces: "):
             x, y = np.mean([self.runways[0].start, self.runways[0].end], axis=0)
             sites(masts=[50], bounds=[x - 200, x + 200, y - 500, y + 500], spacing=100)

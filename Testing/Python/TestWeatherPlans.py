@@ -11,7 +11,7 @@ import numpy as np
 import avianlidar as al
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar.apps import _metar
+from avianlidar.apps import _metar, _sites_page
 from avianlidar.apps._air import extinction_of_rain
 from avianlidar.apps._plan import Plan
 from avianlidar.apps._inputs import read_plan
@@ -86,13 +86,13 @@ class Year(unittest.TestCase):
                    for part, one in zip(YEAR, alone))
         self.assertAlmostEqual(sites.of_same_birds[1], same, delta=1e-9)
         out = HERE / "sites"
-        sites.write(out, [])
+        _sites_page.write(sites, out, [])
         table = np.genfromtxt(out / "sites.csv", delimiter=",", names=True)
         np.testing.assert_allclose(table["value"], sites.values[sites.order], rtol=1e-9)
         np.testing.assert_allclose(table["value_fog_500"], alone[1].values[sites.order], rtol=1e-9)
         region = sum(part["share"] * one.found[sites.order, 0][:, one.regions["strips"]].mean(axis=1) for part, one in zip(YEAR, alone))
         np.testing.assert_allclose(table["target_strips"], region, rtol=1e-5)
-        self.assertIn("fog of 500 m 15 %", sites.words()["weather"])
+        self.assertIn("fog of 500 m 15 %", _sites_page.words(sites)["weather"])
 
     def test_the_report_says_fog_and_the_year(self):
         question = {"siting": None, "runways": None, "extent": [-600, 600, -600, 600], "spacing": 200}

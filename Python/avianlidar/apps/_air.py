@@ -36,11 +36,13 @@ def extinction(sensor: Sensor, **air: Any) -> float:
 
 
 @functools.lru_cache(maxsize=None)
-def extinction_of_rain(rate: float, half_beamwidth: float = 5.6e-3, wavelength: float = 905.0, half_beamwidth_across: float = 0.0) -> float:
-    """Extinction coefficient of rain, 1/m, for a view that receives most of the light that drops diffract. The default view is an eye
-    that looks for a dark object of half a degree. @param rate mm/h @param half_beamwidth rad @param wavelength nm
-    @param half_beamwidth_across rad; 0: a round beam"""
-    seen = Sensor("Search905", half_beamwidth=half_beamwidth, half_beamwidth_across=half_beamwidth_across, wavelength=wavelength)
+def extinction_of_rain(rate: float, half_beamwidth: float = 5.6e-3, wavelength: float = 905.0,
+                       half_beamwidth_across: float = 0.0) -> float:
+    """Extinction coefficient of rain, 1/m, for a view that receives most of the light that drops diffract. The default
+    view is an eye that looks for a dark object of half a degree. @param rate mm/h @param half_beamwidth rad @param
+    wavelength nm @param half_beamwidth_across rad; 0: a round beam"""
+    seen = Sensor("Search905", half_beamwidth=half_beamwidth, half_beamwidth_across=half_beamwidth_across,
+                  wavelength=wavelength)
     return extinction(seen, visibility=0.0, attenuation_coefficient=0.0, rain_rate=rate)
 
 
@@ -50,12 +52,13 @@ def gathers_light(sensor: Sensor) -> bool:
 
 
 def as_received(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
-    """Air for a sensor. A sensor without an aperture receives no light from the air, so only the extinction is kept. @param air properties
-    of coverage"""
+    """Air for a sensor. A sensor without an aperture receives no light from the air, so only the extinction is kept.
+    @param air properties of coverage"""
     if gathers_light(sensor):
         return air
     dry = {**air, "air_backscatter": False, "rain_rate": 0.0}
     if not air["rain_rate"]:
         return dry
-    of_rain = extinction_of_rain(air["rain_rate"], sensor.half_beamwidth, sensor.wavelength, sensor.half_beamwidth_across)
+    of_rain = extinction_of_rain(air["rain_rate"], sensor.half_beamwidth, sensor.wavelength,
+                                 sensor.half_beamwidth_across)
     return {**dry, "visibility": 0.0, "attenuation_coefficient": extinction(sensor, **dry) + of_rain}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes a scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`. The scene reader makes
-buildings of footprints, lays areas on the terrain and places crowns."""
+"""Makes a scene, plans and a scenario of an airport from an extract of a map: the command `avianlidar airport`."""
 from __future__ import annotations
 
 import collections
@@ -26,13 +25,15 @@ from ._gdal import quiet
 from ._geojson import features_of, read_runways
 from ._ground import terrain
 from ._json import load_json
+from ._regions import ends_of
 
 WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
         "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
 RECORD = "made.json"  # checksums of the files when they were made
-PARTS = {"grass": ("#cfe3b8", 1), "water": ("#7fb2d6", 2), "parking": ("#a5a5a5", 2), "road": ("#8c8c8c", 3), "apron": ("#b0aca4", 4),
-         "taxiway": ("#666666", 5), "runway": ("#333333", 6), "vegetation": ("#4c8c4a", 7), "tree": ("#4c8c4a", 8), "terminal": ("#c0392b", 8),
-         "hangar": ("#8e44ad", 8), "tower": ("#e67e22", 8), "mast": ("#e67e22", 8), "pole": ("#e67e22", 8), "fence": ("#000000", 8),
+PARTS = {"grass": ("#cfe3b8", 1), "water": ("#7fb2d6", 2), "parking": ("#a5a5a5", 2), "road": ("#8c8c8c", 3),
+         "apron": ("#b0aca4", 4), "taxiway": ("#666666", 5), "runway": ("#333333", 6), "vegetation": ("#4c8c4a", 7),
+         "tree": ("#4c8c4a", 8), "terminal": ("#c0392b", 8), "hangar": ("#8e44ad", 8), "tower": ("#e67e22", 8),
+         "mast": ("#e67e22", 8), "pole": ("#e67e22", 8), "fence": ("#000000", 8),
          "structure": ("#8e6d4f", 8)}  # classes in the picture: colour, and drawing order from below
 BUILDING = ("#a0522d", 8)
 
@@ -45,7 +46,8 @@ class Kept:
         self.edited: List[str] = []
         self.made = load_json(self.record) if self.record.exists() else {}
         if not isinstance(self.made, dict) or not all(isinstance(sums, (str, list)) for sums in self.made.values()):
-            raise Error(f"{self.record}: expected checksums by the names of files; remove this file to have all files made again")
+            raise Error(f"{self.record}: expected checksums by the names of files; "
+                        "remove this file to have all files made again")
         strange = [name for name in WHAT if (folder / name).exists() and name not in self.made]
         if strange:
             raise Error(f"{folder}: {strange[0]} exists and was not made by this command; choose another folder")
@@ -55,7 +57,7 @@ class Kept:
         path = self.folder / name
         found = hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
         if found and found not in self.made[name]:
-            self.edited = [*dict.fromkeys([*self.edited, name])]
+            self.edited += [name] * (name not in self.edited)
             return path
         content = make()
         # After a stop between record and file, the old file is kept; the record holds both checksums.
@@ -71,8 +73,9 @@ def _json(value: Any) -> bytes:
 
 def _geojson(features: Sequence[Tuple[Dict[str, Any], Any]]) -> bytes:
     """GeoJSON with one feature in each line. @param features properties and geometries (ogr, degrees)"""
-    rows = [json.dumps({"type": "Feature", "properties": properties, "geometry": json.loads(shape.ExportToJson(["COORDINATE_PRECISION=9"]))},
-                       ensure_ascii=False) for properties, shape in features]
+    rows = [json.dumps({"type": "Feature", "properties": properties,
+                        "geometry": json.loads(shape.ExportToJson(["COORDINATE_PRECISION=9"]))}, ensure_ascii=False)
+            for properties, shape in features]
     return ('{"type": "FeatureCollection", "features": [\n' + ",\n".join(rows) + "\n]}\n").encode()
 
 
@@ -81,50 +84,45 @@ class Airport(AirportMap):
 
     def write(self, folder) -> Kept:
         """Writes all files to an existing folder; files that a user has edited are kept."""
-        out = pathlib.Path(folder)
-        kept = Kept(out)
+        kept = Kept(pathlib.Path(folder))
+        put = kept.put
         self.progress("files", 0, len(WHAT))
         posts = self.posts()
         with quiet():
             chosen = self.chosen(*posts)
-            mapped = kept.put("airport.geojson", lambda: _geojson(self.mapped(chosen)))
-        kept.put("terrain.vtp", lambda: vtp(terrain(*posts, self.origin, self.error)))
+            mapped = put("airport.geojson", lambda: _geojson(self.mapped(chosen)))
+        put("terrain.vtp", lambda: vtp(terrain(*posts, self.origin, self.error)))
         if "terrain.vtp" in kept.edited:
             self.terrain_words = "heights: from the edited terrain.vtp"
         self.rows = [feature["properties"] for feature in features_of(mapped)]
-        unknown = {row.get("kind") for row in self.rows} - set(self.known["kinds"])
-        if unknown:
-            raise Error(f"{mapped}: kind is {sorted(map(str, unknown))[0]!r}, expected one of {', '.join(self.known['kinds'])}")
         for number, row in enumerate(self.rows):
+            if row.get("kind") not in self.known["kinds"]:
+                raise Error(f"{mapped}: kind is {str(row.get('kind'))!r}, "
+                            f"expected one of {', '.join(self.known['kinds'])}")
             for name in ("height", "top", "width"):
                 if name in row and (not isinstance(row[name], (int, float)) or not 0.0 < row[name] <= 1e4):
-                    raise Error(f"{mapped}: features[{number}] ({row['kind']} {row.get('id', '')}): {name} is {row[name]!r}, expected metres above 0")
-        scene_file = out / "airport.lidarscene.json"
-        kept.put(scene_file.name, lambda: _json(self.scene_of()))
+                    raise Error(f"{mapped}: features[{number}] ({row['kind']} {row.get('id', '')}): {name} is "
+                                f"{row[name]!r}, expected metres above 0")
+        self.scene = load_scene(put("airport.lidarscene.json", lambda: _json(self.scene_of())))
         self.progress("files", 3, len(WHAT))
-        self.scene = load_scene(scene_file)
         self.count(chosen)
         self.sides = read_runways(mapped, self.scene.geodetic_origin)
-        exclusions = kept.put("exclusions.geojson", lambda: _geojson(self.exclusions(mapped)))
-        self.place_lidar(mapped, exclusions)
-        kept.put(scene_file.name, lambda: _json(self.scene_of(self.position)))
-        kept.put("airport.coverage.json", lambda: _json(self.plan()))
-        kept.put("siting.coverage.json", lambda: _json(self.plan(siting_too=True)))
-        kept.put("airport.scenario.json", lambda: _json(self.scenario()))
-        kept.put("assumed.csv", lambda: assumed(self))
+        self.place_lidar(mapped, put("exclusions.geojson", lambda: _geojson(self.exclusions(mapped))))
+        put("airport.lidarscene.json", lambda: _json(self.scene_of(self.position)))
+        put("airport.coverage.json", lambda: _json(self.plan()))
+        put("siting.coverage.json", lambda: _json(self.plan(siting_too=True)))
+        put("airport.scenario.json", lambda: _json(self.scenario()))
+        put("assumed.csv", lambda: assumed(self))
         self.progress("files", 8, len(WHAT))
-        kept.put("airport.png", self._picture)
-        kept.put("README.txt", lambda: readme(self))
+        sides = np.diff(np.reshape(self.rectangle, (2, 2)))[:, 0]
+        wide, high = np.maximum(9.0 * sides / sides.max(), 3.0) + (2.0, 0.5)  # inches
+        put("airport.png", lambda: _pictures.drawn((wide, high), self._draw))
+        put("README.txt", lambda: readme(self))
         self.progress("files", len(WHAT), len(WHAT))
         return kept
 
-    def _picture(self) -> bytes:
-        """The scene from above, with one colour for each class."""
-        west, east, south, north = self.rectangle
-        longer = max(east - west, north - south) / 9.0  # metres in an inch
-        return _pictures.drawn((max((east - west) / longer, 3.0) + 2.0, max((north - south) / longer, 3.0) + 0.5), self._draw)
-
     def _draw(self, axes) -> None:
+        """The scene from above, with one colour for each class."""
         from matplotlib.collections import PolyCollection
         from matplotlib.colors import LinearSegmentedColormap
         from matplotlib.patches import Patch
@@ -138,13 +136,14 @@ class Airport(AirportMap):
                 continue
             colour, order = PARTS.get(word, BUILDING)
             shown[word] = colour
-            axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour, linewidths=0.2, zorder=order))
+            axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour,
+                                               linewidths=0.2, zorder=order))
         axes.plot(*self.position[:2], "r^", markersize=8, zorder=20)
         for runway in self.sides:
             axes.annotate(runway.name, runway.start, color="white", fontsize=8, ha="center", zorder=21,
                           bbox={"facecolor": "black", "pad": 1, "linewidth": 0})
-        patches = [Patch(color=colour, label=word) for word, colour in shown.items()]
-        axes.legend(handles=patches, loc="upper left").set_zorder(30)
+        axes.legend(handles=[Patch(color=colour, label=word) for word, colour in shown.items()],
+                    loc="upper left").set_zorder(30)
         axes.set(xlim=self.rectangle[:2], ylim=self.rectangle[2:], aspect="equal", xlabel="m east", ylabel="m north",
                  title=f"{self.name}: the scene from above; red: the lidar")
 
@@ -157,10 +156,12 @@ def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:
 
 
 def _assumed_rows(airport: AirportMap) -> Iterator[Tuple[Any, ...]]:
+    """Kind, id, name, property, value and source of each assumed number."""
     for row in airport.rows:
+        name = row.get("name") or row.get("ref") or ""
         for what in ("kind", "height", "top", "min_height", "width", "surface"):
             if "assumed" in str(row.get(f"{what}_from", "")):
-                yield row["kind"], row.get("id", ""), row.get("name") or row.get("ref") or "", what, row.get(what, 0.0), row[f"{what}_from"]
+                yield row["kind"], row.get("id", ""), name, what, row.get(what, 0.0), row[f"{what}_from"]
 
 
 def assumed(airport: AirportMap) -> bytes:
@@ -186,11 +187,17 @@ def counts(airport: AirportMap) -> str:
 
     def verb(count: int, one: str, more: str) -> str:
         return f"{count:,} {one if count == 1 else more}"
-    strange = [said[1] for row in airport.rows for name in ("height_from", "top_from", "min_height_from")
-               for said in [re.match("assumed: [^ ]+ is ('.*?'|\".*?\")(?:, above|$)", str(row.get(name, "")))] if said]
-    return (f"{verb(there + left, 'feature was', 'features were')} read, {verb(there, 'is', 'are')} in the scene, {verb(left, 'was', 'were')} left out") + (
-        ": " + ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common()) if left else "") + (
-        f"; {verb(len(strange), 'height was', 'heights were')} not understood: {', '.join(list(dict.fromkeys(strange))[:4])}" if strange else "")
+    sources = "\n".join(str(row.get(name, "")) for row in airport.rows
+                        for name in ("height_from", "top_from", "min_height_from"))
+    strange = re.findall("^assumed: [^ ]+ is ('.*?'|\".*?\")(?:, above.*)?$", sources, re.MULTILINE)
+    words = (f"{verb(there + left, 'feature was', 'features were')} read, {verb(there, 'is', 'are')} in the scene, "
+             f"{verb(left, 'was', 'were')} left out")
+    if left:
+        words += ": " + ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common())
+    if strange:
+        words += (f"; {verb(len(strange), 'height was', 'heights were')} not understood: "
+                  f"{', '.join(list(dict.fromkeys(strange))[:4])}")
+    return words
 
 
 def _counts_by_kind(airport: AirportMap) -> str:
@@ -205,8 +212,8 @@ def _counts_by_kind(airport: AirportMap) -> str:
                          + ", ".join(f"{count:,} {reason}" for reason, count in out.items()))
     named = [f"{name} ({count:,})" for name, count in airport.unknown.most_common(7) if name != "others"]
     cut = [f"{count:,} {kind}" for kind, count in collections.Counter(one.kind for one in airport.cut).items()]
-    lines += [f"  {words}: {', '.join(some)}" for words, some in (
-        (f"all {outside}", away), ("among those of unknown kind", named[:6]), (f"{CUT}, and shorter than they are", cut)) if some]
+    lists = {f"all {outside}": away, "among those of unknown kind": named[:6], f"{CUT}, and shorter than they are": cut}
+    lines += [f"  {words}: {', '.join(some)}" for words, some in lists.items() if some]
     if airport.cut or any(one.reason == CUT for one in airport.left):
         lines.append("  `osmium extract --strategy smart` makes an extract whose features are whole at the border")
     return "\n".join(lines)
@@ -216,17 +223,20 @@ def readme(airport: AirportMap) -> bytes:
     kinds = collections.Counter(row["kind"] for row in airport.rows)
     assumed = collections.Counter((row[0], row[3]) for row in _assumed_rows(airport))
     lengths = "\n".join(f"  {runway.words()}" for runway in airport.sides)
-    table = "\n".join(f"  {kind}: {count}" + "".join(f"; {what} assumed of {number}" for (one, what), number in assumed.items() if one == kind)
-                      for kind, count in kinds.items())
-    said = sorted({str(row[name]) for row in airport.rows for name in ("height_from", "top_from") if ": " in str(row.get(name, ""))})
-    quoted = "".join(f"  heights are from {words}\n" for words in said)
-    heights = ground_of(airport.scene, [end for runway in airport.sides for end in (runway.start, runway.end)])
+    of_kind = {kind: [f"; {what} assumed of {number}" for (one, what), number in assumed.items() if one == kind]
+               for kind in kinds}
+    table = "\n".join(f"  {kind}: {count}{''.join(of_kind[kind])}" for kind, count in kinds.items())
+    sources = {str(row.get(name, "")) for row in airport.rows for name in ("height_from", "top_from")}
+    quoted = "".join(f"  heights are from {words}\n" for words in sorted(sources) if ": " in words)
+    heights = ground_of(airport.scene, ends_of(airport.sides))
     x, y, z = airport.position
     without = "; without clutter, because clutter behind leaves takes long to compute" if airport.leaves else ""
+    surfaces = ("pierces an obstacle limitation surface of ICAO Annex 14, as every free place does" if airport.pierces
+                else "is below the strip, approach and transitional surfaces of ICAO Annex 14")
     return f"""{airport.name}
 
-Made by `avianlidar airport` from {airport.extract.name}. You may edit all files. A further run makes only files again that nobody has
-edited. Remove a file to have the file made again.
+Made by `avianlidar airport` from {airport.extract.name}. You may edit all files.
+A further run makes only files again that nobody has edited. Remove a file to have the file made again.
 
   airport.geojson          features of the extract: kind, height (of plants, fences and masts: top), width, and sources
   terrain.vtp              the ground
@@ -250,18 +260,19 @@ Features that were read, and what became of them
 
 {airport.terrain_words}
   heights are above the sea or above the ellipsoid, as in the file
-  the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin; plans give heights above the origin
+  the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin
+  plans give heights above the origin
 
-Also assumed: materials, leaf area density (m2/m3) of woods and trees, leaves down to the ground, and grass where nothing is mapped.
-Roofs are level. Solids stand on the lowest ground below them. Fences are walls in the scene, but real wire lets most light through.
+Also assumed: materials, leaf area density (m2/m3) of woods and trees, leaves down to the ground,
+and grass where nothing is mapped. Roofs are level. Solids stand on the lowest ground below them.
+Fences are walls in the scene, but real wire lets most light through.
 
 Check on site
   the runways' widths and ends, against the aeronautical chart
   heights of terminals, hangars, towers and masts near the lidar, which shadow birds
   new, removed and unmapped objects: buildings, masts, fences, trees, cranes and parked aircraft
   woods and trees: height, and leaves by season
-  the lidar's place ({x:.0f} m east, {y:.0f} m north, {z:.1f} m up): the free place nearest to the middle of the longest runway
-  {"this place pierces an obstacle limitation surface of ICAO Annex 14, as every free place does" if airport.pierces else
-   "this place is below the strip, approach and transitional surfaces of ICAO Annex 14"}; the airport decides whether a mast may stand there
+  the lidar's place ({x:.0f} m east, {y:.0f} m north, {z:.1f} m up): the free place nearest to the middle
+  of the longest runway; this place {surfaces}; the airport decides whether a mast may stand there
   exclusions, which are simplified; the report of siting.coverage.json also keeps masts below these surfaces
 """.encode()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The first page of a report in words: where a lidar should stand, which share of birds it detects, and what to do next."""
+"""The first page of a report in words: where a lidar should stand, which birds it detects, and what to do next."""
 from __future__ import annotations
 
 import math
@@ -14,7 +14,8 @@ from .._weather import in_words
 from ._candidates import ground_of
 from ._plan import Plan
 from ._regions import APPROACH_LENGTH, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
-from ._sites import FEWEST_DRAWS, listed
+from ._sites import FEWEST_DRAWS
+from ._sites_page import listed
 
 LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
@@ -39,28 +40,28 @@ def bound(places: int) -> float:
 
 
 def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = True) -> str:
-    """A share as a percentage, with the digits that its standard error justifies. @param error standard error of drawn places
-    @param places number of drawn places @param bar whether the error is shown"""
+    """A share as a percentage, with the digits that its standard error justifies. @param error standard error of drawn
+    places @param places number of drawn places @param bar whether the error is shown"""
     if math.isnan(value):
         return "–"
     if value < LEAST and (value > 0.0 or not math.isnan(error)):
         return f"under {100.0 * bound(places):.1g}\u00a0%" if places else f"under {LEAST_WORDS}"
     if value == 0.0:
         return "0\u00a0%"
-    known = error > 0.0
-    digits = decimals(100.0 * error) if known else 1
-    return f"{100.0 * value:.{digits}f}{f' ± {100.0 * error:.{digits}f}' if known and bar else ''}\u00a0%"
+    digits = decimals(100.0 * error) if error > 0.0 else 1
+    return f"{100.0 * value:.{digits}f}{f' ± {100.0 * error:.{digits}f}' if error > 0.0 and bar else ''}\u00a0%"
 
 
 def cell(row: Dict[str, Any], column: str) -> str:
     """A share, or its standard error, from a row of shares, with the digits that the error justifies."""
     value, places = row[column], row["places"]
-    of = row[column.replace("_std_error", "_probability")]
     if math.isnan(value):
         return "–"
     if column.endswith("_std_error"):
-        return f"{value:.{decimals(value)}f}" if value > 0.0 and of >= LEAST else "–"
-    error = row[column.replace("_probability", "_std_error")] if column.endswith("_probability") else math.sqrt(value * (1.0 - value) / places)
+        share = row[column.replace("_std_error", "_probability")]
+        return f"{value:.{decimals(value)}f}" if value > 0.0 and share >= LEAST else "–"
+    known = column.endswith("_probability")
+    error = row[column.replace("_probability", "_std_error")] if known else math.sqrt(value * (1.0 - value) / places)
     if error > 0.0 and value >= LEAST:
         return f"{value:.{decimals(error)}f}"
     least = min(bound(places), 1.0)
@@ -69,26 +70,26 @@ def cell(row: Dict[str, Any], column: str) -> str:
 
 def metres(value: float) -> str:
     """A range with two digits, or in tens of metres."""
-    return f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else "no range"
+    return (f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else
+            "no range")
 
 
 def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
-    """The position of a place relative to the two nearest runways, in words. Beside a runway: the distances from the middle line and
-    from an end. Beyond a runway: the distance from an end."""
-    found = []
-    at = np.asarray(position, dtype=float)[:2]
+    """The position of a place relative to the two nearest runways, in words. Beside a runway: the distances from the
+    middle line and from an end. Beyond a runway: the distance from an end."""
+    at, found = np.asarray(position, dtype=float)[:2], []
     for runway in runways:
         axis, length = runway.axis()
         along = float((at - runway.start) @ axis)
         off = at - (runway.start + min(max(along, 0.0), length) * axis)
         away, end = float(np.hypot(*off)), f"{wind(-axis if along < length / 2 else axis)} end"
         if 0.0 <= along <= length:
-            found.append((away, f"{metres(away)} {wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}",
-                          f", {metres(min(along, length - along))} from its {end}"))
+            words = f"{metres(away)} {wind(off)} of {runway.name}" if away >= 1.0 else f"on {runway.name}"
+            found.append((away, words, f", {metres(min(along, length - along))} from its {end}"))
         else:
             found.append((away, f"{metres(away)} {wind(off)} of the {end} of {runway.name}", ""))
     found = sorted(found)[:2]
-    return ", and ".join(nearest + more * (not number) for number, (_, nearest, more) in enumerate(found))
+    return ", and ".join(words + from_end * (not number) for number, (_, words, from_end) in enumerate(found))
 
 
 def birds_of(view: Plan) -> str:
@@ -100,48 +101,53 @@ def over(view: Plan) -> str:
     """The regions and heights of the birds, for readers who have not seen the plan."""
     if not view.runways:
         return view.where
-    parts = []
+    count, parts = len(view.runways), []
+    whose = {1: "the runway", 2: "both runways"}.get(count, f"all {count} runways")
     for kind, names in region_names(view.runways).items():
         there = [name.partition(" ")[2] for name in names if name in view.ends]
-        count = len(view.runways)
-        whose = "the runway" if count == 1 else "both runways" if count == 2 else f"all {count} runways"
         every = len(there) == len(names)
         if there and kind == "strips":
-            parts.append(f"the {'strips of ' + whose if every else 'strip of ' + listed(there)} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle)")
+            which = f"the strips of {whose}" if every else f"the strip of {listed(there)}"
+            parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle)")
         elif there:
-            parts.append(f"the {'approaches' if every else 'approach to ' + listed(there)} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)")
-    low, high = view.asked or (0.0, 0.0)
-    heights = "" if not view.asked else f"at {low:g}\u00a0m " if low == high else f"at {low:g} to {high:g}\u00a0m "
-    tops = "" if view.asked else f", to {listed([f'{view.heights_of(name)[1]:.3g}' for name in view.members])}\u00a0m high"
-    return f"{heights}over {listed(parts)}{tops}"
+            which = "the approaches" if every else f"the approach to {listed(there)}"
+            parts.append(f"{which} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)")
+    if not view.asked:
+        tops = [f"{view.heights_of(name)[1]:.3g}" for name in view.members]
+        return f"over {listed(parts)}, to {listed(tops)}\u00a0m high"
+    low, high = view.asked
+    return f"at {f'{low:g}' if low == high else f'{low:g} to {high:g}'}\u00a0m over {listed(parts)}"
 
 
 def air_of(view: Plan) -> str:
     """The air in which the shares hold."""
     visibility = view.coverage.visibility
-    return f" in {in_words(view.air)}" if view.air else f" at {visibility / 1000.0:g}\u00a0km visibility" if visibility > 0.0 else ""
+    return f" in {in_words(view.air)}" if view.air else (
+        f" at {visibility / 1000.0:g}\u00a0km visibility" if visibility > 0.0 else "")
 
 
-def two_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any], of_year: Dict[str, float]) -> List[str]:
-    """Two sentences: where the lidar should stand and which share of the birds is detected from there; how far birds are detected.
-    @param view the plan's sensor at its best site, or the plan itself @param of_year the share over the plan's year, if any"""
-    detects = f"one scan detects {share_of(view.overall)} of {birds_of(view)} {over(view)}{air_of(view)}"
-    if view.year:
-        detects += f", {share_of(of_year)} over the year"
-    by = beside(view.sensor.position, view.runways)
-    at = f"{place(view.sensor.position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
-    mast = round(float(view.sensor.position[2] - ground_of(view.scene, [view.sensor.position[:2]])[0]), 1)
-    at = f"on a mast of {mast:g}\u00a0m, {at}" if mast > 0.0 else at
-    where = f"{by} ({at})" if by else at
+def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any],
+                    of_year: Dict[str, float]) -> List[str]:
+    """Where the lidar should stand, which share of the birds is detected from there, and how far birds are detected.
+    @param view the plan's sensor at its best site, or the plan itself @param of_year the share over the plan's year"""
+    birds, position = f"{birds_of(view)} {over(view)}", view.sensor.position
     year = ", by the year's weather" if view.year else ""
+    over_the_year = f", {share_of(of_year)} over the year" if view.year else ""
+    detects = f"one scan detects {share_of(view.overall)} of {birds}{air_of(view)}{over_the_year}"
+    at = f"{place(position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
+    mast = round(float(position[2] - ground_of(view.scene, [position[:2]])[0]), 1)
+    at = f"on a mast of {mast:g}\u00a0m, {at}" if mast > 0.0 else at
+    by = beside(position, view.runways)
+    where = f"{by} ({at})" if by else at
     if not site:
         first = f"{plan.name} stands {where}: from there {detects}."
     elif view is plan:
-        first = (f"Nowhere: from none of {site['count']} candidates, of {site['lattice']}, one scan of {plan.name} detects {LEAST_WORDS} of "
-                 f"{birds_of(view)} {over(view)}{year or air_of(view)}.")
+        first = (f"Nowhere: from none of {site['count']} candidates, of {site['lattice']}, one scan of {plan.name} "
+                 f"detects {LEAST_WORDS} of {birds}{year or air_of(view)}.")
     else:
-        first = f"{plan.name} should stand {where}: from there {detects}, the most of {site['count']} candidates{year}."
-    return [first, *by_end(view), _how_far(view, reaches)]
+        first = (f"{plan.name} should stand {where}: from there {detects}, "
+                 f"the most of {site['count']} candidates{year}.")
+    return [first, *_by_end(view), _how_far(view, reaches)]
 
 
 def share_of(row: Dict[str, Any]) -> str:
@@ -149,13 +155,13 @@ def share_of(row: Dict[str, Any]) -> str:
     return percent(row["detection_probability"], row["detection_std_error"], row["places"])
 
 
-def by_end(view: Plan) -> List[str]:
+def _by_end(view: Plan) -> List[str]:
     """A sentence with the shares by strip and approach, if the plan has several."""
     alike: Dict[Tuple[str, str], List[str]] = {}
     for row in view.by_end:
         kind, _, name = row["region"].partition(" ")
-        alike.setdefault((share_of(row), kind), []).append(name)
-    words = [f"{share} in the {kind} {'of' if kind == 'strip' else 'to'} {listed(names)}" for (share, kind), names in alike.items()]
+        alike.setdefault((share_of(row), "strip of" if kind == "strip" else f"{kind} to"), []).append(name)
+    words = [f"{share} in the {which} {listed(names)}" for (share, which), names in alike.items()]
     return [f"By runway end the share is {listed(words)}."] if len(view.by_end) > 1 else []
 
 
@@ -171,45 +177,54 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     if not view.asked:
         return f"{said}."
     rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-    seen = [f"{row['height']:g}\u00a0m up from {metres(row['from']) if row['from'] else '0 m'} to {metres(row['to'])} "
-            "away" for row in rows if row["to"] > row["from"]]
+    seen = [(f"{row['height']:g}\u00a0m up from {metres(row['from']) if row['from'] else '0 m'} "
+             f"to {metres(row['to'])} away") for row in rows if row["to"] > row["from"]]
     never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
     where = ["at " + ", ".join(seen)] * bool(seen) + [f"nowhere at {listed(never)} m"] * bool(never)
     return f"{said}; half are in its beams and near enough {', and '.join(where)}."
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:
-    """A command with every option of this report that the verb has. @param settings further settings of the sensor or the coverage, which
-    replace settings of the same names"""
+    """A command with every option of this report that the verb has. @param settings further settings, such as
+    `coverage.species`, which replace settings of the same names"""
     file = pathlib.Path(view.file).name if pathlib.Path(view.file).is_absolute() else view.file
     words = ["avianlidar", verb, file, "-o", out]
     flags = {"--weather", "--sensor-set", "--coverage-set", *(("--metar", "--siting-set") if verb == "report" else ())}
     for flag, *values in view.plan.get("options", ()):
-        if flag in flags and f"{flag.strip('-').partition('-')[0]}.{values[0].partition('=')[0]}" not in settings:
+        if flag in flags and f"{flag[2:].partition('-')[0]}.{values[0].partition('=')[0]}" not in settings:
             words += [flag, *values]
-    words += [word for name, value in settings.items() for word in (f"--{name.partition('.')[0]}-set", f"{name.partition('.')[2]}={value}")]
-    words += ["--threads", str(view.threads)] if view.threads else []
-    return shlex.join(words)
+    for name, value in settings.items():
+        part, _, member = name.partition(".")
+        words += [f"--{part}-set", f"{member}={value}"]
+    return shlex.join(words + (["--threads", str(view.threads)] if view.threads else []))
 
 
-def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]) -> List[Dict[str, str]]:
+def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]
+               ) -> List[Dict[str, str]]:
     """The next steps: for each a head, words, an anchor of the page, and a command, which may be empty."""
     steps = [_raise(view, advice)] if advice else []
-    if site and len(site["gain"]) > 1 and view is not plan:
-        one, *more = [percent(row["value"], row["std_error"], view.count, bar=False) for row in site["gain"]]
-        together = [f"{('two', 'three')[row['sensors'] - 2] if row['sensors'] < 4 else row['sensors']} detect {share}"
-                    for row, share in zip(site["gain"][1:], more)]
-        steps.append({"head": "Weigh a second lidar.", "more": "#sites", "command": "",
-                      "words": f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, {listed(together)}, "
-                               "if they miss birds independently."})
     if site and view is not plan:
+        if len(site["gain"]) > 1:
+            steps.append(_weigh(view, site))
         steps.append(_check(view, site))
+    cover = view.coverage
     steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
-                  "words": f"Assumed are size and reflectance ({view.coverage.reflectance:g}) of birds and "
-                           f"{len(set(view.assumed))} numbers of {view.name}: ask the "
-                           "maker for these numbers. This command shows the effect of darker birds:",
-                  "command": command(plan, "report", "darker.html", **{"coverage.reflectance": f"{view.coverage.reflectance / 2.0:g}"})})
+                  "words": (f"Assumed are size and reflectance ({cover.reflectance:g}) of birds and "
+                            f"{len(set(view.assumed))} numbers of {view.name}: ask the maker for these numbers. "
+                            "This command shows the effect of darker birds:"),
+                  "command": command(plan, "report", "darker.html",
+                                     **{"coverage.reflectance": f"{cover.reflectance / 2.0:g}"})})
     return steps
+
+
+def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
+    """The step that compares networks with one lidar."""
+    one, *more = [percent(row["value"], row["std_error"], view.count, bar=False) for row in site["gain"]]
+    together = listed([f"{ {2: 'two', 3: 'three'}.get(count, count)} detect {share}"
+                       for count, share in enumerate(more, 2)])
+    return {"head": "Weigh a second lidar.", "more": "#sites", "command": "",
+            "words": (f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, "
+                      f"{together}, if they miss birds independently.")}
 
 
 def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
@@ -218,37 +233,43 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
     if advice["needed"] is None:
         return {**found, "head": "Take a lidar that sees farther.",
                 "words": "At the heights of the plan no bird is near enough, whatever the elevation of the beams."}
+    ends = (f"The beams end at {advice['high']:.1f}°. "
+            f"For all heights of the plan they should reach {advice['needed']:.1f}°.")
     best = max(advice["ways"], key=lambda way: way["then"]["detection_probability"], default=None)
-    ends = f"The beams end at {advice['high']:.1f}°. For all heights of the plan they should reach {advice['needed']:.1f}°"
     if best is None:
-        return {**found, "words": f"{ends}. No tried change of the beams detects more birds from the same place."}
-    now, then = (percent(one["detection_probability"], one["detection_std_error"], one["places"], bar=False) for one in (advice["now"], best["then"]))
-    return {**found, "words": f"{ends}. From the same place {best['what'].partition(' (')[0]} detect {then} "
-                              f"instead of {now}. The change costs {best['cost']}."}
+        return {**found, "words": f"{ends} No tried change of the beams detects more birds from the same place."}
+    now, then = (percent(row["detection_probability"], row["detection_std_error"], row["places"], bar=False)
+                 for row in (advice["now"], best["then"]))
+    return {**found, "words": (f"{ends} From the same place {best['what'].partition(' (')[0]} detect {then} "
+                               f"instead of {now}. The change costs {best['cost']}.")}
 
 
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
-    """Sentences on candidates that are as good as the best, and on a best candidate at the lattice's edge; each list may be empty."""
-    alike = site["alike"]
-    return ([f"{alike} more candidate{'s are' if alike > 1 else ' is'} as good within the error."] * (alike > 0),
-            ["The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."] * site["edge"])
+    """Sentences on equally good candidates, and on a best candidate at the lattice's edge; each list may be empty."""
+    more = "1 more candidate is" if site["alike"] == 1 else f"{site['alike']} more candidates are"
+    edge = "The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."
+    return [f"{more} as good within the error."] * (site["alike"] > 0), [edge] * site["edge"]
 
 
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The step that checks the site."""
+    alike, edge = how_sure(site)
     words = [f"{site['surfaces']}. Objects that no map shows may stand there."]
-    masts = [f"{percent(row['share'][0], row['share'][1], view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
+    masts = [f"{percent(value, error, view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m"
+             for row in site["masts"] for value, error in [row["share"]]]
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
-    alike, edge = how_sure(site)
     words += alike
     alone = [row for row in site["robustness"] if row["sensors"] == 1]
     if alone:
         most = max(alone, key=lambda row: row["another winner"])
         words.append(f"With other numbers ({most['change']}) another site wins in up to {most['another winner']} of "
-                     f"{most['draws']} draws, with at most {1.0 + max(row['gain at most'] for row in alone):.2f} times the share.")
+                     f"{most['draws']} draws, with at most {1.0 + max(row['gain at most'] for row in alone):.2f} times "
+                     "the share.")
     words += edge
     if site["draws"] < FEWEST_DRAWS:
-        words.append(f"How certain the choice of the best site is was not computed, because this needs draws={FEWEST_DRAWS}.")
-    return {"head": "Check the site.", "more": "#sites", "words": " ".join(words) + " Maps of the site for GIS:",
-            "command": command(view, "coverage", "maps", **{"sensor.position": ",".join(rounded(view.sensor.position))})}
+        words.append("How certain the choice of the best site is was not computed, "
+                     f"because this needs draws={FEWEST_DRAWS}.")
+    return {"head": "Check the site.", "more": "#sites", "words": " ".join([*words, "Maps of the site for GIS:"]),
+            "command": command(view, "coverage", "maps",
+                               **{"sensor.position": ",".join(rounded(view.sensor.position))})}

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Places where a lidar may stand: outside of outlines, on the ground, with masts below obstacle limitation surfaces of runways.
+"""Places where a lidar may stand: outside of outlines, on the ground, with masts below obstacle limitation surfaces of
+runways.
 
-The surfaces are the strip, approach and transitional surfaces of ICAO Annex 14. `surfaces.json` has the dimensions, their source and
-assumptions. Not modelled are inner horizontal and conical surfaces, which lie 45 m and more above the aerodrome, and take-off climb
-surfaces.
-"""
+The surfaces are the strip, approach and transitional surfaces of ICAO Annex 14. `surfaces.json` has the dimensions,
+their source and assumptions. Not modelled are inner horizontal and conical surfaces, which lie 45 m and more above the
+aerodrome, and take-off climb surfaces. """
 from __future__ import annotations
 
 import dataclasses
@@ -23,12 +23,13 @@ from ._regions import Runway, runway_outline
 MOST_CANDIDATES = 100_000
 SAME_PLACE = 1e-3  # m: candidates with equal coordinates to this precision are one candidate
 NAMES = ("strip", "approach", "transitional")
+TABLE: Dict[str, Any] = packaged("surfaces.json")  # all dimensions of the surfaces, their source, and the assumptions
 STEP = 100.0  # distance along a runway between places at which the runway's height is taken from the scene, m
 
 
 def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
-    """Which points (n x 2, m) lie in an outline or within `margin` (m) of the outline: n of bool. @param outline a ring (m x 2, m), or
-    several rings: the outer ring and holes"""
+    """Which points (n x 2, m) lie in an outline or within `margin` (m) of the outline: n of bool. @param outline a ring
+    (m x 2, m), or several rings: the outer ring and holes"""
     from ._gdal import geometry
     points = np.asarray(points, dtype=float)[:, :2]
     rings = [np.asarray(ring) for ring in (outline if np.ndim(outline[0]) == 2 else [outline])]
@@ -44,12 +45,12 @@ def is_near(points, outline, margin: float = 0.0) -> np.ndarray:
 
 
 def lattice(bounds: Sequence[float], spacing: float) -> np.ndarray:
-    """Points n x 2 (m), x fastest, at most MOST_CANDIDATES. @param bounds least and greatest x, least and greatest y, m,
-    inclusive"""
+    """Points n x 2 (m), x fastest. @param bounds least and greatest x, least and greatest y, m, inclusive"""
     if not spacing > 0.0 or bounds[1] < bounds[0] or bounds[3] < bounds[2]:
         raise ValueError(f"spacing {spacing} and bounds {tuple(bounds)} make no lattice")
     counts = [np.floor((high - low) / spacing + 1e-9) + 1.0 for low, high in (bounds[:2], bounds[2:])]
-    _check_count(counts[0] * counts[1], f"spacing {spacing} and bounds {tuple(bounds)} make", "take a larger spacing or smaller bounds")
+    _check_count(counts[0] * counts[1], f"spacing {spacing} and bounds {tuple(bounds)} make",
+                 "take a larger spacing or smaller bounds")
     x, y = (np.arange(low, high + 1e-9 * spacing, spacing) for low, high in (bounds[:2], bounds[2:]))
     return np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x))])
 
@@ -80,15 +81,16 @@ def ground_of(scene, points) -> np.ndarray:
     return np.array([z[0] if len(z) else np.nan for z in _along_verticals(scene, points)])
 
 
-def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (), scene=None) -> np.ndarray:
-    """Places where a lidar may stand, n x 3, m: each point outside all exclusions, with each mast. Candidates at equal places are
-    reduced to the first, with a warning, because two sensors at one place would count as one.
+def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tuple[Any, float]] = (), scene=None
+               ) -> np.ndarray:
+    """Places where a lidar may stand, n x 3, m: each point outside all exclusions, with each mast. Candidates at equal
+    places are reduced to the first, with a warning, because two sensors at one place would count as one.
 
     points      n x 2, m
     masts       heights above the ground, m
     exclusions  outlines (m x 2, m), each with the margin (m) around the outline
-    scene       a Scene: its lowest surface is the ground, and no candidate may stand under another surface, as in a building. None:
-                the ground is at z = 0, as it is where the scene has no surface
+    scene       a Scene: its lowest surface is the ground, and no candidate may stand under another surface, as in a
+                building. None: the ground is at z = 0, as it is where the scene has no surface
     """
     points = rows_of("points", points, (2,))
     _check_count(len(points) * len(masts), f"{len(points)} points and {len(masts)} masts make", "take fewer")
@@ -100,23 +102,19 @@ def candidates(points, masts: Sequence[float] = (5.0,), exclusions: Sequence[Tup
     top = np.array([z[-1] if len(z) else -np.inf for z in surfaces])
     found = [np.column_stack([points[free], ground + mast])[ground + mast > top] for mast in masts]
     if not any(map(len, found)):
-        raise ValueError(f"no candidate is left of {len(points)} points and {len(found)} masts: exclusions hold them all")
+        raise ValueError(f"no candidate is left of {len(points)} points and {len(found)} masts: "
+                         "exclusions hold them all")
     places = np.concatenate(found)
     first = np.sort(np.unique(np.round(places / SAME_PLACE), axis=0, return_index=True)[1])
     if len(first) < len(places):
-        warnings.warn(f"{len(places) - len(first)} of {len(places)} candidates stand at the place of another candidate, and are left out",
-                      RuntimeWarning, stacklevel=callers_level())
+        warnings.warn(f"{len(places) - len(first)} of {len(places)} candidates stand at the place of another "
+                      "candidate, and are left out", RuntimeWarning, stacklevel=callers_level())
     return places[first]
-
-
-def table() -> Dict[str, Any]:
-    """All dimensions, their source, and the assumptions."""
-    return packaged("surfaces.json")
 
 
 def code_of(length: float) -> int:
     """The code number, 1 to 4, that belongs to a runway's length, m."""
-    return 1 + int(np.searchsorted(table()["codes"]["lengths"], length, side="right"))
+    return 1 + int(np.searchsorted(TABLE["codes"]["lengths"], length, side="right"))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -136,12 +134,13 @@ class Surfaces:
 
     @classmethod
     def of(cls, runway: Runway, scene=None, changes: Optional[Mapping[str, Any]] = None) -> Surfaces:
-        """The surfaces from the table. @param scene scene whose lowest surface is the ground; without a surface the ground is at z = 0
-        @param changes code, category, and for a surface False, which leaves the surface out, or other dimensions"""
+        """The surfaces from the table. @param scene scene whose lowest surface is the ground; without a surface the
+        ground is at z = 0 @param changes code, category, and for a surface False, which leaves the surface out, or
+        other dimensions"""
         changes = changes or {}
         length = runway.axis()[1]
-        code, category = changes.get("code", code_of(length)), changes.get("category", table()["category"]["default"])
-        numbers = {name: {**table()[category][str(code)][name], "kept": changes.get(name) is not False,
+        code, category = changes.get("code", code_of(length)), changes.get("category", TABLE["category"]["default"])
+        numbers = {name: {**TABLE[category][str(code)][name], "kept": changes.get(name) is not False,
                           **(changes[name] if isinstance(changes.get(name), dict) else {})} for name in NAMES}
         along = np.linspace(0.0, length, int(length / STEP) + 2)
         places = np.asarray(runway.start) + along[:, None] * runway.axis()[0]
@@ -159,11 +158,11 @@ class Surfaces:
         return runway_outline(self.runway, self.numbers["strip"]["beyond"], self.numbers["strip"]["half_width"])
 
     def limits(self, points) -> Dict[str, np.ndarray]:
-        """The height (z, m) of each counting surface above or below each point: infinite outside the surface, minus infinity in the
-        strip, where no lidar may stand. @param points n x 2 or n x 3, m"""
-        axis, length = self.runway.axis()
-        off = np.asarray(points, dtype=float)[:, :2] - self.runway.start
-        along, aside = off @ axis, np.abs(off @ np.array([axis[1], -axis[0]]))
+        """The height (z, m) of each counting surface above or below each point: infinite outside the surface, minus
+        infinity in the strip, where no lidar may stand. @param points n x 2 or n x 3, m"""
+        length = self.runway.axis()[1]
+        along, aside = self.runway.axes() @ (np.asarray(points, dtype=float)[:, :2] - self.runway.start).T
+        aside = np.abs(aside)
         beyond = np.maximum(-along, along - length)  # distance beyond the nearer end, m; negative beside the runway
         ground = np.interp(along, *self.profile)
         strip, approach, transitional = (self.numbers[name] for name in NAMES)
@@ -176,13 +175,14 @@ class Surfaces:
         in_strip = (beyond <= strip["beyond"]) & (aside <= strip["half_width"])
         up = rise + transitional["slope"] * (aside - half_width)
         beside = (before | (beyond <= strip["beyond"])) & (aside > half_width) & (up <= transitional["height"])
-        found = {"strip": np.where(in_strip, -np.inf, np.inf), "approach": np.where(before & (aside <= half_width), ground + rise, np.inf),
+        found = {"strip": np.where(in_strip, -np.inf, np.inf),
+                 "approach": np.where(before & (aside <= half_width), ground + rise, np.inf),
                  "transitional": np.where(beside, ground + up, np.inf)}
         return {name: found[name] for name in self.kept}
 
 
 def pierced(surfaces: Sequence[Surfaces], tops) -> np.ndarray:
-    """The first surface that each top pierces: 0 for none, else 1 + the number in NAMES. @param tops tops of masts, n x 3, m"""
+    """The first surface that each top pierces: 0 for none, else 1 + the number in NAMES. @param tops n x 3, m"""
     tops = np.asarray(tops, dtype=float)
     found = np.zeros(len(tops), dtype=int)
     for number, name in enumerate(NAMES, 1):

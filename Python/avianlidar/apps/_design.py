@@ -23,7 +23,7 @@ from ._formula import Formula
 from ._inputs import read_plan, read_scenario
 from ._json import naming
 from ._looks import files_of, fill, require_memory
-from ._plan import Plan
+from ._plan import OTHER_PLACES, Plan
 from ._tables import read_table
 from ._tracks import LEARNING, BirdTracks
 
@@ -32,7 +32,6 @@ FINALISTS = 5  # number of designs that are tracked
 LIGHTS = 4  # designs of one geometry that are computed together: the differences change no line of sight and no hit
 TOLD = 2.0  # standard errors by which a share must lie above or below the required share to be decided
 CHANGE = 0.2  # change of a number to either side, for sensitivities
-OTHER_PLACES = 1 << 40  # offset of the seed for places that were not used to choose designs
 MOST_SCANS = 100  # greatest NumberOfScans of vtkAvianLidarCoverage
 PUPIL = math.pi * 0.0035 ** 2  # area of a pupil in the dark, 7 mm across, m2
 
@@ -65,13 +64,13 @@ FIELDS = {
     "pulse_energy": Field("J", "energy of a pulse", True, (1e3, " mJ")),
     "rotation_rate": Field("Hz", "scans a second", True, (1.0, ""))}
 BAND = ("number_of_channels", "minimum_elevation", "maximum_elevation")
-PULSES = {"pulse_rate": ("Hz", "pulses a second, mean"), "average_power": ("W", "average power")}  # further names for formulas
+PULSES = ("pulse_rate", "average_power")  # further names for formulas: mean pulses a second, Hz, and average power, W
 
 
 def spread(number: int, count: int) -> np.ndarray:
-    """Points first, first + 1, ... of a sequence that fills the unit cube evenly: the additive recurrence k -> frac(1/2 + k a) with
-    a_j = phi^-(j + 1), phi^(d + 1) = phi + 1 (M. Roberts, 2018). A longer sequence begins with the same points. @param number number of
-    dimensions, d @param count number of points @return count x d"""
+    """Points first, first + 1, ... of a sequence that fills the unit cube evenly: the additive recurrence k -> frac(1/2
+    + k a) with a_j = phi^-(j + 1), phi^(d + 1) = phi + 1 (M. Roberts, 2018). A longer sequence begins with the same
+    points. @param number number of dimensions, d @param count number of points @return count x d"""
     phi = 2.0
     for _ in range(100):
         phi = (1.0 + phi) ** (1.0 / (number + 1))
@@ -79,12 +78,13 @@ def spread(number: int, count: int) -> np.ndarray:
 
 
 def on_the_front(costs, shares) -> np.ndarray:
-    """For each design, whether no other design has at least the same share at a lower cost, or a larger share at no higher cost: n of
-    bool. A design with NaN is never on the front."""
+    """For each design, whether no other design has at least the same share at a lower cost, or a larger share at no
+    higher cost: n of bool. A design with NaN is never on the front."""
     costs, shares = np.asarray(costs, float), np.asarray(shares, float)
     order, found = np.lexsort((-shares, costs)), np.zeros(len(costs), bool)
     order = order[np.isfinite(costs + shares)[order]]
-    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]  # the cheapest design with at least this share
+    # The cheapest design with at least the share of each design.
+    first = order[np.searchsorted(np.maximum.accumulate(shares[order]), shares[order])]
     found[order] = (shares[first] == shares[order]) & (costs[first] == costs[order])
     return found
 
@@ -101,7 +101,8 @@ class Candidate:
     number: int
     values: Dict[str, float]
     cost: float = math.nan
-    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)  # pulse_rate Hz, shortest_interval s, average_power W, exposure J/m2, pupil J
+    # pulse_rate Hz, shortest_interval s, average_power W, exit_aperture m2, exposure J/m2, pupil J
+    pulses: Dict[str, float] = dataclasses.field(default_factory=dict)
     refused: str = ""  # reason why the sensor refuses the design
     share: scores.Value = scores.Value(math.nan, math.nan, 0)
     tracked: scores.Value = scores.Value(math.nan, math.nan, 0)
@@ -116,8 +117,10 @@ class Study:
     chosen      after `look`: the cheapest design with the required share, None without such a design
     """
 
-    def __init__(self, plan: Union[Plan, str, "os.PathLike[str]"], folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None):
-        """Checks all that the plan says of its designs, and computes their costs. `Error` names the plan's file and the member.
+    def __init__(self, plan: Union[Plan, str, "os.PathLike[str]"], folder, ranks: Optional[Ranks] = None,
+                 progress: Optional[Progress] = None):
+        """Checks all that the plan says of its designs, and computes their costs. `Error` names the plan's file and the
+        member.
 
         plan      a plan's file, or a Plan, whose sensor is left with the last computed design
         folder    holds the results of each design, so that a stopped run can continue, and the written files
@@ -130,10 +133,12 @@ class Study:
         self.progress: Progress = progress if progress and not self.ranks.rank else lambda *_: None
         self.options: Dict[str, Any] = plan.plan["design"]
         self.asked, self.measure = float(self.options["share"]), self.options.get("measure", "detected")
-        self.within = float(self.options.get("within", 0.0))
-        self.unit = str(self.options.get("cost_unit", ""))
+        self.within, self.unit = float(self.options.get("within", 0.0)), str(self.options.get("cost_unit", ""))
         self.airs = plan.year or [Air(plan.air, 1.0, {})]
-        self.base = self._base()
+        sensor, self.ground = plan.sensor, plan.ground or 0.0
+        highest = sensor.minimum_elevation + (sensor.number_of_channels - 1) * sensor.elevation_step
+        ours = {"mast": sensor.position[2] - self.ground, "maximum_elevation": highest}
+        self.base = {name: ours[name] if name in ours else float(getattr(sensor, name)) for name in FIELDS}
         self.swept = [name for name in FIELDS if name in self.options["bounds"]]
         self.levels = {name: self._levels(name) for name in self.swept}
         self._check()
@@ -148,13 +153,6 @@ class Study:
         if all(one.refused for one in self.candidates):
             raise Error(f"{plan.file}: design.bounds: contain no possible lidar: {self.candidates[0].refused}")
         self.scenario = self._scenario() if self.measure == "tracked" else {}
-
-    def _base(self) -> Dict[str, float]:
-        sensor = self.plan.sensor
-        self.ground = self.plan.ground or 0.0
-        highest = sensor.minimum_elevation + (sensor.number_of_channels - 1) * sensor.elevation_step
-        ours = {"mast": sensor.position[2] - self.ground, "maximum_elevation": highest}
-        return {name: ours[name] if name in ours else float(getattr(sensor, name)) for name in FIELDS}
 
     def _ends(self, name: str) -> List[float]:
         """Values of a bound, or its ends; for a number that is not varied, the sensor's own value."""
@@ -190,18 +188,21 @@ class Study:
     def _check(self) -> None:
         """Checks the bounds together."""
         what, sensor = f"{self.plan.file}: design", self.plan.sensor
-        regular = (not sensor.channel_elevations and sensor._beams is None and not sensor.algorithm.GetNumberOfPrisms())
+        regular = not sensor.channel_elevations and sensor._beams is None and not sensor.algorithm.GetNumberOfPrisms()
         of_band = [name for name in (*BAND, "azimuth_step") if name in self.swept]
         if of_band and not regular:
-            raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table, expected channels at even steps, as of Search905")
+            raise Error(f"{what}.bounds.{of_band[0]}: the sensor's beams are a table, "
+                        "expected channels at even steps, as of Search905")
         if "receiver_aperture" in self.swept and not gathers_light(sensor):
-            raise Error(f"{what}.bounds.receiver_aperture: the sensor has no aperture, expected a photon receiver, as of Search905")
+            raise Error(f"{what}.bounds.receiver_aperture: the sensor has no aperture, "
+                        "expected a photon receiver, as of Search905")
         low, high = max(self._ends("minimum_elevation")), min(self._ends("maximum_elevation"))
         if of_band and not low < high:
-            raise Error(f"{what}.bounds: beams begin at up to {low:g} deg and end from {high:g} deg on, expected bounds of minimum_elevation below "
-                        "those of maximum_elevation")
+            raise Error(f"{what}.bounds: beams begin at up to {low:g} deg and end from {high:g} deg on, "
+                        "expected bounds of minimum_elevation below those of maximum_elevation")
         if of_band and min(self._ends("number_of_channels")) < 2.0:
-            raise Error(f"{what}.bounds.number_of_channels: begins at 1, expected 2 or more, of which the lowest and the highest are the band's ends")
+            raise Error(f"{what}.bounds.number_of_channels: begins at 1, expected 2 or more, "
+                        "of which the lowest and the highest are the band's ends")
 
     def _scans(self, values: Mapping[str, float]) -> int:
         """Number of scans within the time for which a bird is present."""
@@ -210,7 +211,8 @@ class Study:
     def _all_values(self) -> List[Dict[str, float]]:
         """The numbers of all designs; designs of one geometry are neighbours."""
         bounds, count = self.options["bounds"], int(self.options.get("designs", DESIGNS))
-        sizes = [len(of) if isinstance(of, list) else int(of.get("levels", 0)) for of in (bounds[name] for name in self.swept)]
+        sizes = [len(of) if isinstance(of, list) else int(of.get("levels", 0))
+                 for of in (bounds[name] for name in self.swept)]
         self.factorial = 0 < math.prod(sizes) <= count  # 0 if a bound is an interval
         if self.factorial:
             places = [[(k + 0.5) / size for k in range(size)] for size in sizes]
@@ -221,28 +223,31 @@ class Study:
             of_light, of_hard = spread(max(len(light), 1), count), spread(max(len(hard), 1), -(-count // of_one))
             units = [{**dict(zip(hard, of_hard[k // of_one])), **dict(zip(light, of_light[k]))} for k in range(count)]
         found = [{**self.base, **{name: self.levels[name](point[name]) for name in self.swept}} for point in units]
-        return [dict(one) for one in dict.fromkeys(tuple(values.items()) for values in found)]  # lists may give one design twice
+        # Lists may give one design twice.
+        return [dict(one) for one in dict.fromkeys(tuple(values.items()) for values in found)]
 
     def _set(self, values: Mapping[str, float]) -> None:
         """Sets the plan's sensor to a design. The sensor's `Error` says why a design is impossible."""
         sensor, (x, y, _) = self.plan.sensor, self.plan.sensor.position
-        changes: Dict[str, Any] = {name: values[name] for name in FIELDS if name not in ("mast", *BAND) and values[name] != getattr(sensor, name)}
+        changes: Dict[str, Any] = {name: values[name] for name in FIELDS
+                                   if name not in ("mast", *BAND) and values[name] != getattr(sensor, name)}
         if "mast" in self.swept:
             changes["position"] = (x, y, self.ground + values["mast"])
         if any(name in self.swept for name in BAND):
-            changes.update(number_of_channels=int(values["number_of_channels"]), minimum_elevation=values["minimum_elevation"],
-                           elevation_step=(values["maximum_elevation"] - values["minimum_elevation"]) / max(values["number_of_channels"] - 1.0, 1.0))
+            number, low, high = (values[name] for name in BAND)
+            changes.update(number_of_channels=int(number), minimum_elevation=low,
+                           elevation_step=(high - low) / max(number - 1.0, 1.0))
         sensor.set(**changes)
         update(sensor.algorithm)
 
     def changes(self, values: Mapping[str, float]) -> Dict[str, Any]:
         """Properties that turn the plan's sensor into a design."""
         self._set(values)
-        sensor = self.plan.sensor
-        names = {name for name in self.swept if name not in ("mast", "maximum_elevation")} | {"position", "orientation"}
+        names = {*self.swept, "position", "orientation"} - {"mast", "maximum_elevation"}
         if any(name in self.swept for name in BAND):
             names |= {"number_of_channels", "minimum_elevation", "elevation_step"}
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in ((name, getattr(sensor, name)) for name in sorted(names))}
+        found = {name: getattr(self.plan.sensor, name) for name in sorted(names)}
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
 
     def _judge(self, one: Candidate) -> None:
         """Computes pulses and cost of a design."""
@@ -252,24 +257,23 @@ class Study:
             self._set(one.values)
             gate, limit = self.plan.sensor.range_gate, self.plan.sensor.algorithm.GetUnambiguousRange()
             if gate > limit and not self.options.get("ambiguous_ranges", False):
-                raise Error(f"range_gate is {gate:g} m, expected at most {limit:.4g} m, so that an echo "
-                            "arrives before the next pulse leaves, or design.ambiguous_ranges true")
+                raise Error(f"range_gate is {gate:g} m, expected at most {limit:.4g} m, so that an echo arrives before "
+                            "the next pulse leaves, or design.ambiguous_ranges true")
         except Error as error:
             one.refused = str(error)
             return
-        beams = self.plan.sensor.beams
-        times = np.sort(1e-6 * np.asarray(beams["timestamp"], float))
-        rate, energy = beams.number_of_points * one.values["rotation_rate"], one.values["pulse_energy"]
-        numbers = {**one.values, "pulse_rate": rate, "average_power": rate * energy}
+        times = np.sort(1e-6 * np.asarray(self.plan.sensor.beams["timestamp"], float))
+        rate, energy = len(times) * one.values["rotation_rate"], one.values["pulse_energy"]
+        pulses = {"pulse_rate": rate, "average_power": rate * energy}
+        numbers = {**one.values, **pulses}
         with naming(f"{self.plan.file}: design.cost"):
             one.cost = self.cost(numbers)
         with naming(f"{self.plan.file}: design.exit_aperture"):
             area = self.exit(numbers)
             if not area > 0.0:
                 raise ValueError(f"{self.exit.text}: is {area:g} m2, expected more than 0")
-        one.pulses = {"pulse_rate": rate, "shortest_interval": float(np.diff(times).min()) if len(times) > 1 else 1.0 / rate,
-                      "average_power": rate * energy, "exit_aperture": area, "exposure": energy / area,
-                      "pupil": energy * min(PUPIL / area, 1.0)}
+        one.pulses = {**pulses, "shortest_interval": float(np.diff(times).min()) if len(times) > 1 else 1.0 / rate,
+                      "exit_aperture": area, "exposure": energy / area, "pupil": energy * min(PUPIL / area, 1.0)}
 
     def _scenario(self) -> Dict[str, Any]:
         what = f"{self.plan.file}: design.scenario"
@@ -282,13 +286,14 @@ class Study:
         return found
 
     def look(self) -> Study:
-        """Computes the share of birds that each design detects, and the share that finalists track. @return this study"""
+        """Computes the share of birds that each design detects, and that finalists track. @return this study"""
         possible = [one for one in self.candidates if not one.refused]
         self.weights = self.plan.weights(self.plan.points).sum(axis=0)
         found = self._found("designs", [one.values for one in possible], self.plan.points)
         for one, values in zip(possible, found):
             one.share = scores.weighted(values, self.weights)
-        for one, is_on in zip(possible, on_the_front([one.cost for one in possible], [one.share.value for one in possible])):
+        for one, is_on in zip(possible, on_the_front([one.cost for one in possible],
+                                                     [one.share.value for one in possible])):
             one.front = bool(is_on)
         self.front = sorted((one for one in possible if one.front), key=lambda one: one.cost)
         self.finalists = self._tracked_ones() if self.measure == "tracked" else []
@@ -314,15 +319,15 @@ class Study:
         return is_told(*self.of(one)[:2], self.asked)
 
     def undecided(self) -> List[Candidate]:
-        """Designs within the error of the required share that are cheaper than the chosen design; without a chosen design, at any
-        cost."""
+        """Designs within the error of the required share that are cheaper than the chosen design, if there is one."""
         limit = self.chosen.cost if self.chosen else math.inf
         return [one for one in self.judged if one.cost < limit and self.has_it(one) is None]
 
     def _found(self, what: str, designs: Sequence[Mapping[str, float]], points: np.ndarray) -> np.ndarray:
-        """The probability at each place for the plan's birds and weathers: float32, designs x places. Ranks share the designs; designs
-        of one geometry stay together. Results in the folder are not computed again."""
-        require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places", "take fewer")
+        """The probability at each place for the plan's birds and weathers: float32, designs x places. Ranks share the
+        designs; designs of one geometry stay together. Results in the folder are not computed again."""
+        require_memory(4.0 * len(designs) * len(points), f"{len(designs):,} designs and {len(points):,} places",
+                       "take fewer")
         folder, places = self.folder / "coverage", np.ascontiguousarray(points, float)
         settings = {name: value for name, value in self.plan.settings.items() if name != "height_limits"}
         cover = Coverage(self.plan.scene, self.plan.sensor, places=places_of(places), **settings)
@@ -336,7 +341,7 @@ class Study:
             hard = [tuple(value for name, value in values.items() if not FIELDS[name].light) for values in designs]
             with Updates(cover.algorithm) as again:
                 fill(found, files, self.ranks, lambda i: self._at_places(cover, designs[i], again),
-                             lambda *done: self.progress(what, *done), lambda i: hard[i])
+                     lambda *done: self.progress(what, *done), lambda i: hard[i])
         return found
 
     def _at_places(self, cover: Coverage, values: Mapping[str, float], again: Callable[[], Any]) -> np.ndarray:
@@ -358,8 +363,8 @@ class Study:
         return np.asarray(total, np.float32)
 
     def _sensitivities(self, found: np.ndarray) -> List[Dict[str, Any]]:
-        """Rows: each varied number of the design lower and higher by CHANGE (elevations by CHANGE of the band), one number at a time. A row
-        has the changes of the detected share, at the same places, and of the cost."""
+        """Rows: each varied number of the design lower and higher by CHANGE (elevations by CHANGE of the band), one
+        number at a time. A row has the changes of the detected share, at the same places, and of the cost."""
         about, changed = self.about.values, []
         width = about["maximum_elevation"] - about["minimum_elevation"]
         for name in self.swept:
@@ -373,10 +378,11 @@ class Study:
                     one.refused = str(error)
                 changed.append((name, value, one))
         possible = [one for _, _, one in changed if not one.refused]
-        for one, values in zip(possible, self._found("sensitivities", [one.values for one in possible], self.plan.points)):
+        for one, values in zip(possible, self._found("sensitivities", [one.values for one in possible],
+                                                     self.plan.points)):
             one.share = scores.weighted(values - found, self.weights)
-        return [{"field": name, "unit": FIELDS[name].unit, "from": about[name], "to": value, "refused": one.refused, "cost": one.cost - self.about.cost,
-                 "share": one.share} for name, value, one in changed]
+        return [{"field": name, "unit": FIELDS[name].unit, "from": about[name], "to": value, "refused": one.refused,
+                 "cost": one.cost - self.about.cost, "share": one.share} for name, value, one in changed]
 
     def _tracked_ones(self) -> List[Candidate]:
         """Designs spread evenly along the front, with the number of tracked birds of the scenario."""
@@ -384,16 +390,17 @@ class Study:
         finalists = [self.front[i] for i in np.unique(np.round(np.linspace(0, len(self.front) - 1, count)).astype(int))]
         with naming(f"{self.plan.file}: design.scenario"):
             rate = Sensor(**self.scenario["sensor"]).rotation_rate
+        own = {name: value for name, value in self.plan.plan["sensor"].items() if name != "name"}
+        each = int(self.scenario.get("scans_per_sequence", 100))
         for number, one in enumerate(finalists):
-            sensor = {**self.scenario["sensor"], **{name: value for name, value in self.plan.plan["sensor"].items() if name != "name"}, **self.changes(one.values)}
-            each = int(self.scenario.get("scans_per_sequence", 100))
             # within equal times
             scans, learning = (max(round(count * one.values["rotation_rate"] / rate), 1) for count in (each, LEARNING))
             with naming(f"{self.plan.file}: design.scenario"):
-                tracks = BirdTracks([self.options["scenario"]], learning_scans=learning, threads=self.plan.threads, sensor=sensor, scans_per_sequence=scans,
+                tracks = BirdTracks([self.options["scenario"]], learning_scans=learning, threads=self.plan.threads,
+                                    sensor={**self.scenario["sensor"], **own, **self.changes(one.values)},
+                                    scans_per_sequence=scans,
                                     number_of_scans=max(scans * self.scenario["number_of_scans"] // each, 1))
             folder = self.folder / "tracks" / hashlib.sha256(repr(one.values).encode()).hexdigest()[:16]
-
             which = f"design {number + 1} of {len(finalists)}"
             tracks.write(folder, self.ranks, lambda what, *done, which=which: self.progress(f"{which}: {what}", *done))
             with naming(f"{self.plan.file}: design.scenario"):
@@ -409,5 +416,6 @@ class Study:
             if not of:
                 raise ValueError(f"has no {species or 'target'} at the plan's heights within the beams, expected some")
             parts.append((share, scores.share(sum(bird["found_s"] != "" for bird in of), len(of))))
-        return scores.Value(sum(share * part.value for share, part in parts), math.sqrt(sum((share * part.error) ** 2 for share, part in parts)),
+        return scores.Value(sum(share * part.value for share, part in parts),
+                            math.sqrt(sum((share * part.error) ** 2 for share, part in parts)),
                             sum(part.number for _, part in parts))

@@ -7,8 +7,9 @@ import math
 from typing import Any, Callable, Dict, Iterable, Mapping
 
 LONGEST = 1000  # characters
-FUNCTIONS: Dict[str, Callable[..., float]] = {"sqrt": math.sqrt, "exp": math.exp, "log": math.log, "log10": math.log10, "abs": abs, "min": min,
-                                              "max": max, "ceil": lambda x: float(math.ceil(x)), "floor": lambda x: float(math.floor(x))}
+FUNCTIONS: Dict[str, Callable[..., float]] = {
+    "sqrt": math.sqrt, "exp": math.exp, "log": math.log, "log10": math.log10, "abs": abs, "min": min, "max": max,
+    "ceil": lambda x: float(math.ceil(x)), "floor": lambda x: float(math.floor(x))}
 OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.UAdd, ast.USub)
 Values = Mapping[str, float]
 
@@ -32,17 +33,17 @@ class Formula:
         try:
             tree = ast.parse(text.strip(), mode="eval")
         except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
-            raise ValueError(f"{text}: is not a formula ({getattr(error, 'msg', error) or 'it is nested too deeply'})") from None
+            raise ValueError(f"{text}: is not a formula "
+                             f"({getattr(error, 'msg', error) or 'it is nested too deeply'})") from None
         called = [node.func for node in ast.walk(tree) if isinstance(node, ast.Call)]
         for node in ast.walk(tree):
             if not self._may_stand(node):
                 raise ValueError(f"{text}: {ast.unparse(node)[:40]!r} may not stand in a formula, expected numbers, "
                                  "names, + - * / ** ( ) and functions")
-            if isinstance(node, ast.Name) and node in called and node.id not in FUNCTIONS:
-                raise ValueError(f"{text}: {node.id!r} is not a function here, expected one of {', '.join(FUNCTIONS)}")
-            if isinstance(node, ast.Name) and node not in called and node.id not in self.names:
-                known = ", ".join(self.names)
-                raise ValueError(f"{text}: {node.id!r} is not known, expected one of the numbers {known}")
+            if isinstance(node, ast.Name) and node.id not in (FUNCTIONS if node in called else self.names):
+                expected = (f"a function here, expected one of {', '.join(FUNCTIONS)}" if node in called else
+                            f"known, expected one of the numbers {', '.join(self.names)}")
+                raise ValueError(f"{text}: {node.id!r} is not {expected}")
             if isinstance(node, ast.Constant):
                 try:
                     node.value = float(node.value)  # huge powers of floats overflow at once
@@ -64,7 +65,7 @@ class Formula:
         return isinstance(node, (ast.Expression, ast.Name, ast.expr_context, *OPERATORS))
 
     def __call__(self, values: Values) -> float:
-        """The value of the formula, a finite number. ValueError gives the numbers for which the formula has no finite value."""
+        """The finite value of the formula. ValueError gives the numbers for which there is none."""
         problem: Any = "it is not finite"
         try:
             result = eval(self._code, {"__builtins__": {}, **FUNCTIONS}, {**values})
@@ -72,4 +73,5 @@ class Formula:
                 return result
         except (ArithmeticError, ValueError, TypeError, RecursionError) as error:
             problem = error
-        raise ValueError(f"{self.text}: cannot be calculated ({problem}) for " + ", ".join(f"{name} {values[name]:g}" for name in self.names if name in values))
+        raise ValueError(f"{self.text}: cannot be calculated ({problem}) for "
+                         + ", ".join(f"{name} {values[name]:g}" for name in self.names if name in values))

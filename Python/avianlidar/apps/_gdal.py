@@ -18,8 +18,7 @@ for module in (gdal, ogr, osr):
 
 @contextlib.contextmanager
 def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
-    """Suppresses GDAL's warnings, for example of rings that cross. @param hear is called with the warnings, and with the messages of the
-    OSM driver on ways and relations"""
+    """Suppresses GDAL's warnings. @param hear is called with them and with the OSM driver's messages on ways"""
     before = gdal.GetConfigOption("CPL_DEBUG")
     gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
     gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")
@@ -41,7 +40,8 @@ def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, opti
     """A regular file with one of GDAL's drivers."""
     expect_file(file)
     try:
-        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers, open_options=list(options))
+        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers,
+                           open_options=list(options))
     except RuntimeError as error:
         raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
 
@@ -78,12 +78,13 @@ def plain(shape, to_degrees):
     """A geometry of straight lines in degrees; what consists of one part is that part, and rings are closed."""
     if shape is None:
         return None
-    shape = shape.GetLinearGeometry() if shape.HasCurveGeometry() else shape.Clone()
+    shape = shape.GetLinearGeometry()
     if to_degrees is not None:
         shape.Transform(to_degrees)
     shape.FlattenTo2D()
     shape.CloseRings()
-    return shape.GetGeometryRef(0).Clone() if shape.GetGeometryName().startswith("MULTI") and shape.GetGeometryCount() == 1 else shape
+    is_one = shape.GetGeometryName().startswith("MULTI") and shape.GetGeometryCount() == 1
+    return shape.GetGeometryRef(0).Clone() if is_one else shape
 
 
 def form_of(shape) -> str:
@@ -96,32 +97,31 @@ def parts_of(shape) -> List[Any]:
     """Points, lines and polygons of a geometry (ogr)."""
     if form_of(shape) and "MULTI" not in shape.GetGeometryName():
         return [shape]
-    return [part for i in range(shape.GetGeometryCount()) for part in parts_of(shape.GetGeometryRef(i).Clone())]
+    return [part for one in shape for part in parts_of(one.Clone())]
 
 
 def corners_of(shape) -> np.ndarray:
     """The corners (n x 2) of points, lines and outer rings."""
-    points = [point for part in parts_of(shape) for point in (part.GetGeometryRef(0) if part.GetGeometryCount() else part).GetPoints() or ()]
+    points = [point for part in parts_of(shape)
+              for point in (part.GetGeometryRef(0) if part.GetGeometryCount() else part).GetPoints() or ()]
     return np.array(points, dtype=float).reshape(-1, 2)
 
 
 def is_closed(shape) -> bool:
-    return shape.GetGeometryName() == "LINESTRING" and shape.GetPointCount() > 3 and shape.GetPoint_2D(0) == shape.GetPoint_2D(shape.GetPointCount() - 1)
-
-
-def as_area(shape):
-    """The polygon in a closed line; polygons are as they are."""
-    return shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
+    """Whether a geometry is a line of three or more corners that ends where it begins."""
+    points = shape.GetPoints() if shape.GetGeometryName() == "LINESTRING" else ()
+    return len(points or ()) > 3 and points[0][:2] == points[-1][:2]
 
 
 def solid(shape):
     """The polygons in a closed line or an area, without rings that enclose nothing. May be empty."""
-    area = as_area(shape)
-    rings = [[part.GetGeometryRef(i).GetPoints() or () for i in range(part.GetGeometryCount())] for part in parts_of(area)]
-    if all(len(ring) > 3 for one in rings for ring in one) and area.IsValid():
+    area = shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
+    polygons = [[ring.GetPoints() or () for ring in part] for part in parts_of(area)]
+    if all(len(ring) > 3 for rings in polygons for ring in rings) and area.IsValid():
         return area
     # GEOS refuses rings of fewer than three corners.
-    return union([geometry("MultiPolygon", [[ring for ring in one if len(ring) > 3] for one in rings if one and len(one[0]) > 3])])
+    kept = [[ring for ring in rings if len(ring) > 3] for rings in polygons if rings and len(rings[0]) > 3]
+    return union([geometry("MultiPolygon", kept)])
 
 
 def union(areas: List[Any]):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runways, outlines and heights of footprints in GeoJSON files, and conversion between degrees and metres of a scene."""
+"""Runways and outlines in GeoJSON files, and conversion between degrees and metres of a scene."""
 from __future__ import annotations
 
 import json
@@ -8,38 +8,35 @@ import re
 from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .. import vtkAvianLidar as _wrapped
+from .._cloud import Cloud
 from .._coverage import places_of
 from .._pipeline import Error, update
+from .._properties import set_properties
 from ._json import load_json, naming
 from ._regions import Runway
 
 
-def _transformed(points, origin: Sequence[float], to_geodetic: bool) -> np.ndarray:
+def _transformed(points, origin: Sequence[float], source: str, target: str) -> np.ndarray:
     transform = _wrapped.vtkAvianLidarGeodeticTransform()
     transform.SetInputData(places_of(points))
-    frames = (transform.FRAME_ENU, transform.FRAME_GEODETIC)
-    transform.SetSourceFrame(frames[not to_geodetic])
-    transform.SetTargetFrame(frames[to_geodetic])
-    transform.SetUseFieldDataOrigin(False)
-    transform.SetOrigin(*origin)
-    transform.SetMovePoints(True)
+    set_properties(transform, source_frame=source, target_frame=target, origin=tuple(origin), move_points=True,
+                   use_field_data_origin=False)
     update(transform)
-    return vtk_to_numpy(transform.GetOutputDataObject(0).GetPoints().GetData()).copy()
+    return Cloud(transform.GetOutputDataObject(0)).points.copy()
 
 
 def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
     """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
     degrees = np.asarray(longitudes_latitudes, dtype=float)
-    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, False)[:, :2]
+    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, "geodetic", "enu")[:, :2]
 
 
 def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
     """Longitude, latitude (deg) and height above the ellipsoid (m). @param points n x 3, m east, north and up
     @param origin latitude, longitude (deg), height (m)"""
-    return _transformed(points, origin, True)
+    return _transformed(points, origin, "enu", "geodetic")
 
 
 def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:
@@ -52,10 +49,10 @@ def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:
         if not isinstance(feature, dict):
             raise Error(f"{path}: features[{number}]: is {str(feature)[:40]}, expected an object")
         for name in ("properties", "geometry"):
-            if feature.get(name) is None:
-                feature[name] = {}
-            if not isinstance(feature[name], dict):
-                raise Error(f"{path}: features[{number}].{name}: is {str(feature[name])[:40]}, expected an object or null")
+            part = {} if feature.get(name) is None else feature[name]
+            if not isinstance(part, dict):
+                raise Error(f"{path}: features[{number}].{name}: is {str(part)[:40]}, expected an object or null")
+            feature[name] = part
     return features
 
 
@@ -71,8 +68,8 @@ def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarra
 
 
 def read_runways(file, origin: Sequence[float]) -> List[Runway]:
-    """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and `width`
-    (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
+    """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and
+    `width` (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
     path = pathlib.Path(file)
     found: List[Runway] = []
     for number, feature in enumerate(features_of(path)):
@@ -81,15 +78,16 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
             name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
             width = properties.get("width", 45.0)
             with naming(f"{path}: features[{number}]"):
-                corners = _corners(shape.get("coordinates"), origin, 2)
-                if not isinstance(width, (int, float)) or not width > 0 or not np.hypot(*(corners[-1] - corners[0])) > 1.0:
-                    raise ValueError(f"{name}: expected a line of some length and a width above 0 m, got the width {width!r}")
-                (x0, y0), (x1, y1) = (map(float, corner) for corner in corners[[0, -1]])
-                displaced = [properties.get(f"displaced_{end}", 0.0) for end in ("start", "end")]
-                if not all(isinstance(away, (int, float)) and 0.0 <= away < np.hypot(x1 - x0, y1 - y0) for away in displaced):
-                    raise ValueError(f"{name}: displaced thresholds are {displaced[0]!r} and {displaced[1]!r}, expected "
-                                     "metres, less than the runway's length")
-                found.append(Runway(name, (x0, y0), (x1, y1), float(width), (float(displaced[0]), float(displaced[1]))))
+                (x0, y0), (x1, y1) = _corners(shape.get("coordinates"), origin, 2)[[0, -1]].tolist()
+                length = np.hypot(x1 - x0, y1 - y0)
+                if not isinstance(width, (int, float)) or not width > 0 or not length > 1.0:
+                    raise ValueError(f"{name}: expected a line of some length and a width above 0 m, "
+                                     f"got the width {width!r}")
+                first, last = (properties.get(name, 0.0) for name in ("displaced_start", "displaced_end"))
+                if not all(isinstance(away, (int, float)) and 0.0 <= away < length for away in (first, last)):
+                    raise ValueError(f"{name}: displaced thresholds are {first!r} and {last!r}, "
+                                     "expected metres, less than the runway's length")
+                found.append(Runway(name, (x0, y0), (x1, y1), float(width), (float(first), float(last))))
     if not found:
         raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
     return found
@@ -97,16 +95,18 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
 
 def _ring(coordinates: Any, origin: Sequence[float]) -> np.ndarray:
     """A ring of a polygon in GeoJSON, n x 2, m, open."""
-    corners = _corners(coordinates, origin, 3)
-    ring = corners[:-1] if np.array_equal(corners[0], corners[-1]) else corners
+    ring = _corners(coordinates, origin, 3)
+    if np.array_equal(ring[0], ring[-1]):
+        ring = ring[:-1]
     if len(ring) < 3:
         raise ValueError("a ring has fewer than 3 corners")
     return ring
 
 
 def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[Any]:
-    """The polygons in a GeoJSON file: for each polygon its ring (n x 2, m, open), or a list of the outer ring and the holes.
-    @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only features with this attribute are read"""
+    """The polygons in a GeoJSON file: for each polygon its ring (n x 2, m, open), or a list of the outer ring and the
+    holes. @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only features with this
+    attribute are read"""
     found: List[Any] = []
     for number, feature in enumerate(features_of(pathlib.Path(file))):
         shape = feature["geometry"]
@@ -122,7 +122,7 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
 
 
 def _height(value: Any) -> float:
-    """A height (m) as scenes read heights: a number, or a text of a number with or without "m"; 0 for any other value."""
+    """A height (m) as scenes read it: a number, or its text with or without "m"; 0 for any other value."""
     try:
         found = float(re.sub(" ?m$", "", value) if isinstance(value, str) else value)
     except (TypeError, ValueError):
@@ -131,17 +131,15 @@ def _height(value: Any) -> float:
 
 
 def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathlib.Path:
-    """Copies a scene file to `folder`. In the copy, every footprint in GeoJSON whose height is read from an attribute is higher by
-    the value of `offset` (m); no height is below 0.1 m. Files keep their names, because objects are named after files. @return the new
-    scene file"""
+    """Copies a scene file to `folder`. In the copy, every footprint in GeoJSON whose height is read from an attribute
+    is higher by the value of `offset` (m); no height is below 0.1 m. Files keep their names, because objects are named
+    after files. @return the new scene file"""
     path, out = pathlib.Path(scene_file), pathlib.Path(folder)
     scene = load_json(path)
     changed: Dict[str, Tuple[pathlib.Path, Any]] = {}
     moved = set()
     for item in scene["objects"]:
-        for key in ("file", "footprints"):
-            if key in item:
-                item[key] = str((path.parent / item[key]).resolve())
+        item.update({key: str((path.parent / item[key]).resolve()) for key in ("file", "footprints") if key in item})
         name, height = item.get("footprints"), item.get("height_attribute")
         if not (name and height and re.search(r"json(\.gz)?$", name, re.IGNORECASE)):
             continue
@@ -151,17 +149,15 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
             changed[name] = new, load_json(name)
         item["footprints"], shapes = str(changed[name][0]), changed[name][1]
         features = shapes.get("features") if isinstance(shapes, dict) else None
-        for feature in features if isinstance(features, list) else ():
-            properties = feature.get("properties") if isinstance(feature, dict) else None
-            if not isinstance(properties, dict):
-                continue
+        rows = [feature.get("properties") for feature in features or () if isinstance(feature, dict)]
+        for properties in (row for row in rows if isinstance(row, dict)):
             value = _height(properties.get(height))
-            if value and (id(feature), height) not in moved:
+            if value and (id(properties), height) not in moved:
                 properties[height] = max(value + offset(), 0.1)
                 under = _height(properties.get(item.get("min_height_attribute")))
                 if under:  # an object above the ground keeps its thickness
                     properties[item["min_height_attribute"]] = max(under + properties[height] - value, 0.0)
-                moved.add((id(feature), height))
+                moved.add((id(properties), height))
     out.mkdir(parents=True, exist_ok=True)
     for file, shapes in changed.values():
         file.parent.mkdir(exist_ok=True)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The ground of an airport: heights of a raster with the file's units and holes, and triangles.
 
-GDAL gives the unit and the nodata value that the file declares. Many files declare no nodata value, or a value that differs from the value
-of the holes. Therefore, values outside the heights of the Earth's ground also count as holes.
+GDAL gives the unit and the nodata value that the file declares. Many files declare no nodata value, or a value that
+differs from the value of the holes. Therefore, values outside the heights of the Earth's ground also count as holes.
 """
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import math
 import pathlib
 import re
 import warnings
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 from osgeo import gdal, osr
@@ -27,11 +27,12 @@ LOWEST, HIGHEST = -500.0, 9000.0  # m: the Dead Sea's shore lies at -430, Everes
 SENTINELS = (-32768.0, -32767.0, -9999.0)  # raw values of holes, also if the unit makes them possible heights
 HOLE = -1e9  # value of holes in the returned raster
 FOOT, SURVEY_FOOT = 0.3048, 1200.0 / 3937.0  # m
-METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": FOOT, "us ft": SURVEY_FOOT, "yd": 0.9144, "in": 0.0254,
-          "fathom": 1.8288}
+METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": FOOT, "us ft": SURVEY_FOOT, "yd": 0.9144,
+          "in": 0.0254, "fathom": 1.8288}
 SPELLINGS = (  # spellings of GDAL, EPSG, Esri and users, in lower case
     (r"(?:us |u s )(?:survey )?(?:foot|feet|ft)|us ?ft|(?:foot|feet|ft) ?us|survey (?:foot|feet)", "us ft"),
-    (r"(?:international |intl )?(?:foot|feet|ft)", "ft"), (r"(?:international )?(?:yards?|yd)", "yd"), (r"inch|inches|in", "in"), (r"fathoms?", "fathom"),
+    (r"(?:international |intl )?(?:foot|feet|ft)", "ft"), (r"(?:international )?(?:yards?|yd)", "yd"),
+    (r"inch|inches|in", "in"), (r"fathoms?", "fathom"),
     (r"([dcmk]?m)", ""), (r"(deci|centi|milli|kilo|)met(?:re|er)s?", ""))
 PREFIXES = {"": "m", "deci": "dm", "centi": "cm", "milli": "mm", "kilo": "km"}
 MOST_POSTS = 250_000  # greatest number of posts of a terrain, which takes some seconds
@@ -49,8 +50,9 @@ def metres_of(name: str) -> Optional[float]:
 
 
 def unit_of(data) -> Tuple[str, float, str]:
-    """The unit of a raster's heights and the metres in the unit, from the band or from the vertical system; "" and 1 if the file gives
-    no unit. The third value is then the likely unit: the unit of the coordinates, if this is not the metre."""
+    """The unit of a raster's heights and the metres in the unit, from the band or from the vertical system; "" and 1 if
+    the file gives no unit. The third value is then the likely unit: the unit of the coordinates, if this is not the
+    metre."""
     system = osr.SpatialReference()
     system.ImportFromWkt(data.GetProjection())
     named = data.GetRasterBand(1).GetUnitType()
@@ -67,43 +69,49 @@ def unit_of(data) -> Tuple[str, float, str]:
 
 
 def in_metres(file: pathlib.Path, data):
-    """A raster's first band in metres, with HOLE at missing heights; blocks are read when they are needed. @return the raster, and the
-    unit that the file gives"""
+    """A raster's first band in metres, with HOLE at missing heights; blocks are read when they are needed. @return the
+    raster, and the unit that the file gives"""
     if not data.GetProjection():
         raise Error("does not say its coordinate reference system; an ASCII grid needs a .prj file with the system")
     band = data.GetRasterBand(1)
     if band.DataType == gdal.GDT_Byte:
-        raise Error(f"holds bytes in {data.RasterCount} {'bands' if data.RasterCount > 1 else 'band'}, as a picture or a hillshade does, expected heights "
-                    "of 16 bits or more")
+        raise Error(f"holds bytes in {data.RasterCount} {'bands' if data.RasterCount > 1 else 'band'}, "
+                    "as a picture or a hillshade does, expected heights of 16 bits or more")
     unit, metres, likely = unit_of(data)
     if likely:
-        warnings.warn(f"{file}: says no unit of its heights, and its coordinates are in {likely}: the heights are read as "
-                      f"metres, but are likely in {likely}; `gdal_edit.py -units "
-                      f"'{likely}' {file.name}` sets the unit", RuntimeWarning, stacklevel=4)
+        warnings.warn(f"{file}: says no unit of its heights, and its coordinates are in {likely}: "
+                      f"the heights are read as metres, but are likely in {likely}; "
+                      f"`gdal_edit.py -units '{likely}' {file.name}` sets the unit", RuntimeWarning, stacklevel=4)
     scale, offset = metres * (band.GetScale() or 1.0), metres * (band.GetOffset() or 0.0)
     copy = gdal.Translate("", data, format="VRT", bandList=[1], outputType=gdal.GDT_Float64, noData=HOLE)
     text = re.sub(r"<(Scale|Offset|UnitType)>[^<]*</\1>", "", copy.GetMetadata("xml:VRT")[0])
     text = re.sub(r"<(/?)SimpleSource\b", r"<\1ComplexSource", text, count=2)  # of the band; the mask is kept
     none = band.GetNoDataValue()
-    declared = "" if none is None else f"<NODATA>{none!r}</NODATA>"
-    return gdal.Open(text.replace("</ComplexSource>", f"{declared}<LUT>{_table(scale, offset)}</LUT></ComplexSource>", 1)), unit
+    table = ("" if none is None else f"<NODATA>{none!r}</NODATA>") + f"<LUT>{_table(scale, offset)}</LUT>"
+    return gdal.Open(text.replace("</ComplexSource>", f"{table}</ComplexSource>", 1)), unit
 
 
 def _table(scale: float, offset: float) -> str:
     """Table from raw values to heights, between which GDAL interpolates: metres within the limits, else HOLE."""
     low, high = sorted(((LOWEST - offset) / scale, (HIGHEST - offset) / scale))
-    rows: List[Tuple[float, float]] = [(-1e300, HOLE), (math.nextafter(low, -math.inf), HOLE), (low, scale * low + offset)]
-    for value in sorted(value for value in SENTINELS if low < value < high):
-        before, after = math.nextafter(value, -math.inf), math.nextafter(value, math.inf)
-        rows += [(before, scale * before + offset), (value, HOLE), (after, scale * after + offset)]
-    rows += [(high, scale * high + offset), (math.nextafter(high, math.inf), HOLE), (1e300, HOLE)]
-    return ",".join(f"{raw!r}:{height!r}" for raw, height in rows)
+    sentinels = sorted(value for value in SENTINELS if low < value < high)
+    around = [math.nextafter(value, way) for value in sentinels for way in (-math.inf, math.inf)]
+    known = {raw: scale * raw + offset for raw in (low, *around, high)}
+    outside = (-1e300, math.nextafter(low, -math.inf), *sentinels, math.nextafter(high, math.inf), 1e300)
+    return ",".join(f"{raw!r}:{height!r}" for raw, height in sorted({**known, **dict.fromkeys(outside, HOLE)}.items()))
+
+
+def posts_of(rectangle: Sequence[float], spacing: float) -> Tuple[int, int]:
+    """The numbers of rows and columns of posts that cover a rectangle. @param rectangle west, east, south, north, m"""
+    columns, rows = np.ceil(np.diff(np.reshape(rectangle, (2, 2)))[:, 0] / spacing).astype(int) + 1
+    return int(rows), int(columns)
 
 
 def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequence[float], known: Dict[str, Any]
                  ) -> Tuple[np.ndarray, float, float, str]:
-    """Heights of a raster at posts that cover a rectangle (m from the origin), rows from south to north. Missing heights become level
-    ground, into which the raster fades. @return heights (m), spacing (m), height at the origin (m), words for the reader"""
+    """Heights of a raster at posts that cover a rectangle (m from the origin), rows from south to north. Missing
+    heights become level ground, into which the raster fades. @return heights (m), spacing (m), height at the origin
+    (m), words for the reader"""
     raw = open_file(file, WHAT, list(DRIVERS), gdal.OF_RASTER)
     with naming(str(file)), quiet():
         data, unit = in_metres(file, raw)
@@ -111,12 +119,12 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
         own = abs(gdal.AutoCreateWarpedVRT(data, None, system).GetGeoTransform()[1])
         west, east, south, north = rectangle
         spacing = max(own, math.sqrt((east - west) * (north - south) / MOST_POSTS))
-        columns, rows = (int(math.ceil((high - low) / spacing)) + 1 for low, high in ((west, east), (south, north)))
-        half = spacing / 2
-        bounds = (west - half, south - half, west - half + columns * spacing, south - half + rows * spacing)
-        grid = gdal.Warp("", data, format="MEM", dstSRS=system, outputBounds=bounds, width=columns, height=rows, dstNodata=-1e9,
-                         resampleAlg="bilinear" if spacing < 2.0 * own else "average", outputType=gdal.GDT_Float64, multithread=False,
-                         overviewLevel="NONE", options=["-novshift"])
+        rows, columns = posts_of(rectangle, spacing)
+        left, bottom = west - spacing / 2, south - spacing / 2
+        grid = gdal.Warp("", data, format="MEM", dstSRS=system, width=columns, height=rows, dstNodata=HOLE,
+                         outputBounds=(left, bottom, left + columns * spacing, bottom + rows * spacing),
+                         resampleAlg="bilinear" if spacing < 2.0 * own else "average", outputType=gdal.GDT_Float64,
+                         multithread=False, overviewLevel="NONE", options=["-novshift"])
         band = grid.GetRasterBand(1)
         heights = band.ReadAsArray()
         holes = 100.0 * np.mean(~(np.abs(heights) < 1e8))
@@ -132,8 +140,9 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     if unit and metres_of(unit) != 1.0:
         words += f", in {unit} by the file"
     if holes > 0.0:
-        words += (f"; {holes:.2g} % of the places have no height in the file: holes are filled from their surroundings, and beyond the "
-                  f"raster's border the ground is level. The raster fades into level ground over {known['feather']:g} m (assumed)")
+        words += (f"; {holes:.2g} % of the places have no height in the file: holes are filled from their "
+                  "surroundings, and beyond the raster's border the ground is level. "
+                  f"The raster fades into level ground over {known['feather']:g} m (assumed)")
     if holes > 5.0:
         warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene; "
                       "the ground is level at these places", RuntimeWarning, stacklevel=2)
@@ -141,8 +150,7 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
 
 
 def _feathered(heights: np.ndarray, spacing: float, width: float) -> np.ndarray:
-    """Heights with level ground at missing heights, at the mean height of the border. Heights fade into the level ground within `width`
-    (m)."""
+    """Heights that fade within `width` (m) into level ground where heights are missing, at the mean of the border."""
     from scipy.ndimage import distance_transform_edt
     missing = ~(np.abs(heights) < 1e8)
     if not missing.any():
@@ -161,8 +169,8 @@ def height_at(values: np.ndarray, corner: Sequence[float], spacing: float, place
 
 
 def curvature(origin: Sequence[float], x, y):
-    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order; the error is 5 um at 5 km and 8 mm at 50 km.
-    @param origin latitude (deg), ... @param x, y east and north, m"""
+    """How far the ellipsoid lies below the origin's tangent plane, m, to the second order; the error is 5 um at 5 km
+    and 8 mm at 50 km. @param origin latitude (deg), ... @param x, y east and north, m"""
     a, f = 6378137.0, 1.0 / 298.257223563
     bulge = 1.0 - f * (2.0 - f) * math.sin(math.radians(origin[0])) ** 2
     across = a / math.sqrt(bulge)
@@ -171,10 +179,10 @@ def curvature(origin: Sequence[float], x, y):
 
 
 def terrain(heights: np.ndarray, corner: Sequence[float], spacing: float, origin: Sequence[float], error: float):
-    """Triangles (vtkPolyData, m east, north and up of the origin) within `error` (m) of the posts: a Delaunay triangulation of the
-    corners, to which the worst post of each triangle is added repeatedly. Rough ground takes all posts. VTK's vtkGreedyTerrainDecimation
-    exceeds its error limit: on waves of 20 m the error was 34 m in place of 0.25 m (VTK 9.1). @param heights above the origin's height,
-    m, rows from south to north"""
+    """Triangles (vtkPolyData, m east, north and up of the origin) within `error` (m) of the posts: a Delaunay
+    triangulation of the corners, to which the worst post of each triangle is added repeatedly. Rough ground takes all
+    posts. VTK's vtkGreedyTerrainDecimation exceeds its error limit: on waves of 20 m the error was 34 m in place of
+    0.25 m (VTK 9.1). @param heights above the origin's height, m, rows from south to north"""
     from scipy.spatial import Delaunay
     rows, columns = heights.shape
     row, column = (index.ravel() for index in np.indices(heights.shape))
@@ -188,7 +196,8 @@ def terrain(heights: np.ndarray, corner: Sequence[float], spacing: float, origin
         found = mesh.find_simplex(posts, tol=1e-9)
         frame = mesh.transform[found]
         two = np.einsum("nij,nj->ni", frame[:, :2], posts - frame[:, 2])
-        off = np.abs((np.column_stack([two, 1.0 - two.sum(axis=1)]) * z[numbers][mesh.simplices[found]]).sum(axis=1) - z)
+        off = np.abs((np.column_stack([two, 1.0 - two.sum(axis=1)])
+                      * z[numbers][mesh.simplices[found]]).sum(axis=1) - z)
         off[chosen] = 0.0
         order = np.lexsort((-off, found))
         worst = order[np.r_[True, np.diff(found[order]) != 0]]
@@ -198,4 +207,4 @@ def terrain(heights: np.ndarray, corner: Sequence[float], spacing: float, origin
         chosen[worst] = True
     cells = np.arange(rows * columns).reshape(heights.shape)
     a, b, c, d = (part.ravel() for part in (cells[:-1, :-1], cells[:-1, 1:], cells[1:, 1:], cells[1:, :-1]))
-    return _surface(np.column_stack([x, y, z]), np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]))
+    return _surface(np.column_stack([x, y, z]), np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])]))

@@ -17,8 +17,8 @@ SUM = 1e-6  # allowed difference of a year's shares from the sum 1
 
 
 def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes: Dict[str, Any]) -> Dict[str, Any]:
-    """A plan of coverage (JSON, `coverage.schema.json`), with the plan's file name as `file` and the changes as `options`; `Error` names
-    the wrong part. File names in the plan become absolute.
+    """A plan of coverage (JSON, `coverage.schema.json`), with the plan's file name as `file` and the changes as
+    `options`; `Error` names the wrong part. File names in the plan become absolute.
 
     words    words of weather that replace the plan's weather, its year and the air in its `coverage`
     metar    file of reports that replaces the plan's year
@@ -36,8 +36,9 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
             plan["metar"] = str(pathlib.Path(metar).resolve())
         for part, values in changes.items():
             if values and isinstance(plan.get(part, {}), dict):
-                plan[part] = {**plan.get(part, {}), **{name: list(value) if isinstance(value, (tuple, list)) else
-                                                       [value] if name in ("masts", "exclusions") else value for name, value in values.items()}}
+                plan[part] = {**plan.get(part, {}), **{
+                    name: list(value) if isinstance(value, (tuple, list)) else
+                    [value] if name in ("masts", "exclusions") else value for name, value in values.items()}}
     check_json(plan, "coverage.schema.json", str(file))
 
     def from_here(name: Any) -> Any:
@@ -72,9 +73,10 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
         with naming(f"{file}: metar"):
             hours = _metar.read_metar(plan["metar"])
             plan.update(year=hours.year(), hours=hours.words())
-    options = [[f"--{part}-set", f"{name}={_as_option(value)}"] for part, values in changes.items() for name, value in (values or {}).items()]
-    plan.update(file=str(file), options=[["--weather", *(words or ())]] * bool(words) + [["--metar", str(metar)]] * bool(metar) + options)
-    return plan
+    options = [[f"--{part}-set", f"{name}={_as_option(value)}"]
+               for part, values in changes.items() for name, value in (values or {}).items()]
+    weather_and_year = [["--weather", *(words or ())]] * bool(words) + [["--metar", str(metar)]] * bool(metar)
+    return {**plan, "file": str(file), "options": weather_and_year + options}
 
 
 def _as_option(value: Any) -> str:
@@ -103,26 +105,28 @@ def _check_question(plan: Dict[str, Any], file: str) -> None:
 
 
 def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
-    """The name of a sensor in files and reports: `name`, else the name of the preset; with "changed" if more than place and orientation
-    are set. @param what the sensor's member of a plan"""
+    """The name of a sensor in files and reports: `name`, else the name of the preset; with "changed" if more than place
+    and orientation are set. @param what the sensor's member of a plan"""
     preset = pathlib.Path(sensor["preset"]).name.split(".lidarsensor")[0]
     changed = any(name not in ("preset", "position", "orientation") for name in sensor)
     return checked_name(sensor.get("name", f"{preset} changed" if changed and preset else preset), f"{what}.name")
 
 
 # Classes whose properties the parts of a scenario name.
-PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter, "birds": _wrapped.vtkAvianLidarTracks}
+PROPERTIES = {"sensor": _wrapped.vtkAvianLidarBeamSource, "scan": _wrapped.vtkAvianLidarEchoFilter,
+              "birds": _wrapped.vtkAvianLidarTracks}
 
 
 def checked(scenario: Any, what: str) -> Dict[str, Any]:
-    """A scenario with properties in snake case, as the schema requires. @param what name of the scenario's file, for errors"""
+    """A scenario with properties in snake case, as the schema requires. @param what its file, for errors"""
     def here(wrapped: type, value: Any, part: str) -> Any:
         if isinstance(value, list):
             return [here(wrapped, one, f"{part}[{place}]") for place, one in enumerate(value)]
         return in_snake_case(wrapped, value, part) if isinstance(value, dict) else value
     if isinstance(scenario, dict):
         with naming(what):
-            scenario = {part: here(PROPERTIES[part], value, part) if part in PROPERTIES else value for part, value in scenario.items()}
+            scenario = {**scenario, **{part: here(wrapped, scenario[part], part)
+                                       for part, wrapped in PROPERTIES.items() if part in scenario}}
     check_json(scenario, "scenario.schema.json", what)
     return scenario
 
@@ -130,14 +134,14 @@ def checked(scenario: Any, what: str) -> Dict[str, Any]:
 def with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:
     """The scenario with other names of the files that it needs."""
     preset = scenario["sensor"]["preset"]
-    birds = [{name: change(value) if name in ("file_name", "species_file_name") else value for name, value in group.items()}
+    birds = [{**group, **{name: change(group[name]) for name in ("file_name", "species_file_name") if name in group}}
              for group in scenario.get("birds", ())]
     return {**scenario, "scene": change(scenario["scene"]), "birds": birds,
             "sensor": {**scenario["sensor"], "preset": change(preset) if preset.endswith(".json") else preset}}
 
 
 def read_scenario(file) -> Dict[str, Any]:
-    """A scenario file, or the manifest of a sequence; `Error` names the wrong part. File names in the scenario become absolute."""
+    """A scenario file, or that of a manifest; `Error` names the wrong part. File names become absolute."""
     path = pathlib.Path(file)
     scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:

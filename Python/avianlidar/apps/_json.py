@@ -47,18 +47,20 @@ def packaged(name: str) -> Any:
 
 
 def check_json(document: Any, schema: str, what: str) -> None:
-    """`Error` names the property that does not fit. @param schema a schema file of this package @param what name of the document"""
+    """`Error` names the property that does not fit a schema of this package. @param what the document's name"""
     import jsonschema
     wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(packaged(schema)).iter_errors(document))
     if wrong:
-        words = wrong.message if len(wrong.message) <= LONGEST else f"{wrong.message[:LONGEST // 2]} ... {wrong.message[-LONGEST // 2:]}"
+        words = wrong.message
+        if len(words) > LONGEST:
+            words = f"{words[:LONGEST // 2]} ... {words[-LONGEST // 2:]}"
         if wrong.validator == "not":
             words = "is not to be given here"
         if wrong.validator == "required" and not wrong.path:
-            words += next((f": this is {kind}, expected {expected}" for key, kind in KINDS.items() if key in document
-                           for expected in [SCHEMAS.get(schema, "another file")] if expected != kind), "")
-        where = [part for part in (what, wrong.json_path.removeprefix("$").removeprefix(".")) if part]
-        raise Error(": ".join([*where, words]))
+            expected = SCHEMAS.get(schema, "another file")
+            words += next((f": this is {kind}, expected {expected}" for key, kind in KINDS.items()
+                           if key in document and expected != kind), "")
+        raise Error(": ".join(filter(None, (what, wrong.json_path.removeprefix("$").removeprefix("."), words))))
 
 
 @contextlib.contextmanager

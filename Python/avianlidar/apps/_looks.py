@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results of lidars at sites for given places. Results are kept in files, so that a stopped run can continue and ranks share the work."""
+"""Results of lidars at sites for given places, kept in files, so that stopped runs continue and ranks share work."""
 from __future__ import annotations
 
 import contextlib
@@ -33,22 +33,25 @@ def _checked_sites(sites) -> np.ndarray:
 
 
 def look(scene, sensor, sites, places, species: Sequence[str], folder=None, ranks: Optional[Ranks] = None,
-         progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability", area_factor: float = 1.0,
-         airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> np.ndarray:
-    """Results of a lidar at each site for each place: float32, sites x species x places. With several airs: sites x (species x airs)
-    x places, where the airs of a species are neighbours. Clutter is off unless `clutter` is on. One thread is used unless
-    `number_of_threads` is larger, which is faster only for many places; ranks share sites more efficiently.
+         progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability",
+         area_factor: float = 1.0, airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> np.ndarray:
+    """Results of a lidar at each site for each place: float32, sites x species x places. With several airs: sites x
+    (species x airs) x places, where the airs of a species are neighbours. Clutter is off unless `clutter` is on. One
+    thread is used unless `number_of_threads` is larger, which is faster only for many places; ranks share sites more
+    efficiently.
 
     sensor       a Sensor; its position is changed and restored
     sites        n x 3, m
     places       m x 3, m
     species      names of species; "" with `effective_area`
-    folder       folder with one file for the result of each site. A second call with the same scene, sensor, places and other inputs
-                 reads these files, also after the first call was stopped. Required on several ranks, which share the sites
+    folder       folder with one file for the result of each site. A second call with the same scene, sensor, places and
+                 other inputs reads these files, also after the first call was stopped. Required on several ranks, which
+                 share the sites
     progress     called with the number of finished sites and the number of all sites of this process
     array        a point array of vtkAvianLidarCoverage
     area_factor  factor on each species' mean effective area
-    airs         further settings, all with the same names: visibility, rain_rate, ... Lines of sight are traced once for all airs
+    airs         further settings, all with the same names: visibility, rain_rate, ... Lines of sight are traced once
+                 for all airs
     settings     properties of Coverage, for example visibility=10e3 (m)
 
     @throws ValueError that names the argument, Error of Coverage
@@ -94,10 +97,10 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     return found
 
 
-def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], weights: np.ndarray, airs: Sequence[Mapping[str, Any]] = ({},),
-                        **settings: Any) -> float:
-    """The weighted share that at least one of the sites detects in one scan if all sites observe the same bird, whose heading
-    and wing phase are equal for all sensors. In value_of, each sensor observes a different bird. Clutter is off
+def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], weights: np.ndarray,
+                        airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> float:
+    """The weighted share that at least one of the sites detects in one scan if all sites observe the same bird, whose
+    heading and wing phase are equal for all sensors. In value_of, each sensor observes a different bird. Clutter is off
     unless `clutter` is on.
 
     sensor    a Sensor; its position is changed and restored
@@ -142,7 +145,7 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
 
 
 def require_memory(needed: float, what: str, instead: str) -> None:
-    """Raises Error if results are larger than this computer's memory. @param needed bytes @param instead advice to the user"""
+    """Error if results exceed this computer's memory. @param needed bytes @param instead advice to the user"""
     there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if needed > there:
         raise Error(f"{what} need {needed / 1e9:.3g} GB, but the memory has {there / 1e9:.3g} GB: {instead}")
@@ -156,14 +159,13 @@ def files_of(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Pat
     home.mkdir(parents=True, exist_ok=True)
     update(cover.scene.tree)
     table = hashlib.sha256(read_regular(cover.species_file_name)).hexdigest() if cover.species_file_name else ""
-    known = [digest_of(cover.scene.tree.GetOutput()), __version__, digest_of_arrays(cover.sensor.beams.data), inputs, table]
+    known = [digest_of(cover.scene.tree.GetOutput()), __version__, digest_of_arrays(cover.sensor.beams.data), inputs,
+             table]
     common = hashlib.sha256(as_json(known) + places.tobytes())
-    names = []
-    for site in sites:
-        digest = common.copy()
+    digests = [common.copy() for _ in sites]
+    for digest, site in zip(digests, sites):
         digest.update(site.tobytes())
-        names.append(home / f"{digest.hexdigest()[:32]}.npy")
-    return names
+    return [home / f"{digest.hexdigest()[:32]}.npy" for digest in digests]
 
 
 def fill(found: np.ndarray, files: Sequence[pathlib.Path], ranks: Ranks, make: Callable[[int], Any],
@@ -206,8 +208,9 @@ def _read_kept(file: pathlib.Path, values: np.ndarray) -> bool:
     """Whether a file is complete and undamaged; its values are read into `values`."""
     with contextlib.suppress(OSError):
         content = file.read_bytes() if file.is_file() else b""
-        read = np.load(io.BytesIO(content[:-32])) if hashlib.sha256(content[:-32]).digest() == content[-32:] else np.empty(0)
-        if (read.shape, read.dtype) == (values.shape, values.dtype):
-            values[:] = read
-            return True
+        if hashlib.sha256(content[:-32]).digest() == content[-32:]:
+            read = np.load(io.BytesIO(content[:-32]))
+            if (read.shape, read.dtype) == (values.shape, values.dtype):
+                values[:] = read
+                return True
     return False

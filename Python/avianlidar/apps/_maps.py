@@ -2,11 +2,10 @@
 """Maps of coverage as files: the command `avianlidar coverage`."""
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import pathlib
-from typing import Any, Callable, Dict, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, Optional, Sequence
 
 import numpy as np
 
@@ -23,23 +22,24 @@ IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's folder in memory
 
 
 def coordinate_system(origin: Sequence[float]):
-    """The scene's plane for GIS: the transverse Mercator projection about the origin on WGS84, scaled to the origin's height. The
-    difference to east and north is some millimetres at 3 km. @param origin latitude, longitude (deg), height (m)"""
-    from osgeo import osr
-    osr.UseExceptions()
+    """The scene's plane for GIS: the transverse Mercator projection about the origin on WGS84, scaled to the origin's
+    height. The difference to east and north is some millimetres at 3 km. @param origin latitude, longitude (deg),
+    height (m)"""
+    from ._gdal import osr
     system = osr.SpatialReference()
-    # Lengths at a height are longer than on the ellipsoid, in proportion to the distance from the mean centre of curvature.
+    # Lengths at a height are longer than on the ellipsoid, in proportion to the distance from the centre of curvature.
     flattening = 1.0 / osr.SRS_WGS84_INVFLATTENING
     bulge = 1.0 - flattening * (2.0 - flattening) * math.sin(math.radians(origin[0])) ** 2
     radius = osr.SRS_WGS84_SEMIMAJOR * (1.0 - flattening) / bulge
-    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} +k={1.0 + origin[2] / radius:.12g} "
-                           "+x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
+    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} "
+                           f"+k={1.0 + origin[2] / radius:.12g} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
     system.SetProjCS("metres east and north of the scene's origin")
     return system
 
 
-def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Sequence[float], origin: Optional[Sequence[float]],
-                  name: str, unit: str = "", categories: Sequence[str] = (), notes: Optional[Dict[str, str]] = None) -> None:
+def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Sequence[float],
+                  origin: Optional[Sequence[float]], name: str, unit: str = "", categories: Sequence[str] = (),
+                  notes: Optional[Dict[str, str]] = None) -> None:
     """Writes a map as a GeoTIFF.
 
     values      rows (from south to north) x columns; integers up to 255 become bytes, others single precision
@@ -48,13 +48,14 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     origin      of the scene: latitude, longitude (deg), height (m); None: no coordinate system
     categories  names of the values 0, 1, ...
     """
-    from osgeo import gdal
-    gdal.UseExceptions()
-    kind, code = (np.uint8, gdal.GDT_Byte) if np.issubdtype(values.dtype, np.integer) else (np.float32, gdal.GDT_Float32)
-    pixels = values[::-1].astype(kind)
+    from ._gdal import gdal
+    is_whole = np.issubdtype(values.dtype, np.integer)
+    pixels = values[::-1].astype(np.uint8 if is_whole else np.float32)
     rows, columns = pixels.shape
-    image = gdal.GetDriverByName("GTiff").Create(IN_MEMORY + "map.tif", columns, rows, 1, code, ["COMPRESS=DEFLATE"])
-    image.SetGeoTransform((corner[0] - spacing[0] / 2, spacing[0], 0.0, corner[1] + (rows - 0.5) * spacing[1], 0.0, -spacing[1]))
+    image = gdal.GetDriverByName("GTiff").Create(
+        IN_MEMORY + "map.tif", columns, rows, 1, gdal.GDT_Byte if is_whole else gdal.GDT_Float32, ["COMPRESS=DEFLATE"])
+    north_west = corner[0] - spacing[0] / 2, corner[1] + (rows - 0.5) * spacing[1]
+    image.SetGeoTransform((north_west[0], spacing[0], 0.0, north_west[1], 0.0, -spacing[1]))
     if origin is not None:
         image.SetProjection(coordinate_system(origin).ExportToWkt())
     image.SetMetadata({key: str(value) for key, value in (notes or {}).items()})
@@ -83,9 +84,9 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
 
 
 def _taken(name: str) -> bytes:
-    """The bytes that GDAL has written to a file in memory, which is freed; empty without such a file. GDAL does not write to the disk
-    itself, because GDAL does not report a full disk."""
-    from osgeo import gdal
+    """The bytes that GDAL has written to a file in memory, which is freed; empty without such a file. GDAL does not
+    write to the disk itself, because GDAL does not report a full disk."""
+    from ._gdal import gdal
     name = IN_MEMORY + name
     found = gdal.VSIStatL(name)
     if found is None:
@@ -100,23 +101,24 @@ def _taken(name: str) -> bytes:
 
 
 def write_areas(file, geotiff, description: str) -> None:
-    """Writes the areas where a map's probabilities lie between LIMITS as GeoJSON: polygons of whole pixels, in longitude and latitude, with
-    the numbers `probability_from` and `probability_to`. Areas below the first limit are left out.
+    """Writes the areas where a map's probabilities lie between LIMITS as GeoJSON: polygons of whole pixels, in
+    longitude and latitude, with the numbers `probability_from` and `probability_to`. Areas below the first limit are
+    left out.
 
     geotiff      the map, which needs a coordinate system
     description  description in the file
     """
-    from osgeo import gdal, ogr
-    gdal.UseExceptions()
+    from ._gdal import gdal, ogr
     image = gdal.Open(str(geotiff))
     classes = gdal.GetDriverByName("MEM").CreateCopy("", image)
-    classes.GetRasterBand(1).WriteArray(np.digitize(image.ReadAsArray(), LIMITS))
+    band = classes.GetRasterBand(1)
+    band.WriteArray(np.digitize(image.ReadAsArray(), LIMITS))
     areas = gdal.GetDriverByName("Memory").Create("", 0, 0, 0, gdal.GDT_Unknown)
     layer = areas.CreateLayer("areas", image.GetSpatialRef(), ogr.wkbPolygon)
     bounds = ("probability_from", "probability_to")
     for name, kind in (("class", ogr.OFTInteger), *((name, ogr.OFTReal) for name in bounds)):
         layer.CreateField(ogr.FieldDefn(name, kind))
-    gdal.Polygonize(classes.GetRasterBand(1), classes.GetRasterBand(1), layer, 0)  # masked: class 0 is left out
+    gdal.Polygonize(band, band, layer, 0)  # masked: class 0 is left out
     for feature in layer:
         number = feature.GetField("class")
         for name, value in zip(bounds, (*LIMITS, 1.0)[number - 1:number + 1]):
@@ -134,8 +136,7 @@ def write_areas(file, geotiff, description: str) -> None:
 
 def height_name(height: float) -> str:
     """The height in names of files: as short as possible, and different for each height."""
-    short = f"{height:g}"
-    return f"{short if float(short) == height else repr(float(height))}m"
+    return f"{np.format_float_positional(height, trim='-')}m"
 
 
 def notes_of(plan: Plan) -> Dict[str, str]:
@@ -143,33 +144,43 @@ def notes_of(plan: Plan) -> Dict[str, str]:
     cover, area = plan.coverage, plan.regions.data.GetFieldData().GetArray("effective_area").GetValue(0)
     size = (f", effective area {area:.4f} m2 (assumed)" if len(plan.mix) == 1 else
             ", effective areas assumed; reasons are for the first species")
+    visibility = (f"{cover.visibility:g} (assumed)" if cover.visibility > 0.0 else
+                  f"none, attenuation {cover.attenuation_coefficient:.3g}/m")
     return {"sensor": plan.name, "position_m": " ".join(f"{c:g}" for c in plan.sensor.position),
-            "target": f"{plan.bird}{size}, reflectance {cover.reflectance:g} (assumed)",
-            "visibility_m": f"{cover.visibility:g} (assumed)" if cover.visibility > 0.0 else f"none, attenuation {cover.attenuation_coefficient:.3g}/m",
-            "rain_mm_h": f"{cover.rain_rate:g}", "air": "sends light back" if cover.air_backscatter or cover.rain_rate else "only weakens",
+            "target": f"{plan.bird}{size}, reflectance {cover.reflectance:g} (assumed)", "visibility_m": visibility,
+            "rain_mm_h": f"{cover.rain_rate:g}",
+            "air": "sends light back" if cover.air_backscatter or cover.rain_rate else "only weakens",
             "assumed_of_the_sensor": ", ".join(plan.assumed) or "none", "limits": "calculated, not measured"}
 
 
-def write_maps(plan: Plan, folder, progress: Callable[[int, int], Any] = lambda *_: None) -> int:
-    """Writes a GeoTIFF for each height and quantity, GeoJSON if the scene has an origin, shares.csv, ends.csv, clutter.vtp. @param progress
-    called with the number of finished files and the number of all files @return the number of all files"""
-    folder, origin, done = pathlib.Path(folder), plan.scene.geodetic_origin, itertools.count(1)
-    total = len(plan.heights) * (len(QUANTITIES) + (origin is not None)) + 3
-    folder.mkdir(parents=True, exist_ok=True)
+def _write_each(plan: Plan, folder: pathlib.Path) -> Iterator[None]:
+    """Writes the files of a plan, and stops after each."""
+    origin = plan.scene.geodetic_origin
     for height in plan.heights:
         cover, at, notes = plan.map_at(height), height_name(height), {**notes_of(plan), "height_m": f"{height:g}"}
+        place = cover.data.GetOrigin()[:2], cover.data.GetSpacing()[:2], origin
         for quantity, unit in QUANTITIES.items():
             values = plan.mixed(cover, quantity) if quantity.endswith("_probability") else cover[quantity]
-            write_geotiff(folder / f"{quantity}_{at}.tif", values[0], cover.data.GetOrigin()[:2], cover.data.GetSpacing()[:2], origin,
-                          f"{quantity} at {height:g} m", unit, cover.status_names if quantity == "status" else (), notes)
-            progress(next(done), total)
+            write_geotiff(folder / f"{quantity}_{at}.tif", values[0], *place, f"{quantity} at {height:g} m", unit,
+                          cover.status_names if quantity == "status" else (), notes)
+            yield
         if origin is not None:
             file = folder / f"detection_probability_{at}"
             write_areas(f"{file}.geojson", f"{file}.tif", "; ".join(map(": ".join, notes.items())))
-            progress(next(done), total)
+            yield
     save(plan.coverage.clutter_map, folder / "clutter.vtp")
-    progress(next(done), total)
+    yield
     for name, rows in (("shares.csv", plan.shares), ("ends.csv", plan.by_end)):
         write_table(folder / name, rows)
-        progress(next(done), total)
+        yield
+
+
+def write_maps(plan: Plan, folder, progress: Callable[[int, int], Any] = lambda *_: None) -> int:
+    """Writes a GeoTIFF for each height and quantity, GeoJSON if the scene has an origin, shares.csv, ends.csv,
+    clutter.vtp. @param progress called with the number of finished files and the number of all files @return the number
+    of all files"""
+    total = len(plan.heights) * (len(QUANTITIES) + (plan.scene.geodetic_origin is not None)) + 3
+    pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    for number, _ in enumerate(_write_each(plan, pathlib.Path(folder)), 1):
+        progress(number, total)
     return total

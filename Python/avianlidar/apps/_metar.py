@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """METAR reports as a year's weather: shares of the hours with some visibilities and rain rates.
 
-Source: the code form FM 15 METAR (WMO No. 306) and its spellings in archives: statute miles, kilometres, visibility by direction, lower
-case, and reports that continue on the next line. Rain rates are assumed. Debian has no parser of such lines for Python
-(`python3-pymetar` reads the decoded pages of one service), so this module has its own grammar. The grammar reads visibility and
-precipitation, and skips the rest of a report.
-"""
+Source: the code form FM 15 METAR (WMO No. 306) and its spellings in archives: statute miles, kilometres, visibility by
+direction, lower case, and reports that continue on the next line. Rain rates are assumed. Debian has no parser of such
+lines for Python (`python3-pymetar` reads the decoded pages of one service), so this module has its own grammar. The
+grammar reads visibility and precipitation, and skips the rest of a report. """
 from __future__ import annotations
 
 import collections
@@ -15,6 +14,8 @@ import math
 import pathlib
 import re
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
+
+import numpy as np
 
 from .._files import read_regular
 from .._pipeline import Error
@@ -29,16 +30,18 @@ LIMITS = (500.0, 1000.0, 2000.0, 5000.0, MOST)  # limits between classes of visi
 LIMITS_IN_RAIN = (2000.0,)  # ... and with rain
 RAIN = {"-": 1.0, "": 5.0, "+": 15.0}  # mm/h; assumed
 DRIZZLE = 0.5  # rain rate of drizzle of any intensity, mm/h; assumed
-NOT_MODELLED = {"SN": "snow", "SG": "snow grains", "IC": "ice crystals", "PL": "ice pellets", "GR": "hail", "GS": "small hail",
-                "UP": "unknown precipitation"}
+NOT_MODELLED = {"SN": "snow", "SG": "snow grains", "IC": "ice crystals", "PL": "ice pellets", "GR": "hail",
+                "GS": "small hail", "UP": "unknown precipitation"}
 # A station and a time. A time without Z counts only before a wind, because heads of bulletins also have six digits.
 START = re.compile(r"\b([A-Z][A-Z0-9]{3})\s+(\d{6})(?:Z\b|(?=\s+(?:(?:AUTO|COR)\s+)?\S{3,8}(?:KT|MPS|KMH)\b))")
 FORECAST = re.compile(r"(?:\d{4}/\d{4}|\d{6})\s")  # validity period of a TAF (forecast)
-END = re.compile(r"\s(?:RMKS?|NOSIG|TEMPO|BECMG|INTER|PROB\d\d|FM\d{4,6}|TTF)\b.*|=.*")  # remarks, trends, the end of a report
-AFTER = re.compile(r"FEW|SCT|BKN|OVC|VV|NSC|NCD|SKC|CLR|M?\d\d/(?:M?\d\d|//)?$|[QA]\d{4}$")  # clouds, temperatures, pressure
+# Remarks, trends, and the end of a report; clouds, temperatures and pressure.
+END = re.compile(r"\s(?:RMKS?|NOSIG|TEMPO|BECMG|INTER|PROB\d\d|FM\d{4,6}|TTF)\b.*|=.*")
+AFTER = re.compile(r"FEW|SCT|BKN|OVC|VV|NSC|NCD|SKC|CLR|M?\d\d/(?:M?\d\d|//)?$|[QA]\d{4}$")
 METRES = re.compile(r"[MP]?(\d{3,4})(?:M|NDV|(N|NE|E|SE|S|SW|W|NW))?$")
 MILES = re.compile(r"([MP]?)(\d+)(?:/([1-9]\d*))?(SM|KM)$")
-PRESENT = re.compile(r"([-+]?)(?:MI|PR|BC|DR|BL|SH|TS|FZ)*((?:DZ|RA|SN|SG|IC|PL|GR|GS|UP|BR|FG|FU|VA|DU|SA|HZ|PY|PO|SQ|FC|SS|DS)*)$")
+PRESENT = re.compile(r"([-+]?)(?:MI|PR|BC|DR|BL|SH|TS|FZ)*"
+                     r"((?:DZ|RA|SN|SG|IC|PL|GR|GS|UP|BR|FG|FU|VA|DU|SA|HZ|PY|PO|SQ|FC|SS|DS)*)$")
 
 
 class Hour(NamedTuple):
@@ -81,7 +84,8 @@ def report_of(line: str) -> Hour:
 
 def _visibility(words: List[str]) -> Optional[float]:
     """Prevailing visibility in metres, or the least visibility that follows with a direction; None if it is missing."""
-    first = next((k for k, word in enumerate(words) if AFTER.match(word)), len(words))  # visibility in metres stands before the clouds
+    # Visibility in metres stands before the clouds.
+    first = next((k for k, word in enumerate(words) if AFTER.match(word)), len(words))
     for k, word in enumerate(words):
         metres, miles = METRES.match(word) if k < first else None, MILES.match(word)
         if word == "CAVOK":
@@ -121,48 +125,46 @@ class Hours:
             yield from ((1.0 / len(together), one) for one in together)
 
     def classes(self) -> Dict[Tuple[str, ...], float]:
-        """Words of weather, with their hours. In a class without rain, the visibility follows from the mean extinction, to two digits. In
-        a class with rain, the visibility is that of the haze in the rain, whose extinction is the reported extinction less that of the
-        rain."""
-        sums: Dict[Tuple[float, int], List[float]] = {}
+        """Words of weather, with their hours. In a class without rain, the visibility follows from the mean extinction,
+        to two digits. In a class with rain, the visibility is that of the haze in the rain, whose extinction is the
+        reported extinction less that of the rain."""
+        sums: Dict[Tuple[float, int], np.ndarray] = collections.defaultdict(lambda: np.zeros(2))
         for hours, one in self.weighted():
             number = sum(one.visibility >= limit for limit in (LIMITS_IN_RAIN if one.rain else LIMITS))
-            of = sums.setdefault((one.rain, number), [0.0, 0.0])
-            of[0] += hours
-            of[1] += hours * KOSCHMIEDER / min(one.visibility, CLEAR)
-        found: Dict[Tuple[str, ...], float] = {}
-        for (rain, _), (hours, total) in sorted(sums.items()):
+            sums[one.rain, number] += (hours, hours * KOSCHMIEDER / min(one.visibility, CLEAR))
+        found: Dict[Tuple[str, ...], float] = collections.defaultdict(float)
+        for (rain, _), (hours, total) in sorted(sums.items(), key=lambda item: item[0]):
             left = total / hours - (extinction_of_rain(rain) if rain else 0.0)
             visibility = float(f"{KOSCHMIEDER / max(left, KOSCHMIEDER / CLEAR):.2g}")
-            words = (f"{'fog' if visibility <= 1000.0 else 'haze'}:{visibility:.10g}", *([f"rain:{rain:g}"] if rain else []))
-            found[words] = found.get(words, 0.0) + hours
-        return found
+            haze = f"{'fog' if visibility <= 1000.0 else 'haze'}:{visibility:.10g}"
+            found[(haze, f"rain:{rain:g}") if rain else (haze,)] += float(hours)
+        return dict(found)
 
     def year(self) -> List[Dict[str, Any]]:
         """The list `year` of a plan."""
         classes = self.classes()
-        total = sum(classes.values())
-        return [{"weather": list(words), "share": hours / total} for words, hours in classes.items()]
+        return [{"weather": list(words), "share": hours / sum(classes.values())} for words, hours in classes.items()]
 
     def words(self) -> str:
         """Words on the reports that were counted, the assumptions, and the lines that were left out."""
         hours = sum(share for share, _ in self.weighted())
         stations = ", ".join(dict.fromkeys(one.station for one in self.reports))
         said = f"{pathlib.Path(self.file).name}: {len(self.reports):,} METAR reports of {stations}, {hours:,.0f} hours"
-        for why, count in collections.Counter(wrong for _, _, wrong in self.bad).items():
-            number, line = next((number, line) for number, line, wrong in self.bad if wrong == why)
+        first = {why: (number, line) for number, line, why in reversed(self.bad)}
+        for why, count in collections.Counter(why for _, _, why in self.bad).items():
+            number, line = first[why]
             said += f"; left out: {count:,}, the first in line {number}, '{line[:60]}' ({why})"
         others = collections.Counter(name for one in self.reports for name in set(one.others))
         if others:
             counts = ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
             said += f"; not modelled, except for the visibility: {counts}"
-        return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and DZ {DRIZZLE:g} mm/h; 10 km or more is "
-                f"{CLEAR / 1000:g} km")
+        return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and "
+                f"DZ {DRIZZLE:g} mm/h; 10 km or more is {CLEAR / 1000:g} km")
 
 
 def _reports(text: str) -> Iterator[Tuple[int, str]]:
-    """Reports with the numbers of their first lines. A report ends at its equals sign, at an empty line or at the next station and time.
-    Lines that begin with # are comments."""
+    """Reports with the numbers of their first lines. A report ends at its equals sign, at an empty line or at the next
+    station and time. Lines that begin with # are comments."""
     number, report = 0, ""
     for here, line in enumerate(text.splitlines(), 1):
         if line.startswith("#"):
@@ -183,8 +185,7 @@ def _reports(text: str) -> Iterator[Tuple[int, str]]:
 
 
 def read_metar(file) -> Hours:
-    """The METAR and SPECI reports of a file. Text before a station and a time is ignored. `Error` if the file has no
-    report."""
+    """The METAR and SPECI reports of a file, whatever stands before them. `Error` if the file has none."""
     found = Hours(str(file), [], [])
     for number, report in _reports(read_regular(file).decode("utf-8", "replace")):
         try:

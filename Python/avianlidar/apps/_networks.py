@@ -39,7 +39,7 @@ def weights_of(count: int, regions: Mapping[str, Any], shares: Mapping[str, floa
 
 
 def values_of(found: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """The weighted share that each site alone detects. @param found sites x species x places @param weights species x places"""
+    """The weighted share that each site alone detects. @param found sites x species x places"""
     _check_weights(found, weights)
     return np.array([np.vdot(site.astype(float), weights) for site in found])
 
@@ -58,7 +58,7 @@ def _missed(found, weights, sites) -> np.ndarray:
 
 
 def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
-    """Networks of 1 to `count` sites; each network is the one before with the site that adds most. Shapes as for values_of."""
+    """Networks of 1 to `count` sites; each is the one before with the site that adds most."""
     chosen: List[Network] = []
     sites: Tuple[int, ...] = ()
     for _ in range(_count(found, weights, count)):
@@ -69,7 +69,8 @@ def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
 
 def _check_weights(found, weights) -> None:
     if found.shape[1:] != weights.shape:
-        raise ValueError(f"weights have the shape {weights.shape}, expected that of each site's coverage, {found.shape[1:]}")
+        raise ValueError(f"weights have the shape {weights.shape}, "
+                         f"expected that of each site's coverage, {found.shape[1:]}")
 
 
 def _count(found, weights, count) -> int:
@@ -122,14 +123,14 @@ def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
 
 
 def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60) -> List[Network]:
-    """The best networks of 1 to `count` sites. The search is exhaustive for one site, and for up to three of at most `largest` sites.
-    Otherwise the greedy network is improved by exchange.
+    """The best networks of 1 to `count` sites. The search is exhaustive for one site, and for up to three of at most
+    `largest` sites. Otherwise the greedy network is improved by exchange.
 
     found    sites x species x places, from look
     weights  species x places, from weights_of
     """
-    return [exhaustive(found, weights, n) if n == 1 or (n <= 3 and len(found) <= largest) else exchange(found, weights, start)
-            for n, start in enumerate(greedy(found, weights, count), 1)]
+    return [exhaustive(found, weights, n) if n == 1 or (n <= 3 and len(found) <= largest) else
+            exchange(found, weights, start) for n, start in enumerate(greedy(found, weights, count), 1)]
 
 
 def rank_correlation(a, b) -> float:

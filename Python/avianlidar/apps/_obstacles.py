@@ -18,10 +18,13 @@ from ._features import NUMBER, TALLEST, Feature, number_of
 from ._gdal import degrees, form_of, geometry, plain
 from ._osm import CONTROLS
 
-METRES = {"'": 0.3048, "′": 0.3048, "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "foot": 0.3048, "feet": 0.3048}
-COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"), "latitude": ("latitude", "lat", "latdec", "y"),
-           "height": ("height", "agl", "hgt"), "elevation": ("elevation", "amsl", "elev"), "unit": ("unit", "units", "uom"),
-           "kind": ("kind", "type", "obstacle_type"), "name": ("name", "id", "identifier", "designator", "oas"), "action": ("action",)}
+METRES = {**dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
+          **dict.fromkeys(("ft", "foot", "feet", "'", "′"), 0.3048)}
+COLUMNS = {"longitude": ("longitude", "lon", "long", "lng", "londec", "x"),
+           "latitude": ("latitude", "lat", "latdec", "y"), "height": ("height", "agl", "hgt"),
+           "elevation": ("elevation", "amsl", "elev"), "unit": ("unit", "units", "uom"),
+           "kind": ("kind", "type", "obstacle_type"),
+           "name": ("name", "id", "identifier", "designator", "oas"), "action": ("action",)}
 UNIT = re.compile(r"[ _]*[\[(](\w+)[\])]$|_(m|ft|feet)$")  # unit of a column, as in "height_ft" and "Height (m)"
 CELL = re.compile(rf"\+?({NUMBER})\s*(m|met(?:re|er)s?|ft|foot|feet|['′])?\.?\s*(?:agl|amsl)?", re.IGNORECASE)
 ANGLE = re.compile(r"([NSEW]?)\s*(\d{1,3})[°:\s-]*(\d{2})[′':\s-]*(\d{2}(?:[.,]\d+)?)[″\"\s]*([NSEW]?)", re.IGNORECASE)
@@ -30,8 +33,8 @@ NO_PLACE = "without a place or a height"
 
 
 def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feature], List[Feature]]:
-    """Obstacles as features of the rules, and obstacles that are left out. The tag `height` is in metres above the ground. If a file gives
-    only the elevation of the top, the tag `elevation` has the elevation, m."""
+    """Obstacles as features of the rules, and obstacles that are left out. The tag `height` is in metres above the
+    ground. If a file gives only the elevation of the top, the tag `elevation` has the elevation, m."""
     suffix = file.suffix.lower()
     if suffix not in (".xml", ".csv"):
         raise Error(f"{file}: is not a file of obstacles by its name, expected .xml (AIXM 5.1) or .csv")
@@ -53,10 +56,11 @@ def read_obstacles(file: pathlib.Path, known: Dict[str, Any]) -> Tuple[List[Feat
 
 
 def _kind_of(word: str, form: str, known: Dict[str, Any]) -> str:
-    """The kind of the rules for the words of a file. The last known word counts, as in "cable car pylon". A building without an outline
-    becomes a tower, which has a width."""
+    """The kind of the rules for the words of a file. The last known word counts, as in "cable car pylon". A building
+    without an outline becomes a tower, which has a width."""
     said = re.sub(r"[\W_]+", " ", word.lower())
-    ends = [(found.end(), len(one), kind) for kind, words in known["obstacles"].items() for one in words for found in re.finditer(rf"\b{one}s?\b", said)]
+    ends = [(found.end(), len(one), kind) for kind, words in known["obstacles"].items() for one in words
+            for found in re.finditer(rf"\b{one}s?\b", said)]
     kind = max(ends, default=(0, 0, "obstacle"))[2]
     if kind != "wire" and form and form not in known["kinds"][kind]["from"]:
         kind = {"point": "tower" if kind == "building" else "obstacle", "line": "wall"}.get(form, "obstacle")
@@ -64,7 +68,7 @@ def _kind_of(word: str, form: str, known: Dict[str, Any]) -> str:
 
 
 def _metres(value: str, unit: str, what: str, most: float) -> Optional[float]:
-    """Metres above 0, or None for other texts. @param unit unit if the value has no unit @param most greatest plausible value, m"""
+    """Metres above 0, or None for other texts. @param unit for values without a unit @param most greatest value, m"""
     found = CELL.fullmatch(value)
     if not found:
         return None
@@ -83,21 +87,26 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), skipinitialspace=True)
     names = [name.strip().lower() for name in next(rows, [])]
     plain_names = [UNIT.sub("", name) for name in names]
-    at = {column: next((plain_names.index(word) for word in words if word in plain_names), len(names)) for column, words in COLUMNS.items()}
-    if len(names) in (at["longitude"], at["latitude"]) or at["height"] == at["elevation"]:
-        raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation (and unit, kind, name), found {', '.join(names)[:200]}")
+    at = {column: plain_names.index(word) for column, words in COLUMNS.items() for word in reversed(words)
+          if word in plain_names}
+    if not {"longitude", "latitude"} <= at.keys() or not MOST.keys() & at.keys():
+        raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation "
+                    f"(and unit, kind, name), found {', '.join(names)[:200]}")
     is_faa = {"latdec", "londec", "agl"} <= set(names)  # the Digital Obstacle File of the FAA, in feet
-    units = {column: "".join(filter(None, own.groups())) if own else "" for column in MOST for own in [UNIT.search([*names, ""][at[column]])]}
+    units = {column: own[1] or own[2] for column, place in at.items() for own in UNIT.finditer(names[place])}
     for number, row in enumerate(rows, 2):
         if not any(cell.strip() for cell in row):
             continue
-        cells = {column: row[place].strip() if place < min(len(row), len(names)) else "" for column, place in at.items()}
-        tags = {"id": cells["name"] or str(number), "name": cells["name"], "word": cells["kind"], "gone": "yes" if cells["action"].upper() == "D" else ""}
+        cells = dict.fromkeys(COLUMNS, "")
+        cells.update({column: row[place].strip() for column, place in at.items() if place < len(row)})
+        tags = {"id": cells["name"] or str(number), "name": cells["name"], "word": cells["kind"],
+                "gone": "yes" if cells["action"].upper() == "D" else ""}
         for column, most in MOST.items():
-            unit = cells["unit"] or units[column] or ("ft" if is_faa else "")
+            unit = cells["unit"] or units.get(column) or ("ft" if is_faa else "")
             value = _metres(cells[column], unit or "m", f"{file}: row {number}", most)
             if value is not None:
-                tags.update({column: f"{value:.3f}", "note": "" if unit or not cells[column][-1].isdigit() else ", m assumed"})
+                tags.update({column: f"{value:.3f}",
+                             "note": "" if unit or not cells[column][-1].isdigit() else ", m assumed"})
         longitude, latitude = _angle(cells["longitude"]), _angle(cells["latitude"])
         is_place = abs(longitude) <= 180.0 and abs(latitude) <= 90.0
         yield tags, geometry("Point", [longitude, latitude]) if is_place else None
@@ -115,12 +124,12 @@ def _angle(text: str) -> float:
         return math.nan
 
 
-def _all(element, *names: str) -> List[Any]:
-    return [one for one in element.iter() if one.tag.rsplit("}", 1)[-1] in names]
+def _all(element, name: str) -> List[Any]:
+    return element.findall(f".//{{*}}{name}")
 
 
-def _text(element, *names: str) -> str:
-    return next(filter(None, ((one.text or "").strip() for one in _all(element, *names))), "")
+def _text(element, name: str) -> str:
+    return next(filter(None, ((one.text or "").strip() for one in _all(element, name))), "")
 
 
 def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], Any]]:
@@ -132,13 +141,14 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
     if not structures:
         raise Error(f"{file}: holds no VerticalStructure, expected AIXM 5.1")
     for structure in structures:
-        slices = [one for one in _all(structure, "VerticalStructureTimeSlice") if not _text(one, "interpretation").endswith("DELTA")]
+        slices = [one for one in _all(structure, "VerticalStructureTimeSlice")
+                  if not _text(one, "interpretation").endswith("DELTA")]
         last = max(slices, key=lambda one: int(_text(one, "sequenceNumber") or 0), default=None)
         for part in _all(last, "VerticalStructurePart") if last is not None else ():
             name = _text(last, "name")
             what = f"{file}: {name}"
-            tags = {"id": next((value for key, value in structure.attrib.items() if key.endswith("}id")), name), "name": name,
-                    "word": _text(part, "type") or _text(last, "type") or name}
+            tags = {"id": next((value for key, value in structure.attrib.items() if key.endswith("}id")), name),
+                    "name": name, "word": _text(part, "type") or _text(last, "type") or name}
             for column, element in (("height", "verticalExtent"), ("elevation", "elevation")):
                 for one in _all(part, element)[:1]:
                     value = _metres((one.text or "").strip(), one.get("uom", "M"), what, MOST[column])
@@ -148,9 +158,10 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
 
 def _shape(part, what: str):
     """The place of a part (ogr, degrees), or None."""
-    for place in _all(part, "ElevatedPoint", "ElevatedCurve", "ElevatedSurface", "Point", "Curve", "Surface"):
+    for place in (one for one in part.iter()
+                  if one.tag.rpartition("}")[2].removeprefix("Elevated") in ("Point", "Curve", "Surface")):
         srs = next((one.get("srsName") for one in place.iter() if one.get("srsName")), "urn:ogc:def:crs:EPSG::4326")
-        words = " ".join(one.text or "" for one in _all(place, "pos", "posList"))
+        words = " ".join(one.text or "" for one in place.iter() if one.tag.rpartition("}")[2].startswith("pos"))
         if words.strip():
             try:
                 [float(word) for word in words.replace(",", " ").split()]  # GDAL would read other words as 0
@@ -162,7 +173,7 @@ def _shape(part, what: str):
 
 
 def _to_degrees(srs: str, what: str):
-    """Transformation from a named coordinate system, with its own order of axes, to longitude and latitude. Downloads nothing."""
+    """Transformation from a named system, with its own order of axes, to longitude and latitude."""
     code = re.search(r"EPSG[:/]+(?:[\d.]*[:/])?(\d+)$", srs)
     if srs.endswith("CRS84"):
         return osr.CoordinateTransformation(degrees(), degrees())

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Extracts of maps as files: OpenStreetMap's formats, GeoJSON and GeoPackage, also of Overture's maps. GDAL reads the files."""
+"""Extracts of maps as files, read by GDAL: OpenStreetMap's formats, GeoJSON and GeoPackage, also of Overture's maps."""
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import mmap
 import pathlib
@@ -27,18 +28,19 @@ TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # format of tags 
 
 
 def _needs_order(file: pathlib.Path) -> bool:
-    """Whether XML of OpenStreetMap has nodes after ways, objects that an editor has deleted, or coordinates in ways. GDAL reads none of
-    the three."""
+    """Whether XML of OpenStreetMap has nodes after ways, objects that an editor has deleted, or coordinates in ways.
+    GDAL reads none of the three."""
     with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        way, relation = data.find(b"<way "), data.find(b"<relation ")
-        return (0 <= way < data.rfind(b"<node ") or 0 <= relation < data.rfind(b"<way ") or 0 <= relation < data.rfind(b"<node ")
+        return (any(0 <= data.find(after) < data.rfind(before)
+                    for before, after in itertools.combinations((b"<node ", b"<way ", b"<relation "), 2))
                 or re.search(rb"""action=["']delete|visible=["']false|<nd [^>]*lat=""", data) is not None)
 
 
 def _memberless(file: pathlib.Path) -> int:
     """The number of areas without a way in XML of OpenStreetMap. GDAL does not report such areas."""
     with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        return sum(re.search(rb"""type=["']way""", one[1]) is None and re.search(rb"""v=["'](multipolygon|boundary)""", one[1]) is not None
+        return sum(re.search(rb"""v=["'](multipolygon|boundary)""", one[1]) is not None
+                   and re.search(rb"""type=["']way""", one[1]) is None
                    for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
 
 
@@ -55,15 +57,17 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
         root = one if root is None else root
         if event == "start" or one.tag not in found:
             continue
-        for node in one.iter("nd"):  # output of Overpass for `out geom`: coordinates, and no node numbers in members of relations
+        # Overpass gives coordinates for `out geom`, and no node numbers in members of relations.
+        for node in one.iter("nd"):
             where = node.get("lat"), node.get("lon")
             if where[0]:
-                node.set("ref", node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places))))
-                keep("node", node.get("ref"), 0, b'<node id="%s" lat="%s" lon="%s"/>' % tuple(word.encode() for word in (node.get("ref"), *where)))
+                number = node.get("ref") or places.setdefault(where, str(-(1 << 40) - len(places)))
+                node.set("ref", number)
+                keep("node", number, 0, f'<node id="{number}" lat="{where[0]}" lon="{where[1]}"/>'.encode())
         for member in one.iter("member"):
-            nodes = [b'<nd ref="%s"/>' % node.get("ref").encode() for node in member.iter("nd") if node.get("ref")]
+            nodes = "".join(f'<nd ref="{node.get("ref")}"/>' for node in member.iter("nd") if node.get("ref"))
             if nodes and member.get("type") == "way":
-                keep("way", member.get("ref"), 0, b'<way id="%s">%s</way>' % (member.get("ref").encode(), b"".join(nodes)))
+                keep("way", member.get("ref"), 0, f'<way id="{member.get("ref")}">{nodes}</way>'.encode())
         if one.get("action") != "delete" and one.get("visible") != "false" and (one.tag != "node" or one.get("lat")):
             keep(one.tag, one.get("id"), len(one) + 1, ElementTree.tostring(one))
         root.clear()
@@ -79,10 +83,12 @@ def _expect_map(file: pathlib.Path) -> None:
     """Raises an error that names a frequent wrong kind of file in place of an extract."""
     with open(file, "rb") as stream:
         head = stream.read(2000).lstrip(b"\xef\xbb\xbf \r\n\t").lower()
-    what = ("is empty" if not head else "is in UTF-16" if head[:2] in (b"\xff\xfe", b"\xfe\xff") else "is a web page" if head.startswith((b"<!doctype html", b"<html"))
-            else "is Overpass's own JSON" if head.startswith(b"{") and b'"elements"' in head else "")
-    if what:
-        raise Error(f"{file}: {what}, expected an extract of a map: export it again as .osm, .osm.pbf, .geojson or .gpkg")
+    kinds = {"is empty": not head, "is in UTF-16": head.startswith((b"\xff\xfe", b"\xfe\xff")),
+             "is a web page": head.startswith((b"<!doctype html", b"<html")),
+             "is Overpass's own JSON": head.startswith(b"{") and b'"elements"' in head}
+    for what in (what for what, is_so in kinds.items() if is_so):
+        raise Error(f"{file}: {what}, expected an extract of a map: "
+                    "export it again as .osm, .osm.pbf, .geojson or .gpkg")
 
 
 def _tags(feature, names: List[str]) -> Dict[str, str]:
@@ -95,8 +101,8 @@ def _tags(feature, names: List[str]) -> Dict[str, str]:
             if value.startswith("{"):
                 tags.update((key, str(word)) for key, word in json.loads(value).items())
             else:
-                found = TAG.findall(value)
-                tags.update(found if "\\" not in value else [(re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word)) for key, word in found])
+                tags.update((re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word))
+                            for key, word in TAG.findall(value))
         elif name == "names" and value.startswith("{"):
             tags["name"] = str(json.loads(value).get("primary") or "")
         elif value:
@@ -111,23 +117,24 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
         raise Error(f"{file}: is not an extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
     expect_file(file)
     if file.stat().st_size > LARGEST:
-        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: cut "
-                    "the extract to the airport and some kilometres around it first, for example with `osmium extract --bbox W,S,E,N`")
+        raise Error(f"{file}: holds {file.stat().st_size >> 20} MiB, expected at most {LARGEST >> 20}: "
+                    "cut the extract to the airport and some kilometres around it first, "
+                    "for example with `osmium extract --bbox W,S,E,N`")
     _expect_map(file)
-    options = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO") if driver == "OSM" else ()
+    settings = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO")
     aliases = {name.replace(":", "_"): name for name in known["colons"]}
     found, source = Extract(known), file
     with contextlib.ExitStack() as stack:
         if file.suffix.lower() == ".osm":
             if _needs_order(file):
-                folder = stack.enter_context(tempfile.TemporaryDirectory())
+                folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
                 try:
                     with naming("its nodes, ways and relations"):
-                        source = _in_order(file, pathlib.Path(folder) / "in_order.osm")
+                        source = _in_order(file, folder / "in_order.osm")
                 except ElementTree.ParseError as error:
                     raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
             found.left += [Feature("relation", {}, reason="no ways")] * _memberless(source)
-        data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, options)
+        data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, settings if driver == "OSM" else ())
         stack.enter_context(naming(str(file)))
         stack.enter_context(quiet(found.hear if driver == "OSM" else None))
         layers: Dict[str, Tuple[List[str], Any]] = {}
@@ -135,7 +142,8 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
             try:
                 feature, layer = data.GetNextFeature()
             except RuntimeError:
-                raise Error("cannot be read to its end: the extract is damaged or incomplete, expected a complete extract") from None
+                raise Error("cannot be read to its end: the extract is damaged or incomplete, "
+                            "expected a complete extract") from None
             if feature is None:
                 break
             if layer.GetName() not in layers:
@@ -143,8 +151,8 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                 if own is not None:
                     own.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
                 names = [frame.GetFieldDefn(number).GetName() for number in range(frame.GetFieldCount())]
-                layers[layer.GetName()] = ([aliases.get(name, name) for name in names],
-                                           osr.CoordinateTransformation(own, degrees()) if own is not None and not own.IsSame(degrees()) else None)
+                layers[layer.GetName()] = [aliases.get(name, name) for name in names], (
+                    None if own is None or own.IsSame(degrees()) else osr.CoordinateTransformation(own, degrees()))
             names, to_degrees = layers[layer.GetName()]
             tags = _tags(feature, names)
             if driver != "OSM":

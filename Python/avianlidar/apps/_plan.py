@@ -22,7 +22,7 @@ from ._geojson import read_runways
 from ._json import naming
 from ._looks import require_memory
 from ._inputs import sensor_name
-from ._regions import Runway, by_kind, places_by_region, region_heights, region_names
+from ._regions import Runway, by_kind, ends_of, places_by_region, region_heights, region_names
 from ._scores import weighted
 
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # default heights of maps, m
@@ -32,25 +32,24 @@ AROUND_ENDS = 300.0  # distance that maps show around the ends of runways, m
 STEP_OF_EXTENT = 100.0  # step to which the extent of maps is rounded, m
 FLAT = 0.5  # absolute z below which the ground counts as 0, m
 MOST_PIXELS = 100_000_000  # greatest number of pixels of a map
+OTHER_PLACES = 1 << 40  # offset of the seed for places that were not used to choose sites or designs
 BYTES_OF_PLACE = 200  # memory for a drawn place and its results, bytes
 
 
 class Plan:
     """The question that a plan of coverage asks.
 
-    name           name of the sensor     heights  heights of the maps, m
-    scene, sensor  loaded from files      runways  in the scene's coordinates
-    coverage       Coverage for the maps  regions  Coverage of places drawn in strips and approaches, or without runways on the maps
-    members, ends  numbers of the places by kind of region (strips, approaches), and by single strip and approach
-    mix            share of each species, with the sum 1; maps of reasons are for the first species, which has the greatest share
-    air            words of the plan's weather
-    year           weathers by which sites are ranked, with their shares of the hours; empty if the plan gives no year
-    asked          least and greatest height of the places, m; None if the plan has no `heights`, so that each region has its own heights
-    ground         z of the ground below the sensor, m; None without a ground
-    """
+    name           name of the sensor     heights  heights of the maps, m scene, sensor  loaded from files      runways
+    in the scene's coordinates coverage       Coverage for the maps  regions  Coverage of places drawn in strips and
+    approaches, or without runways on the maps members, ends  numbers of the places by kind of region (strips,
+    approaches), and by single strip and approach mix            share of each species, with the sum 1; maps of reasons
+    are for the first species, which has the greatest share air            words of the plan's weather year
+    weathers by which sites are ranked, with their shares of the hours; empty if the plan gives no year asked
+    least and greatest height of the places, m; None if the plan has no `heights`, so that each region has its own
+    heights ground         z of the ground below the sensor, m; None without a ground """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
-        """Checks all parts of the plan. `Error` names the plan's file and the member. @param member member of the sensor"""
+        """Checks all parts. `Error` names the plan's file and the member. @param member of the sensor"""
         self.plan, self.file, self.threads = plan, str(plan.get("file", "plan")), threads
         with naming(f"{self.file}: scene"):
             self.scene = scene or load_scene(plan["scene"])
@@ -67,8 +66,8 @@ class Plan:
         self.settings: Dict[str, Any] = {"number_of_threads": threads, **in_weather(plan.get("coverage", {}), self.air)}
         if self.air:
             self.settings.update(self.air_of(**{name: self.settings[name] for name in AIR if name in self.settings}))
-        self.year = [Air(tuple(part["weather"]), float(part["share"]), self.air_of(part["weather"])) for part in plan.get("year", ())
-                     if part["share"] > 0.0]
+        self.year = [Air(tuple(part["weather"]), float(part["share"]), self.air_of(part["weather"]))
+                     for part in plan.get("year", ()) if part["share"] > 0.0]
         if self.asked and self.asked[0] < self.asked[1]:
             self.settings.setdefault("height_limits", sorted(self.heights))
         if member == "sensor":  # other members use these of the first plan
@@ -103,15 +102,17 @@ class Plan:
             Coverage(Scene(), self.sensor, places=[(0.0, 0.0, 0.0)], **{**self.settings, **changes}).update()
 
     def air_of(self, words: Sequence[str] = (), **air: Any) -> Dict[str, Any]:
-        """Settings of coverage in a weather. Without a word on visibility, the plan's visibility is used; without rain, the air is dry.
+        """Settings of coverage in a weather. Without a word on visibility, the plan's visibility is used; without rain,
+        the air is dry.
 
         words  words as for `--weather`
         air    settings in place of words, such as rain_rate=0 (mm/h)
         """
-        default, given = _wrapped.vtkAvianLidarCoverage(), self.plan.get("coverage", {})
-        return as_received(self.sensor, {"attenuation_coefficient": given.get("attenuation_coefficient", default.GetAttenuationCoefficient()),
-                                         "visibility": given.get("visibility", default.GetVisibility()),
-                                         "air_backscatter": given.get("air_backscatter", False), "rain_rate": 0.0, **weather(words), **air})
+        default = _wrapped.vtkAvianLidarCoverage()
+        own = {"attenuation_coefficient": default.GetAttenuationCoefficient(), "visibility": default.GetVisibility(),
+               "air_backscatter": False}
+        given = {name: value for name, value in self.plan.get("coverage", {}).items() if name in own}
+        return as_received(self.sensor, {**own, **given, "rain_rate": 0.0, **weather(words), **air})
 
     def _mix(self) -> Dict[str, float]:
         mix = self.plan.get("mix") or {Coverage(Scene(), self.sensor, **self.settings).species: 1.0}
@@ -123,7 +124,7 @@ class Plan:
     def _extent(self) -> Tuple[float, float, float, float]:
         """Extent of the maps: surroundings of the sensor and of the runways' ends."""
         x, y, _ = self.sensor.position
-        ends = np.array([end for runway in self.runways for end in (runway.start, runway.end)]).reshape(-1, 2)
+        ends = ends_of(self.runways)
         low = np.min([(x - AROUND_SENSOR, y - AROUND_SENSOR), *(ends - AROUND_ENDS)], axis=0)
         high = np.max([(x + AROUND_SENSOR, y + AROUND_SENSOR), *(ends + AROUND_ENDS)], axis=0)
         if len(ends):
@@ -131,35 +132,38 @@ class Plan:
         return low[0], high[0], low[1], high[1]
 
     def at(self, position: Sequence[float], title: str, seed: Optional[int] = None, **changes: Any) -> Plan:
-        """The plan with the sensor at another place, on the same maps. @param position m @param title title of pictures and tables @param
-        seed seed of the places, default the same @param changes properties of the sensor"""
+        """The plan with the sensor at another place, on the same maps. @param position m @param title title of pictures
+        and tables @param seed seed of the places, default the same @param changes properties of the sensor"""
         sensor = {**self.plan["sensor"], "name": self.name, **changes, "position": [float(c) for c in position]}
-        other = Plan({**self.plan, "extent": self.extent, "seed": self.seed if seed is None else seed, "sensor": sensor}, self.threads, self.scene, "siting")
+        other = Plan({**self.plan, "extent": self.extent, "seed": self.seed if seed is None else seed,
+                      "sensor": sensor}, self.threads, self.scene, "siting")
         other.title = title
         return other
 
     def _check_maps(self) -> None:
         x0, x1, y0, y1 = self.extent
         if not (x0 <= x1 and y0 <= y1):
-            raise Error(f"{self.file}: extent: is {list(self.extent)}, expected least and greatest x, least and greatest y")
+            raise Error(f"{self.file}: extent: is {list(self.extent)}, "
+                        "expected least and greatest x, least and greatest y")
         pixels = ((x1 - x0) / self.spacing + 1.0) * ((y1 - y0) / self.spacing + 1.0)
         if not pixels <= MOST_PIXELS:
-            raise Error(f"{self.file}: spacing: is {self.spacing:g} m, which makes maps of {pixels:.3g} pixels, expected at most "
-                        f"{MOST_PIXELS:,}: take a larger spacing or a smaller extent")
+            raise Error(f"{self.file}: spacing: is {self.spacing:g} m, which makes maps of {pixels:.3g} pixels, "
+                        f"expected at most {MOST_PIXELS:,}: take a larger spacing or a smaller extent")
 
     def _runways(self) -> List[Runway]:
         if self.scene.geodetic_origin is None:
-            raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, because runways are given in degrees")
+            raise Error(f"{self.plan['scene']}: has no origin, expected latitude and longitude, "
+                        "because runways are given in degrees")
         return read_runways(self.plan["runways"], self.scene.geodetic_origin)
 
     def decides(self) -> Any:
         """Everything that decides the results: the plan without its own name, surfaces, beams and places."""
         update(self.scene.tree)
-        return ({name: part for name, part in self.plan.items() if name != "file"}, digest_of(self.scene.tree.GetOutput()),
-                digest_of_arrays(self.sensor.beams.data), self.points.tobytes())
+        return ({name: part for name, part in self.plan.items() if name != "file"},
+                digest_of(self.scene.tree.GetOutput()), digest_of_arrays(self.sensor.beams.data), self.points.tobytes())
 
     def places(self, seed: int) -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-        """The places for shares, n x 3, m, and the numbers of the places in each strip and in the approach to each end."""
+        """The places for shares, n x 3, m, and their numbers in each strip and in the approach to each end."""
         require_memory(BYTES_OF_PLACE * self.count, f"{self.count:,} places", "take fewer")
         if self.runways:
             return places_by_region(self.runways, self.count, seed, self.plan.get("regions"), self.asked, self.spread)
@@ -168,7 +172,8 @@ class Plan:
 
     def weights(self, points: np.ndarray) -> np.ndarray:
         """The weight of each place (n x 3) for each species, as in the table: species x places, with the sum 1."""
-        density = Coverage.strike_height_density(points[:, 2]) if self.regions.strike_height_weights else np.ones(len(points))
+        density = (Coverage.strike_height_density(points[:, 2]) if self.regions.strike_height_weights else
+                   np.ones(len(points)))
         return np.outer(list(self.mix.values()), density / density.sum())
 
     @classmethod
@@ -180,33 +185,38 @@ class Plan:
             member = f"compare_with[{number}]"
             plans.append(cls({**plan, "sensor": {**place, **other}}, threads, plans[0].scene, member))
             if plans[-1].name in [before.name for before in plans[:-1]]:
-                raise Error(f"{plans[0].file}: {member}: {plans[-1].name!r} is there twice, expected a different `name`")
+                raise Error(f"{plans[0].file}: {member}: {plans[-1].name!r} is there twice, "
+                            "expected a different `name`")
         return plans
 
     @property
     def spread_words(self) -> str:
         """Words on the distribution of places over strips and approaches."""
-        return {"distance": "equally many on each metre along strips and approaches, because aircraft fly each metre once",
-                "area": "equally many on each square metre of strips and approaches"}[self.spread]
+        return ("equally many on each square metre of strips and approaches" if self.spread == "area" else
+                "equally many on each metre along strips and approaches, because aircraft fly each metre once")
 
     @property
     def where(self) -> str:
         """Words on the places of the shares."""
         low, high = min(self.heights), max(self.heights)
-        heights = f"{low:g} to {high:g} m" if high > low else f"at {low:g} m"
+        heights = f", {low:g} to {high:g} m" if high > low else f" at {low:g} m"
         if not self.runways:
-            return f"on the map, {heights}" if high > low else f"on the map {heights}"
-        there = {kind: kind if set(names) <= self.ends.keys() else ", ".join(name for name in names if name in self.ends)
-                 for kind, names in region_names(self.runways).items() if kind in self.members}
+            return f"on the map{heights}"
+        names_of = region_names(self.runways)
+        there = {kind: kind if set(names_of[kind]) <= self.ends.keys() else
+                 ", ".join(name for name in names_of[kind] if name in self.ends) for kind in self.members}
         if self.asked:
-            return f"in {' and '.join(there.values())}, {heights + ' high' if high > low else heights}"
-        return "in " + " and ".join(f"{words} (to {self.heights_of(kind)[1]:.3g} m high)" for kind, words in there.items())
+            return f"in {' and '.join(there.values())}{heights + ' high' if high > low else ',' + heights}"
+        return "in " + " and ".join(f"{words} (to {self.heights_of(kind)[1]:.3g} m high)"
+                                    for kind, words in there.items())
 
     def heights_of(self, region: str) -> Tuple[float, float]:
         """Least and greatest height of the places of a region, m; for any other name, of all places."""
-        names = [region] if region in self.members else list(self.members)
-        limits = [region_heights(name, self.asked) if self.runways else (min(self.heights), max(self.heights)) for name in names]
-        return min(low for low, _ in limits), max(high for _, high in limits)
+        if not self.runways:
+            return min(self.heights), max(self.heights)
+        lows, highs = zip(*(region_heights(name, self.asked)
+                            for name in ([region] if region in self.members else self.members)))
+        return min(lows), max(highs)
 
     @property
     def bird(self) -> str:
@@ -241,44 +251,47 @@ class Plan:
 
     @functools.cached_property
     def shares(self) -> List[Dict[str, Any]]:
-        """Rows of shares of the regions: rows of each species, then rows of the mix. Standard errors of the mix are upper bounds from the
-        errors of the species."""
+        """Rows of shares of the regions: rows of each species, then rows of the mix. Standard errors of the mix are
+        upper bounds from the errors of the species."""
         rows = self.regions.table
-        return rows + self._of_mix([[row for row in rows if row["species"] == species] for species in self.mix]) * (len(self.mix) > 1)
+        of_species = [[row for row in rows if row["species"] == species] for species in self.mix]
+        return rows + self._of_mix(of_species) * (len(self.mix) > 1)
 
     def _of_mix(self, of_species: Sequence[List[Dict[str, Any]]]) -> List[Dict[str, Any]]:
         """Rows of the mix. @param of_species rows of each species"""
         if len(self.mix) == 1:
             return of_species[0]
-        mixed = []
-        for same in zip(*of_species):
-            means = {name: sum(share * row[name] for share, row in zip(self.mix.values(), same)) for name, value in same[0].items()
-                     if isinstance(value, float) and not name.startswith("height_")}
-            mixed.append({**same[0], **means, "species": self.bird})
-        return mixed
+        names = [name for name, value in of_species[0][0].items()
+                 if isinstance(value, float) and not name.startswith("height_")]
+        return [{**same[0], "species": self.bird,
+                 **{name: sum(share * row[name] for share, row in zip(self.mix.values(), same)) for name in names}}
+                for same in zip(*of_species)]
 
     def in_airs(self, airs: Sequence[Dict[str, Any]]) -> List[List[Dict[str, Any]]]:
-        """For each air, the rows of shares of all heights for the plan's birds: each region, and finally all places. No line of sight is
-        traced again. @param airs settings of coverage, as from `air_of`"""
+        """For each air, the rows of shares of all heights for the plan's birds: each region, and finally all places. No
+        line of sight is traced again. @param airs settings of coverage, as from `air_of`"""
         regions, found = self.regions, []
         own = {name: getattr(regions, name) for name in ("all_species", "species", *airs[0])}
         regions.all_species = False
         for species in self.mix:
             regions.species = species
-            found.append([[row for row in regions.set(**air).table if math.isinf(row["height_from"]) and math.isinf(row["height_to"])] for air in airs])
+            found.append([[row for row in regions.set(**air).table
+                           if math.isinf(row["height_from"]) and math.isinf(row["height_to"])] for air in airs])
         regions.set(**own)
         return [*map(self._of_mix, zip(*found))]
 
     @functools.cached_property
     def by_end(self) -> List[Dict[str, Any]]:
-        """A row for each strip and the approach to each end: the share of all heights for the plan's birds, with the standard error as
-        in the table."""
+        """A row for each strip and the approach to each end: the share of all heights for the plan's birds, with the
+        standard error as in the table."""
         weights = self.weights(self.points).sum(axis=0)
         values = {name: self.mixed(self.regions, f"{name}_probability") for name in ("detection", "track")}
-        rows: List[Dict[str, Any]] = [{"region": region, "species": self.bird, "places": len(members)} for region, members in self.ends.items()]
-        for row, members in zip(rows, self.ends.values()):
+        rows = []
+        for region, members in self.ends.items():
+            row: Dict[str, Any] = {"region": region, "species": self.bird, "places": len(members)}
             for name, p in values.items():
                 row[f"{name}_probability"], row[f"{name}_std_error"], _ = weighted(p[members], weights[members])
+            rows.append(row)
         return rows
 
     @property

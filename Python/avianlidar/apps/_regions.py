@@ -20,6 +20,7 @@ KINDS = {"strip": "strips", "approach": "approaches"}  # kinds by the first word
 SPREADS = ("distance", "area")  # distributions of places over a region
 WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+Places = Tuple[np.ndarray, Dict[str, np.ndarray]]  # n x 3, m, and the numbers of the places in each region
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,7 +37,8 @@ class Runway:
         """The name, length, width and displaced thresholds, in words."""
         names = self.name.split("/") if self.name.count("/") == 1 else ("its start", "its end")
         found = [f"of {name} by {away:.0f} m" for name, away in zip(names, self.displaced) if away > 0.0]
-        return f"{self.name}: {self.axis()[1]:.0f} m long, {self.width:g} m wide" + (f"; threshold displaced: {', '.join(found)}" if found else "")
+        return (f"{self.name}: {self.axis()[1]:.0f} m long, {self.width:g} m wide"
+                f"{'; threshold displaced: ' + ', '.join(found) if found else ''}")
 
     def axis(self) -> Tuple[np.ndarray, float]:
         """The unit vector from start to end, and the length, m."""
@@ -55,6 +57,11 @@ class Runway:
         return [(np.asarray(self.start), -axis), (np.asarray(self.end), axis)]
 
 
+def ends_of(runways: Sequence[Runway]) -> np.ndarray:
+    """The starts and ends of runways, n x 2, m."""
+    return np.array([end for runway in runways for end in (runway.start, runway.end)], dtype=float).reshape(-1, 2)
+
+
 def rounded(position: Sequence[float]) -> List[str]:
     """Coordinates in tenths of a metre, which is finer than the accuracy of terrain and maps."""
     return [f"{round(float(value), 1) + 0.0:.10g}" for value in position]
@@ -66,16 +73,18 @@ def wind(way: np.ndarray) -> str:
 
 
 def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:
-    """The designators of the start and the end of each runway, such as ("08", "26"). The designator of an end gives the direction in which
-    aircraft land at this end. Ends of a runway without two designators are named by the wind: ("grass west", "grass east")."""
+    """The designators of the start and the end of each runway, such as ("08", "26"). The designator of an end gives the
+    direction in which aircraft land at this end. Ends of a runway without two designators are named by the wind:
+    ("grass west", "grass east")."""
     names = []
     for runway in runways:
         axis, _ = runway.axis()
         found = re.findall(r"(?<![0-9])([0-9]{1,2}[A-Z]?)(?![0-9A-Za-z])", runway.name)
-        if len(found) == 2 and (int(found[0].rstrip(LETTERS)) - int(found[1].rstrip(LETTERS))) % 36 == 18:
-            heading = math.degrees(math.atan2(axis[0], axis[1]))
-            off = abs((10.0 * int(found[0].rstrip(LETTERS)) - heading + 180.0) % 360.0 - 180.0)
-            names.append((found[0], found[1]) if off <= 90.0 else (found[1], found[0]))
+        tens = [int(name.rstrip(LETTERS)) for name in found]
+        if len(found) == 2 and (tens[0] - tens[1]) % 36 == 18:
+            off = 10.0 * tens[0] - math.degrees(math.atan2(axis[0], axis[1]))
+            first, second = found if abs((off + 180.0) % 360.0 - 180.0) <= 90.0 else found[::-1]
+            names.append((first, second))
         else:
             names.append((f"{runway.name} {wind(-axis)}", f"{runway.name} {wind(axis)}"))
     known = [name for pair in names for name in pair]
@@ -84,16 +93,18 @@ def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:
 
 
 def region_names(runways: Sequence[Runway]) -> Dict[str, List[str]]:
-    """Names of strips and approaches, in the order of the runways: "strip" with the runway's name, "approach" with the name of the end."""
+    """Names of strips and approaches in the order of the runways: "strip 08/26", "approach 08"."""
     pairs = end_names(runways)
-    strips = [f"strip {'/'.join(sorted(pair))}" if all(name in runway.name for name in pair) else f"strip {runway.name}" for runway, pair in zip(runways, pairs)]
-    return {"strips": [name if strips.count(name) == 1 else f"{name} ({number})" for number, name in enumerate(strips, 1)],
+    strips = ["/".join(sorted(pair)) if all(name in runway.name for name in pair) else runway.name
+              for runway, pair in zip(runways, pairs)]
+    return {"strips": [f"strip {name}" if strips.count(name) == 1 else f"strip {name} ({number})"
+                       for number, name in enumerate(strips, 1)],
             "approaches": [f"approach {name}" for pair in pairs for name in pair]}
 
 
 def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) -> np.ndarray:
-    """The rectangle (4 x 2, m) around a runway where no lidar may stand. @param beyond distance beyond the ends, m @param beside distance
-    from the middle, m"""
+    """The rectangle (4 x 2, m) around a runway where no lidar may stand. @param beyond distance beyond the ends, m
+    @param beside distance from the middle, m"""
     axis, across = runway.axes() * [[beyond], [beside]]
     start, end = runway.start - axis, runway.end + axis
     return np.array([start - across, end - across, end + across, start + across])
@@ -102,8 +113,9 @@ def runway_outline(runway: Runway, beyond: float = 60.0, beside: float = 185.0) 
 def region_outlines(runways: Sequence[Runway]) -> Dict[str, np.ndarray]:
     """Each strip and approach seen from above, 4 x 2, m, by its name."""
     names, found = region_names(runways), {}
+    half_width, wider = APPROACH_HALF_WIDTH
     for number, runway in enumerate(runways):
-        near, far = np.outer(APPROACH_HALF_WIDTH[0] + APPROACH_HALF_WIDTH[1] * np.array([0.0, APPROACH_LENGTH]), runway.axes()[1])
+        near, far = np.outer([half_width, half_width + wider * APPROACH_LENGTH], runway.axes()[1])
         found[names["strips"][number]] = runway_outline(runway, 0.0, STRIP_HALF_WIDTH)
         for name, (end, way) in zip(names["approaches"][2 * number:], runway.ends()):
             outer = end + APPROACH_LENGTH * way
@@ -112,7 +124,7 @@ def region_outlines(runways: Sequence[Runway]) -> Dict[str, np.ndarray]:
 
 
 def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> Tuple[float, float]:
-    """Least and greatest height (m) of the places that are drawn in "strips" or "approaches". @param heights heights of the plan, if any"""
+    """Least and greatest height (m) of places in "strips" or "approaches". @param heights of the plan, if any"""
     if heights is not None:
         return heights
     if name == "strips":
@@ -120,35 +132,37 @@ def region_heights(name: str, heights: Optional[Tuple[float, float]] = None) -> 
     return APPROACH_LOWEST * APPROACH_HEIGHT[0], APPROACH_HEIGHT[0] + APPROACH_HEIGHT[1] * APPROACH_LENGTH
 
 
-def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]], spread: str) -> Dict[str, Dict[str, float]]:
+def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]], spread: str
+                   ) -> Dict[str, Dict[str, float]]:
     """The share of the places in each region of each kind, with the sum 1 over all regions."""
     wanted = {"strips": 1.0, "approaches": 1.0} if shares is None else dict(shares)
+    wrong = f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0"
     if not wanted.keys() <= {"strips", "approaches"}:
-        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
+        raise ValueError(wrong)
     if spread not in SPREADS:
         raise ValueError(f"spread is {spread!r}, expected {' or '.join(SPREADS)}")
     found: Dict[str, Dict[str, float]] = {}
     for kind, names in region_names(runways).items():
         given = wanted.get(kind, 0.0)
         if isinstance(given, Mapping):
-            known = {word: name for name in names for word in (name, name.partition(" ")[2])}
+            short = [name.partition(" ")[2] for name in names]
+            known = {**dict(zip(names, names)), **dict(zip(short, names))}
             known.update({runway.name: name for runway, name in zip(runways, names)} if kind == "strips" else {})
-            for word in given:
-                if word not in known:
-                    raise ValueError(f"{kind} has {word!r}, expected some of {', '.join(name.partition(' ')[2] for name in names)}")
+            for word in (word for word in given if word not in known):
+                raise ValueError(f"{kind} has {word!r}, expected some of {', '.join(short)}")
             found[kind] = {**dict.fromkeys(names, 0.0), **{known[word]: float(share) for word, share in given.items()}}
         else:
-            sizes = [runway.axis()[1] for runway in runways] if (kind, spread) == ("strips", "area") else [1.0] * len(names)
+            sizes = ([runway.axis()[1] for runway in runways] if (kind, spread) == ("strips", "area") else
+                     [1.0] * len(names))
             found[kind] = {name: float(given) * size / sum(sizes) for name, size in zip(names, sizes)}
     each = [share for of in found.values() for share in of.values()]
     if not 0.0 < sum(each) < np.inf or min(each) < 0.0:
-        raise ValueError(f"shares are {wanted}, expected numbers from 0 of strips and approaches with a sum above 0")
+        raise ValueError(wrong)
     return {kind: {name: share / sum(each) for name, share in of.items()} for kind, of in found.items()}
 
 
 def _split(count: int, shares: Sequence[float]) -> np.ndarray:
-    """Whole numbers in proportion to shares, with the sum `count`. The remainder goes to the largest fractions, the first of equal
-    fractions."""
+    """Whole numbers in proportion to shares, with the sum `count`. The remainder goes to the largest fractions."""
     total = sum(shares)
     exact = np.array(shares) * (count / total) if total > 0.0 else np.zeros(len(shares))
     numbers = np.floor(exact + 1e-9).astype(int)
@@ -157,17 +171,19 @@ def _split(count: int, shares: Sequence[float]) -> np.ndarray:
     return numbers
 
 
-def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, Any]] = None,
-                     heights: Optional[Tuple[float, float]] = None, spread: str = "distance") -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-    """The places of `strips_and_approaches`, with the numbers of the places in each strip and in the approach to each end."""
+def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 0,
+                     shares: Optional[Mapping[str, Any]] = None, heights: Optional[Tuple[float, float]] = None,
+                     spread: str = "distance") -> Places:
+    """The places of `strips_and_approaches`, with their numbers by strip and by the approach to each end."""
     if count < 2 * len(runways) or not runways:
         raise ValueError(f"count is {count}, expected at least 2 for each of at least one runway")
     if heights is not None and not -np.inf < heights[0] <= heights[1] < np.inf:
         raise ValueError(f"heights are {tuple(heights)}, expected the least and the greatest, m")
     wanted = _region_shares(runways, shares, spread)
     random = np.random.default_rng(seed)
-    strips = int(count * sum(wanted["strips"].values()) + 1e-9)
-    numbers = [*_split(strips, list(wanted["strips"].values())), *_split(count - strips, list(wanted["approaches"].values()))]
+    of_strips, of_approaches = (list(of.values()) for of in wanted.values())
+    strips = int(count * sum(of_strips) + 1e-9)
+    numbers = [*_split(strips, of_strips), *_split(count - strips, of_approaches)]
     begins = [(runway, np.asarray(runway.start), runway.axis()[0]) for runway in runways]
     begins += [(runway, *end) for runway in runways for end in runway.ends()]
     places = []
@@ -193,23 +209,26 @@ def places_by_region(runways: Sequence[Runway], count: int = 12000, seed: int = 
 
 
 def by_kind(regions: Mapping[str, np.ndarray]) -> Dict[str, np.ndarray]:
-    """The numbers of all places in strips, in approaches, and in other regions. @param regions regions as from `places_by_region`"""
+    """The numbers of all places in strips, in approaches, and in other regions, as from `places_by_region`."""
     kinds: Dict[str, List[np.ndarray]] = {}
     for name, numbers in regions.items():
         kinds.setdefault(KINDS.get(name.partition(" ")[0], name), []).append(numbers)
     return {kind: np.concatenate(parts) for kind, parts in kinds.items()}
 
 
-def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0, shares: Optional[Mapping[str, Any]] = None,
-                          heights: Optional[Tuple[float, float]] = None, spread: str = "distance") -> Tuple[np.ndarray, Dict[str, np.ndarray]]:
-    """Random places, and the region of each place. Strips lie along each runway, 150 m to either side, 0.5 to 60 m high. Approaches
-    lie beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, from 0.02 times to 1 times 45 m + 0.0524 d
-    high.
+def strips_and_approaches(runways: Sequence[Runway], count: int = 12000, seed: int = 0,
+                          shares: Optional[Mapping[str, Any]] = None, heights: Optional[Tuple[float, float]] = None,
+                          spread: str = "distance") -> Places:
+    """Random places, and the region of each place. Strips lie along each runway, 150 m to either side, 0.5 to 60 m
+    high. Approaches lie beyond each runway's end to 3 km, 75 m + 0.15 d to either side at the distance d, from 0.02
+    times to 1 times 45 m + 0.0524 d high.
 
-    shares   shares of the places by the name of the region, "strips" and "approaches"; default 1 for both. A region without a share is
-             left out. In place of a number: shares of single regions by name, {"approaches": {"08": 1}} (`region_names`)
+    shares   shares of the places by the name of the region, "strips" and "approaches"; default 1 for both. A region
+             without a share is left out. In place of a number: shares of single regions by name (`region_names`), as
+             in {"approaches": {"08": 1}}
     heights  least and greatest z of all places, m, in place of the regions' own heights; evenly distributed
-    spread   "distance": equally many on each metre along strips and approaches. "area": equally many on each square metre
+    spread   "distance": equally many on each metre along strips and approaches. "area": equally many on each square
+             metre
     @return n x 3 coordinates, m; the numbers of the places by the name of the region
     """
     points, regions = places_by_region(runways, count, seed, shares, heights, spread)

@@ -15,7 +15,7 @@ from .._disk import only_run, write_whole
 from .._pipeline import Error
 from .._version import __version__
 from .. import reach
-from . import _answer
+from . import _answer, _sites_page
 from . import _pictures as pictures
 from ._air import gathers_light
 from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, how_sure, metres, percent, place, share_of
@@ -23,9 +23,9 @@ from ._card import read_card
 from ._geojson import to_geodetic
 from ._json import load_json, naming
 from ._maps import height_name
-from ._plan import Plan
+from ._plan import OTHER_PLACES, Plan
 from ._regions import rounded
-from ._sites import BEST, DRAWS, FEWEST_DRAWS, OTHER_PLACES, Sites
+from ._sites import BEST, FEWEST_DRAWS, Sites
 from ._tables import embedded, render, write_table
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # in the section on weather, m
@@ -156,7 +156,7 @@ class Report:
 
     def _siting(self, sites: Sites, folder: pathlib.Path) -> Dict[str, Any]:
         changes, plan = list(sites.look().changes()), sites.plan
-        sites.write(folder, changes)
+        _sites_page.write(sites, folder, changes)
         best = []
         for rank, i in enumerate(sites.order[:BEST].tolist(), 1):
             less, error = (100.0 * part for part in sites.difference(i))
@@ -170,15 +170,15 @@ class Report:
                 "edge": sites.at_the_edge, "degrees": self._degrees(sites), "masts": sites.best_by_mast(),
                 "first": sites.positions[first], "detects": float(sites.values[first]) >= LEAST, "places": plan.count,
                 "by_air": [{**row, "position": rounded(sites.positions[row["site"]])} for row in sites.best_by_air()],
-                "robustness": sites.robustness(changes), "words": sites.words(), "near": len(sites.near),
+                "robustness": sites.robustness(changes), "words": _sites_page.words(sites), "near": len(sites.near),
                 "count": len(sites.positions), "taken": sites.stands_wrong(plan.sensor.position),
-                "surfaces": sites.surface_sentence, "draws": int(sites.options.get("draws", DRAWS)),
-                "heights_varied": any("heights" in change.what for change in changes),
+                "surfaces": _sites_page.surface_sentence(sites), "draws": sites.draws,
+                "heights_varied": sites.varies_heights,
                 "map": self._figure(folder / "sites.png", "Map of candidates",
                                     f"{plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; "
                                     "light grey: areas where no lidar may stand"),
                 "curve": self._figure(folder / "gain.png", "Probability of one scan with the best networks",
-                                     f"{plan.name}: with more sensors; bars: standard error")}
+                                      f"{plan.name}: with more sensors; bars: standard error")}
 
     def _degrees(self, sites: Sites) -> str:
         """Longitude and latitude of the best site."""
@@ -330,7 +330,7 @@ class Report:
         answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
         weather = self._weather(views, folder)
         site_of: List[Any] = [*sited] or [None] * len(self.plans)
-        said = [_answer.two_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)])
+        said = [_answer.first_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)])
                 for plan, view, site, of in zip(self.plans, answering, site_of, reaches)]
         answers = [sentence for words, plan, view, site in zip(said, self.plans, answering, site_of)
                    for sentence in (*words, *self._besides(plan, view, site))]

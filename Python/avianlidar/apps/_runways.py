@@ -22,12 +22,13 @@ NEAR_AERODROME = 3000.0  # greatest distance of a runway from its aerodrome, m
 ONE_AIRPORT = 6000.0  # greatest distance between runways of one airport in an extract without aerodromes, m
 MODEL_NEAR = 100.0  # greatest distance of a runway from the model airfield that it belongs to, m
 ALONG = math.cos(math.radians(10.0))  # cosine of the angle below which two directions are equal
-THRESHOLD_BESIDE, THRESHOLD_BEYOND = 30.0, 30.0  # m: greatest distance of a threshold beside a runway, and least distance from its end
+THRESHOLD_BESIDE = 30.0  # greatest distance of a threshold beside a runway, m
+THRESHOLD_BEYOND = 30.0  # least distance of a displaced threshold from a runway's end, m
 
 
 def _axis_of(hull) -> Tuple[np.ndarray, float]:
-    """Ends of the line between the short sides of the smallest rectangle around a convex area, and the rectangle's width. @param hull
-    ogr, m"""
+    """Ends of the line between the short sides of the smallest rectangle around a convex area, and the rectangle's
+    width. @param hull ogr, m"""
     corners = np.array(hull.Boundary().GetPoints())[:, :2]
     ways = np.diff(corners, axis=0)
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
@@ -42,7 +43,8 @@ def _axis_of(hull) -> Tuple[np.ndarray, float]:
 
 def _designators(tags: Dict[str, str]) -> Set[str]:
     """The designators "09L" and "27R" in "9L/27R"."""
-    return {word.strip().upper().zfill(3 if word.strip()[-1:].isalpha() else 2) for word in re.split(r"[/;-]", tags.get("ref", "")) if word.strip()}
+    words = [word.strip().upper() for word in re.split(r"[/;-]", tags.get("ref", ""))]
+    return {word.zfill(3 if word[-1].isalpha() else 2) for word in words if word}
 
 
 class _Piece:
@@ -56,7 +58,7 @@ class _Piece:
         self.along = way / self.length
 
     def goes_on(self, other: _Piece, known: Dict[str, Any]) -> bool:
-        """Whether two ways belong to one runway: no contradicting numbers, one line, and at most a gap of the map between the ways."""
+        """Whether two ways are one runway: no contradicting numbers, one line, and at most a gap of the map."""
         mine, theirs = _designators(self.tags), _designators(other.tags)
         if mine and theirs and not mine & theirs:
             return False
@@ -69,8 +71,8 @@ class _Piece:
 
 
 def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, np.ndarray, List[float]]]:
-    """Runways joined from pieces: features without a geometry, ends (2 x 2, m), and the displacement of each end's threshold, m. The first
-    end belongs to the first number of `ref`."""
+    """Runways joined from pieces: features without a geometry, ends (2 x 2, m), and the displacement of each end's
+    threshold, m. The first end belongs to the first number of `ref`."""
     pieces = sorted(pieces, key=lambda one: -one.length)
     fit = np.array([[one.goes_on(other, known) for other in pieces] for one in pieces])
     labels = connected_components(fit)[1] if pieces else fit
@@ -108,32 +110,35 @@ def _name_of(aerodrome: Feature) -> str:
     return " ".join(filter(None, (code, aerodrome.tags.get("name", ""), "" if code else "(no ICAO code)")))
 
 
-def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], icao: Optional[str], box: Optional[Sequence[float]]
-                   ) -> Tuple[List[Feature], Optional[Feature]]:
-    """The runways of one airport as lines (degrees), and its aerodrome, if the extract has one. Ways that are too short for a runway are
-    left out.
-    @param icao code of the airport, if given @param box west, south, east, north, degrees: the runways must meet this box, if given"""
-    lines = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "line"]
-    areas = [one for one in extract.features if one.kind == "runway" and form_of(one.shape) == "area"]
+def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], icao: Optional[str],
+                   box: Optional[Sequence[float]]) -> Tuple[List[Feature], Optional[Feature]]:
+    """The runways of one airport as lines (degrees), and its aerodrome, if the extract has one. Ways that are too short
+    for a runway are left out. @param icao code of the airport, if given @param box west, south, east, north, degrees:
+    the runways must meet this box, if given"""
+    lines, areas = ([one for one in extract.features if one.kind == "runway" and form_of(one.shape) == form]
+                    for form in ("line", "area"))
     if not lines + areas:
-        other = next((f"; left out: {left.reason}" for left in extract.left if left.kind == "runway"), "")
         lost = sum(left.kind == "way" for left in extract.left)
-        other += f"; {lost} ways lack their nodes; `osmium sort` puts the nodes before the ways" if lost and not other else ""
+        nodes = f"; {lost} ways lack their nodes; `osmium sort` puts the nodes before the ways" if lost else ""
+        other = next((f"; left out: {left.reason}" for left in extract.left if left.kind == "runway"), nodes)
         if lost and file.suffix.lower() == ".pbf":
-            other += "; if the ways contain the coordinates of nodes, `osmium cat FILE -o FILE.osm` writes a suitable extract"
+            other += ("; if the ways contain the coordinates of nodes, `osmium cat FILE -o FILE.osm` writes a suitable "
+                      "extract")
         raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway{other}")
     middle = (lines + areas)[0].shape.Centroid()
     local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
-    to_local, to_degrees = osr.CoordinateTransformation(degrees(), local), osr.CoordinateTransformation(local, degrees())
+    to_local = osr.CoordinateTransformation(degrees(), local)
+    to_degrees = osr.CoordinateTransformation(local, degrees())
 
     def points_of(shape) -> np.ndarray:
         return np.array(moved(shape, to_local).GetPoints())[:, :2]
 
     pieces = []
     for one in lines:
-        of_line = [_Piece(one, points) for part in parts_of(one.shape) for points in [points_of(part)] if np.linalg.norm(points[-1] - points[0]) > 1.0]
-        pieces += of_line
-        if not of_line:
+        ways = [points for points in map(points_of, parts_of(one.shape))
+                if np.linalg.norm(points[-1] - points[0]) > 1.0]
+        pieces += [_Piece(one, points) for points in ways]
+        if not ways:
             extract.leave(one, "a runway of no length")
     drawn = [(piece, geometry("LineString", piece.points)) for piece in pieces]
     for one in areas:
@@ -150,13 +155,14 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     for one, ends, by_pieces in _joined(pieces, known):
         line = geometry("LineString", ends)
         one.shape = moved(line, to_degrees)
-        is_model = line.Length() < known["model_runway"] and any(model.Distance(line) <= MODEL_NEAR for model in models)
-        if is_model or line.Length() < known["shortest_runway"]:
-            extract.leave(one, "of a model airfield" if is_model else f"a runway shorter than {known['shortest_runway']:g} m")
-            continue
-        displaced = zip(("displaced_start", "displaced_end"), _displaced(ends, by_pieces, thresholds))
-        one.tags = {**one.tags, **{name: f"{away:.1f}" for name, away in displaced if away > 1.0}}
-        runways.append((one, line))
+        if line.Length() < known["model_runway"] and any(model.Distance(line) <= MODEL_NEAR for model in models):
+            extract.leave(one, "of a model airfield")
+        elif line.Length() < known["shortest_runway"]:
+            extract.leave(one, f"a runway shorter than {known['shortest_runway']:g} m")
+        else:
+            displaced = zip(("displaced_start", "displaced_end"), _displaced(ends, by_pieces, thresholds))
+            one.tags = {**one.tags, **{name: f"{away:.1f}" for name, away in displaced if away > 1.0}}
+            runways.append((one, line))
     if not runways:
         raise Error(f"{file}: holds no runway of {known['shortest_runway']:g} m or more")
     places = [moved(one.shape, to_local) for one in extract.aerodromes]
@@ -165,21 +171,23 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
         if box is not None and not one.shape.Intersects(box_of(box)):
             extract.leave(one, "outside the scene")
             continue
-        away, near = min(((place.Distance(line), number) for number, place in enumerate(places)), default=(math.inf, -1))
+        away, near = min(((place.Distance(line), i) for i, place in enumerate(places)), default=(math.inf, -1))
         if away <= NEAR_AERODROME:
             code = extract.aerodromes[near].tags.get("icao")
             key: Any = next(number for number, place in enumerate(extract.aerodromes)
                             if number == near or (code and place.tags.get("icao") == code))
         else:  # groups from the distances between runways
-            key = next((key for key, members in groups.items() if isinstance(key, str)
-                        and min(other.Distance(line) for _, other in members) <= ONE_AIRPORT), f"runway {one.tags.get('ref', '?')}")
+            close = (key for key, members in groups.items() if isinstance(key, str)
+                     and min(other.Distance(line) for _, other in members) <= ONE_AIRPORT)
+            key = next(close, f"runway {one.tags.get('ref', '?')}")
         groups[key].append((one, line))
     if not groups:
         raise Error(f"{file}: --bounds {' '.join(f'{x:g}' for x in box or ())} holds none of its runways")
     names = {key: _name_of(extract.aerodromes[key]) if isinstance(key, int) else key for key in groups}
     chosen = list(groups)
     if icao is not None:
-        chosen = [key for key in groups if isinstance(key, int) and extract.aerodromes[key].tags.get("icao", "").upper() == icao.upper()]
+        chosen = [key for key in groups if isinstance(key, int)
+                  and extract.aerodromes[key].tags.get("icao", "").upper() == icao.upper()]
         if not chosen:
             raise Error(f"{file}: holds no airport {icao} with a runway, but: {', '.join(names.values())}")
     elif len(groups) > 1 and box is None:

@@ -15,7 +15,7 @@ from .._ranks import Ranks
 from .._sensor import Sensor
 from .._terminal import bar, close_bar, table, tell, warn
 from .._weather import without_air
-from . import _pictures
+from . import _pictures, _sites_page
 from ._answer import percent
 from ._design_page import Designs, answers
 from ._inputs import PROPERTIES, read_plan, read_scenario
@@ -39,7 +39,7 @@ def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
 
 
 def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
-    """The ranks of a job, and the number of threads for each rank; ImportError if a job that draws has no Matplotlib."""
+    """The ranks of a job, and the threads of each; ImportError if a job that draws has no Matplotlib."""
     if draws:
         _pictures.gradient()
     ranks = Ranks(ends_job=True)
@@ -74,7 +74,8 @@ def sequence(options) -> None:
 def track(options) -> None:
     ranks, threads = _job(options)
     tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
-                        dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads, **_changes(options))
+                        dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads,
+                        **_changes(options))
     with _goes_on(options.out, "followed/*/*.json", "sequences followed"):
         card = tracks.write(options.out, ranks, None if ranks.rank else bar)
     if ranks.rank == 0:
@@ -109,15 +110,16 @@ def airport(options) -> None:
 
 def _plan(options) -> Dict[str, Any]:
     """The plan with the changes that the options give."""
-    return read_plan(options.plan, options.weather, getattr(options, "metar", None),
-                     **{part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting", "design")})
+    return read_plan(options.plan, options.weather, getattr(options, "metar", None), **{
+        part: dict(getattr(options, f"{part}_set", ())) for part in ("sensor", "coverage", "siting", "design")})
 
 
 def _say_before(plan) -> None:
     if "hours" in plan.plan:
         print(plan.plan["hours"])
     if plan.above != "ground":
-        below = "no surface is below the sensor" if plan.ground is None else f"the ground below the sensor is at z = {plan.ground:.4g} m"
+        below = ("no surface is below the sensor" if plan.ground is None else
+                 f"the ground below the sensor is at z = {plan.ground:.4g} m")
         warn(f"heights are above the scene's origin, and {below}")
 
 
@@ -130,7 +132,7 @@ def coverage(options) -> None:
             with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
                 count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
             row = plan.overall
-            tell(f"{folder}: {count} files; {plan.coverage.species or 'the target'} detected in one scan: "
+            tell(f"{folder}: {count} files; {plan.bird if any(plan.mix) else 'the target'} detected in one scan: "
                  f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
                  f"{', receiver' if plan.assumed else ''})")
 
@@ -141,25 +143,26 @@ def siting(options) -> None:
     if not ranks.rank:
         _say_before(plans[0])
     everywhere = [Sites(plan, options.out / "coverage", ranks, bar) for plan in plans]
-    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), only_run(options.out, ranks, goes_on=True, known=plans[0].decides):
+    with _goes_on(options.out, "coverage/*.npy", "candidates kept"), \
+            only_run(options.out, ranks, goes_on=True, known=plans[0].decides):
         for number, sites in enumerate(everywhere):
             changes = list(sites.look().changes())
             if not ranks.rank:
-                sites.write(options.out / sites.plan.name if number else options.out, changes)
+                _sites_page.write(sites, options.out / sites.plan.name if number else options.out, changes)
                 _say_sites(sites, changes)
 
 
 def _say_sites(sites, changes) -> None:
     name = sites.plan.name
     tell(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
-    print(f"obstacle limits: {sites.kept_surfaces}")
+    print(f"obstacle limits: {_sites_page.kept_surfaces(sites)}")
     for row in sites.gain():
         where = "), (".join(row["sites"].replace(" ", ", ").split(";, "))
         print(f"{row['sensors']} of {name}: {percent(row['value'], row['std_error'], sites.plan.count)} at ({where}) m")
     rows = sites.robustness(changes)
     for row in rows:
-        print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in {row['another winner']} of "
-              f"{row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
+        print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in "
+              f"{row['another winner']} of {row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
     if not rows:
         print("how sure the winner is was not computed, because the plan has too few draws")
 
@@ -176,28 +179,33 @@ def design(options) -> None:
         close_bar()
         refused = [one.refused for one in study.candidates if one.refused]
         if refused:
-            warn(f"{len(refused)} of {len(study.candidates)} designs are left out, because the sensor refuses them: {refused[0]}")
-        tell(*answers(study),
-             f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
+            warn(f"{len(refused)} of {len(study.candidates)} designs are left out, because the sensor refuses them: "
+                 f"{refused[0]}")
+        tell(*answers(study), f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 
 
 def reach(options) -> None:
     if options.out and options.out.suffix.lower() != ".csv":
         raise ValueError(f"{options.out}: is not the name of a table, expected one that ends in .csv")
-    rows: List[Tuple[Any, ...]] = [("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
+    rows: List[Tuple[Any, ...]] = [
+        ("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
     said, curve = [], []
     for name in options.sensor:
         sensor = Sensor(name).set(**dict(options.sensor_set))
         for species in options.species or ["herring gull"]:
-            found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather), required_detections=2, number_of_scans=3)
-            rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found), ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
+            found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather),
+                                        required_detections=2, number_of_scans=3)
+            rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found),
+                         ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
             said.append(ranges.sentence(name, species, sensor, found))
-            curve += [{"sensor": name, "species": species, "range": float(to), "one_scan": float(one), "one_scan_std_error": float(error), "two_of_three": float(two)}
-                      for to, one, error, two in zip(found.ranges, found.one_scan, found.error, found.several_scans)]
+            columns = {"range": found.ranges, "one_scan": found.one_scan, "one_scan_std_error": found.error,
+                       "two_of_three": found.several_scans}
+            curve += [{"sensor": name, "species": species, **dict(zip(columns, map(float, row)))}
+                      for row in zip(*columns.values())]
     table(rows)
     print(*said, sep="\n")
-    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. In brackets: the interval that the fit "
-          "of the receiver to its data sheet leaves open.")
+    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "
+          "In brackets: the interval that the fit of the receiver to its data sheet leaves open.")
     if options.out:
         write_table(options.out, curve)
         print(f"{options.out}: the shares by range")
@@ -206,5 +214,4 @@ def reach(options) -> None:
 def report(options) -> None:
     report = Report(_plan(options), options.threads, bar)
     _say_before(report.plans[0])
-    folder = report.write(options.out)
-    tell(f"{options.out}: the report; {folder}: its tables and pictures")
+    tell(f"{options.out}: the report; {report.write(options.out)}: its tables and pictures")

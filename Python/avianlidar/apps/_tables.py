@@ -22,7 +22,8 @@ from ._geojson import to_geodetic
 
 def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
     """Rows of CSV by the names of the columns. @param columns required @param expected what the file should be"""
-    rows = csv.DictReader(io.StringIO(read_regular(file).decode(), newline=""))
+    text = io.StringIO(read_regular(file).decode("utf-8-sig"), newline="")
+    rows = csv.DictReader(text, skipinitialspace=True)
     missing = [name for name in columns if name not in (rows.fieldnames or ())]
     if missing:
         raise Error(f"{file}: has no column {missing[0]}, expected {expected}")
