@@ -203,16 +203,16 @@ class Files(unittest.TestCase):
 
     def test_observers_are_added_once_for_all_scans(self):
         """VTK looks through all observers that there ever were when one is removed."""
-        added, observe = [], _pipeline.Updates._observe
+        added, enter = [], _pipeline.Updates.__enter__
 
-        def count(listener, caller, event, heard):
-            added.append(event)
-            observe(listener, caller, event, heard)
+        def count(updates):
+            added.append(updates)
+            return enter(updates)
         numbers = []
         for scans in (1, 2):
             sequence = al.Sequence(self.file, threads=1, number_of_scans=scans, birds=[])
             added.clear()
-            with unittest.mock.patch.object(_pipeline.Updates, "_observe", count):
+            with unittest.mock.patch.object(_pipeline.Updates, "__enter__", count):
                 sequence.write(emptied("sequence", "observers"))
             numbers.append(len(added))
         self.assertGreater(numbers[0], 0)

@@ -12,6 +12,7 @@ import unittest.mock
 import warnings
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.path import Path
 
 import avianlidar as al
@@ -73,9 +74,10 @@ class Candidates(unittest.TestCase):
             def draw(axes, outline=outline, shown=shown):
                 axes.set(xlim=(-5, 5), ylim=(-5, 5))
                 _pictures.draw_outline(axes, outline)
-                axes.figure.canvas.draw()
+                canvas = FigureCanvasAgg(axes.figure)
+                canvas.draw()
                 places = axes.transData.transform([(0, 0), (2.5, 0.3), (4.6, 0.3)]).astype(int)
-                shown.extend(np.asarray(axes.figure.canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
+                shown.extend(np.asarray(canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
             _pictures.drawn((4, 4), draw)
             np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 

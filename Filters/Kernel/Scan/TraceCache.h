@@ -5,7 +5,8 @@
  *
  * Source: none.
  * Valid: hits belong to one traceKey(), and lit beams to one lightKey(). Echoes do not depend on
- * the cache. An aborted run leaves the cache empty. Test: TestScanAgain.cxx, TestScanSweep.cxx.
+ * the cache. An aborted run leaves the cache empty.
+ * Test: TestScanAgain.cxx, TestScanSweep.cxx.
  */
 #ifndef avianlidar_TraceCache_h
 #define avianlidar_TraceCache_h
