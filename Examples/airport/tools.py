@@ -55,10 +55,14 @@ def file(text):
 def add_arguments(parser, out):
     """Adds the arguments of all scans."""
     parser.add_argument("--rays", type=number(int, 1, 1000000), default=100, help="rays per beam, default 100")
-    parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0, help="seed of the random numbers, default 0")
-    parser.add_argument("--threads", type=number(int, 0, 4096), default=0, help="number of threads, default 0: one for each core")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out), help=f"folder for results, default {out}")
-    parser.add_argument("--paper", action="store_true", help="use the method and the tree of the paper (presets Paper) with 100 rays instead of --rays")
+    parser.add_argument("--seed", type=number(int, -2**31, 2**31 - 1), default=0,
+                        help="seed of the random numbers, default 0")
+    parser.add_argument("--threads", type=number(int, 0, 4096), default=0,
+                        help="number of threads, default 0: one for each core")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(out),
+                        help=f"folder for results, default {out}")
+    parser.add_argument("--paper", action="store_true",
+                        help="use the method and the tree of the paper (presets Paper) with 100 rays instead of --rays")
     parser.add_argument("--no-pictures", action="store_true", help="write only files and tables")
 
 
@@ -98,11 +102,13 @@ def strings(data, name):
 
 def counts(tree, echoes, lidar):
     """The rows of a scan's table with counts and shares."""
-    status = vtk_to_numpy(lidar.GetOutput(1).GetPointData().GetArray("status"))
-    energy, secondary = (vtk_to_numpy(echoes.GetPointData().GetArray(name)) for name in ("return_energy", "secondary_share"))
+    beams, points = lidar.GetOutput(1), echoes.GetPointData()
+    status = vtk_to_numpy(beams.GetPointData().GetArray("status"))
+    rays = int(beams.GetFieldData().GetArray("rays_per_beam").GetValue(0))
+    energy, secondary = (vtk_to_numpy(points.GetArray(name)) for name in ("return_energy", "secondary_share"))
     return [("triangles", tree.GetOutput().GetNumberOfPolys()), ("beams", len(status)),
             *((f"- {name}", int((status == i).sum())) for i, name in enumerate(STATUS)),
-            ("rays emitted", len(status) * int(lidar.GetOutput(1).GetFieldData().GetArray("rays_per_beam").GetValue(0))), ("rays traced", int(lidar.GetNumberOfTracedRays())),
+            ("rays emitted", len(status) * rays), ("rays traced", int(lidar.GetNumberOfTracedRays())),
             ("echoes", echoes.GetNumberOfPoints()),
             ("secondary share of the energy", f"{100 * (secondary @ energy) / max(energy.sum(), 1e-300):.2f} %"),
             ("ghosts (mostly secondary)", int((secondary > 0.5).sum()))]
@@ -172,7 +178,8 @@ def plan(axes, scene, colour="black"):
         shape = shape if kind in PAVED else edges(shape, 20 if kind else 40)
         if shape.GetNumberOfCells():
             cells = (shape.GetPolys() if kind in PAVED else shape.GetLines()).GetConnectivityArray()
-            corners = vtk_to_numpy(shape.GetPoints().GetData())[vtk_to_numpy(cells).reshape(-1, 3 if kind in PAVED else 2), :2]
+            cells = vtk_to_numpy(cells).reshape(-1, 3 if kind in PAVED else 2)
+            corners = vtk_to_numpy(shape.GetPoints().GetData())[cells, :2]
             axes.add_collection(PolyCollection(corners, facecolors=PAVED[kind], edgecolors="face") if kind in PAVED else
                                 LineCollection(corners, colors=colour, linewidths=0.7))
 
@@ -189,7 +196,8 @@ def extent(scene, echoes, margin=0.03):
     lidar, gate = np.array(echoes.fields["position"]), echoes.fields["range_gate"]
     kinds = strings(scene, "object_classes") or [""] * scene.GetNumberOfBlocks()
     blocks = [scene.GetBlock(i) for i, kind in enumerate(kinds) if kind != "ground"]
-    points = np.vstack([lidar[None], *(vtk_to_numpy(one.GetPoints().GetData()) for one in blocks if one and one.GetNumberOfPoints())])
+    clouds = [one.GetPoints().GetData() for one in blocks if one and one.GetNumberOfPoints()]
+    points = np.vstack([lidar, *map(vtk_to_numpy, clouds)])
     near = (abs(points[:, :2] - lidar[:2]) <= gate).all(axis=1)
     return around(np.vstack([points[near], echoes.points]), margin)
 
@@ -199,8 +207,8 @@ def from_above(axes, scene, echoes, limits, title, size=6):
     plan(axes, scene)
     order = np.argsort(echoes["energy"])
     low, high = (1e6 * echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
-    dots = axes.scatter(*echoes.points[order, :2].T, s=size, c=1e6 * echoes["energy"][order], cmap=al.hue_colors(), vmin=low, vmax=high,
-                        linewidths=0, zorder=3)
+    dots = axes.scatter(*echoes.points[order, :2].T, s=size, c=1e6 * echoes["energy"][order], cmap=al.hue_colors(),
+                        vmin=low, vmax=high, linewidths=0, zorder=3)
     axes.plot(*echoes.fields["position"][:2], "r+", markersize=12, markeredgewidth=2.5, zorder=4)
     (west, east), (south, north) = limits
     shown = ((echoes.points[:, :2] >= (west, south)) & (echoes.points[:, :2] <= (east, north))).all(axis=1).sum()

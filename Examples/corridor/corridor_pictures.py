@@ -48,9 +48,10 @@ class View:
         return actor
 
     def dots(self, points, colours, diameters):
-        """Draws balls at points (m). @param colours rows of 3 bytes @param diameters one diameter, or one for each point, m"""
+        """Draws balls at points (m). @param colours rows of 3 bytes @param diameters one, or one for each point, m"""
         data, ball, mapper = vertices(points), vtkSphereSource(), vtkGlyph3DMapper()
-        for name, values in (("rgb", np.ascontiguousarray(colours, np.uint8)), ("size", np.broadcast_to(diameters, len(points)).astype(float))):
+        sizes = np.broadcast_to(diameters, len(points)).astype(float)
+        for name, values in (("rgb", np.asarray(colours, np.uint8)), ("size", sizes)):
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
             data.GetPointData().AddArray(array)
@@ -77,7 +78,8 @@ class View:
         grab.ReadFrontBufferOff()
         grab.Update()
         width, height, _ = grab.GetOutput().GetDimensions()
-        pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
+        pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)
+        pixels = pixels[::-1, :, :3].copy()
         self.window.Finalize()
         return pixels
 

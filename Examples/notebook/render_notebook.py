@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the notebook airport.ipynb, and writes the notebook with results as airport.html and each picture as <cell>.png.
 
-    PYTHONPATH=$(cat build/paraview/python-path) /usr/bin/python3 Examples/notebook/render_notebook.py --out build/notebook
+    export PYTHONPATH=$(cat build/paraview/python-path)
+    /usr/bin/python3 Examples/notebook/render_notebook.py --out build/notebook
 
 The script needs python3-nbconvert and python3-ipykernel. A display or a network is not necessary.
 """
@@ -46,7 +47,8 @@ def main(argv=None):
                         help="folder of the results, default build/notebook")
     out = parser.parse_args(argv).out
     notebook = execute(HERE / "airport.ipynb")
-    exporter = HTMLExporter(mathjax_url="", require_js_url="", jquery_url="")  # empty addresses, so that the page does not need a network
+    # Empty addresses, so that the page does not need a network.
+    exporter = HTMLExporter(mathjax_url="", require_js_url="", jquery_url="")
     page, _ = exporter.from_notebook_node(notebook, resources={"metadata": {"name": "airport"}})
     out.mkdir(parents=True, exist_ok=True)
     (out / "airport.html").write_text(page, encoding="utf-8")

@@ -4,17 +4,19 @@
 
     clutter.py build/sequences
 
-A point counts as moving if the filter does not call the point clutter. The script prints a Markdown table. For each subset
-and each set of learned scans, the table has the number of points, intersection over union (IoU), precision and recall, for
-birds and for all moving objects. The score of birds leaves out points of other moving objects. The sets of learned scans are
+A point counts as moving if the filter does not call the point clutter. The script prints a Markdown table. For each
+subset and each set of learned scans, the table has the number of points, intersection over union (IoU), precision and
+recall, for birds and for all moving objects. The score of birds leaves out points of other moving objects. The sets of
+learned scans are
 
 * the scans before: all sequences are one stream of one lidar;
 * the same without a score of the first sequence;
 * the scans before in the same sequence: the filter begins anew with each sequence;
 * all scans of the sequence: the filter first learns all scans with equal weight, and then only the table decides.
 
---set Window=100 changes a property of the filter. --speed measures the processor time on random scans of 10,000 and 100,000
-points instead. The points have a jitter of 0.02 m, so that points of walls keep their cells, or of 1 m (standard deviation).
+--set Window=100 changes a property of the filter. --speed measures the processor time on random scans of 10,000 and
+100,000 points instead. The points have a jitter of 0.02 m, so that points of walls keep their cells, or of 1 m
+(standard deviation).
 """
 import argparse
 import itertools
@@ -69,7 +71,8 @@ def counts(file, called):
     for subset in range(len(SUBSETS)):
         for which, (true, among) in enumerate(((bird, ~other), (bird | other, True))):
             here = (subsets == subset) & among
-            result[subset, which] = [np.count_nonzero(here & a) for a in (called & true, called & ~true, ~called & true)]
+            parts = called & true, called & ~true, ~called & true
+            result[subset, which] = [np.count_nonzero(here & part) for part in parts]
     return result
 
 
@@ -110,24 +113,26 @@ def table(folder, settings):
     """The scores of a set of sequences as a Markdown table."""
     names = sorted(path for path in (folder / "sequences").iterdir() if not path.name.startswith("."))
     sequences = [sorted((name / "velodyne").glob("*.bin")) for name in names]
-    lines = ["| known | subset | points of birds | IoU | precision | recall | points of all that moves | IoU | precision | recall "
-             "| false points a scan |", "|---|---|" + "---:|" * 9]
+    lines = ["| known | subset | points of birds | IoU | precision | recall "
+             "| points of all that moves | IoU | precision | recall | false points a scan |", "|---|---|" + "---:|" * 9]
     for known, found in measure(sequences, settings):
         scans = sum(map(len, found))
         total = sum((sum(each) for each in found), np.zeros((len(SUBSETS), 2, 3), int))
         for subset, (birds, everything) in [*zip(SUBSETS, total), ("all", total.sum(axis=0))]:
-            lines.append("| " + " | ".join([known, subset, *scores(birds), *scores(everything), f"{everything[1] / scans:.1f}"])
-                         + " |")
+            cells = [known, subset, *scores(birds), *scores(everything), f"{everything[1] / scans:.1f}"]
+            lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
 def speed():
-    """Yields a table of processor time per scan, ms, after 300 scans of random walls with 960 columns and 80 channels."""
+    """Yields a table of processor time per scan, ms, after 300 scans of random walls of 960 columns and 80 channels."""
     random = np.random.default_rng(1)
     yield "| points | jitter, m | cells kept | ms a scan |\n|---:|---:|---:|---:|"
     for points, jitter in itertools.product((10000, 100000), (0.02, 1.0)):
-        azimuth, elevation = np.radians(random.integers(0, 960, points) * 0.375), np.radians(random.integers(-40, 40, points) * 0.375)
-        away = np.stack([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], axis=1)
+        azimuth = np.radians(random.integers(0, 960, points) * 0.375)
+        elevation = np.radians(random.integers(-40, 40, points) * 0.375)
+        flat = np.cos(elevation)
+        away = np.stack([np.sin(azimuth) * flat, np.cos(azimuth) * flat, np.sin(elevation)], axis=1)
         distance = random.uniform(5, 300, points)
         algorithm, times = vtkAvianLidarClutterFilter(), []
         for _ in range(300):
@@ -145,7 +150,8 @@ def speed():
 def main(argv=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("folder", type=pathlib.Path, nargs="?", help="folder that `avianlidar sequence` has written")
-    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="properties of the clutter filter, as in C++")
+    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE",
+                        help="properties of the clutter filter, as in C++")
     parser.add_argument("--speed", action="store_true", help="measure time instead")
     options = parser.parse_args(argv)
     if options.speed:

@@ -6,11 +6,11 @@
     sweep.py --attenuation 3.5e-5 8.8e-5 --position 0 0 3 --position 200 0 3 --out build/sweep
 
 Each rank makes whole scans (without pvbatch there is one rank), so ranks do not wait for each other. Each scan writes
-<name>.vtp and <name>.json. The .json file has every parameter, the version and checksums. A file appears only when it is
-whole, and the .json file only after its .vtp file. A sweep that was stopped therefore continues if it is started again with
-the same arguments. A second sweep in the same folder at the same time is an error. At the end manifest.json lists all
-scans. A scan that fails does not write a file: the sweep makes the other scans, and ends with the exit code 1 and without
-a manifest.
+<name>.vtp and <name>.json. The .json file has every parameter, the version and checksums. A file appears only when it
+is whole, and the .json file only after its .vtp file. A sweep that was stopped therefore continues if it is started
+again with the same arguments. A second sweep in the same folder at the same time is an error. At the end manifest.json
+lists all scans. A scan that fails does not write a file: the sweep makes the other scans, and ends with the exit code 1
+and without a manifest.
 
 PYTHONPATH must contain the folder of the Python package (`cat build/paraview/python-path`).
 """
@@ -43,7 +43,8 @@ def arguments(argv=None):
                         default=["Airport16"], help="sensors")
     parser.add_argument("--position", nargs=3, type=tools.finite, action="append", metavar=("X", "Y", "Z"),
                         help="position of the sensor, m; may be given many times; default: 0 0 3")
-    parser.add_argument("--seed", nargs="+", type=tools.number(int, -2**31, 2**31 - 1), default=[0], help="seeds, default 0")
+    parser.add_argument("--seed", nargs="+", type=tools.number(int, -2**31, 2**31 - 1), default=[0],
+                        help="seeds, default 0")
     parser.add_argument("--attenuation", nargs="+", type=tools.above_zero, default=[3.5e-5], metavar="A",
                         help="attenuation coefficients, 1/m; default 3.5e-5")
     parser.add_argument("--rays", type=tools.number(int, 1, 1000000), default=100, help="rays per beam, default 100")
@@ -58,7 +59,8 @@ def arguments(argv=None):
 
 def values_of(fields):
     """Field data with one value each: the properties of sensor and filter."""
-    return {name: value[0] if isinstance(value, list) else value for name, value in fields.items() if np.size(value) == 1}
+    single = {name: value for name, value in fields.items() if np.size(value) == 1}
+    return {name: value[0] if isinstance(value, list) else value for name, value in single.items()}
 
 
 def plan(options, scene_digest):
@@ -110,7 +112,8 @@ def shares(scans, todo, ranks):
 
 
 def sweep(options, ranks):
-    with only_run(options.out, ranks, known=lambda: sorted((name, value) for name, value in vars(options).items() if name != "threads")):
+    wanted = sorted((name, value) for name, value in vars(options).items() if name != "threads")
+    with only_run(options.out, ranks, known=lambda: wanted):
         make(options, ranks)
 
 
@@ -124,7 +127,8 @@ def make(options, ranks):
     if ranks.rank == 0:
         print(f"{len(scans)} scans, {len(scans) - len(todo)} of them done already, {ranks.size} ranks", flush=True)
     for (preset, position, seed), names in shares(scans, todo, ranks.size)[ranks.rank]:
-        scan = al.Scan(scene, al.Sensor(preset, position=position), seed=seed, rays_per_beam=options.rays, number_of_threads=options.threads)
+        scan = al.Scan(scene, al.Sensor(preset, position=position), seed=seed, rays_per_beam=options.rays,
+                       number_of_threads=options.threads)
         for name in names:
             scan.attenuation_coefficient = scans[name]["attenuation_coefficient"]
             try:

@@ -34,7 +34,8 @@ def _write(writer, file: str) -> None:
 
 
 def vtp(surface) -> bytes:
-    """The bytes of a file of vtkPolyData. VTK makes only the text, because VTK's writer ends the process when a disk is full."""
+    """The bytes of a file of vtkPolyData. VTK makes only the text, because VTK's writer ends the process when a disk is
+    full."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
     writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()  # VTK with Debian's libexpat does not read Appended data back
@@ -73,7 +74,8 @@ def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
 
 
 def _write_csv(cloud, name: str) -> None:
-    """Writes one row per point. Names and units are joined as in vtkAvianLidarUnitNames, and quoted according to RFC 4180."""
+    """Writes one row per point. Names and units are joined as in vtkAvianLidarUnitNames, and quoted according to
+    RFC 4180."""
     columns = list(columns_of(cloud))
     names = [_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns]
     table = np.rec.fromarrays([values for _, __, values in columns])
@@ -94,7 +96,8 @@ def check_suffix(file, more: Sequence[str] = ()) -> None:
 
 
 def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> None:
-    """Raises an error for a file that could not be written, before the work starts. @param others files that must not be overwritten"""
+    """Raises an error for a file that could not be written, before the work starts.
+    @param others files that must not be overwritten"""
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
     if path.is_dir():
