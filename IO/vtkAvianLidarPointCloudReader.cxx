@@ -179,7 +179,6 @@ int vtkAvianLidarPointCloudReader::RequestData(
         return;
       }
       vtkAvianLidarRequire(this->Internals->Problem);
-      vtkAvianLidarAbort::StopIfWanted(this);
       fields::Within(this->FileName, NoMemory,
         [&]
         {

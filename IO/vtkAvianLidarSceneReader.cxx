@@ -178,7 +178,6 @@ int vtkAvianLidarSceneReader::RequestData(
       avianlidar::failIf(!this->FileName || !*this->FileName,
         "FileName is not set, expected the name of a .lidarscene.json file");
       const bool isOther = vtkAvianLidarCloudFields::IsOtherPiece(info);
-      vtkAvianLidarAbort::StopIfWanted(this);
       try
       {
         const auto progress = vtkAvianLidarAbort::KeepGoing(this);

@@ -308,7 +308,6 @@ int vtkAvianLidarSequenceReader::RequestData(
       {
         return;
       }
-      vtkAvianLidarAbort::StopIfWanted(this);
       vtkAvianLidarCloudFields::Within(this->FileName, "there is not enough memory for a scan",
         [&]
         {

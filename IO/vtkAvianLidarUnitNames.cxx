@@ -73,7 +73,6 @@ int vtkAvianLidarUnitNames::RequestData(
     {
       vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
       vtkDataObject* output = vtkDataObject::GetData(outputVector);
-      vtkAvianLidarAbort::StopIfWanted(this);
       output->ShallowCopy(input);
       for (const int kind : { vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::ROW })
       {
