@@ -32,7 +32,7 @@ def check(sensor, weather):
         raise ValueError(f"the sensor is {sensor!r}, expected the source of a sensor, such as AvianLidarSearch905")
     # Of a new proxy, because prototypes in ParaView's window have the values of the beam source.
     aperture = servermanager.ProxyManager().NewProxy("sources", sensor).GetProperty("ReceiverAperture").GetElement(0)
-    if "sends_light_back" in weathers[weather] and not aperture > 0:
+    if weathers[weather].get("sends_light_back") and not aperture > 0:
         raise ValueError(f"{weather} sends light back and needs a sensor with a Receiver Aperture, such as Search 905. "
                          f"{prototype.GetXMLLabel()} does not have a Receiver Aperture")
     return weathers[weather]["properties"]

@@ -102,7 +102,7 @@ def only_run(folder, ranks=None, goes_on: bool = True, known: Callable[[], Any] 
             try:
                 with signals_kept():  # so that new folders are recorded even at Ctrl+C
                     folder.mkdir(parents=True, exist_ok=True)
-                    for flags in (NEW, 0):
+                    for flags in 3 * (NEW, 0):  # the run before may end just now
                         with contextlib.suppress(FileExistsError, FileNotFoundError, BlockingIOError):
                             file = file or _hold(lock, flags)
             except (Error, OSError) as error:  # the other ranks must hear of the error before it is raised

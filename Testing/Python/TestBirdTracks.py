@@ -244,7 +244,7 @@ class Files(unittest.TestCase):
         (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
         (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
         for inputs, settings, words in (
-                ((empty,), {}, "no manifest.json"), ((cut,), {}, "cut.*/01: its files differ"), ((changed,), {}, "its files differ from the sha256"),
+                ((empty,), {}, "no manifest.json"), ((cut,), {}, "truth.csv: is missing"), ((changed,), {}, "its files differ from the sha256"),
                 ((other,), {}, "another sensor"), ((self.made, self.made), {}, "twice"),
                 ((self.made,), {"learning_scans": self.SCANS}, "more than the"),
                 ((self.made,), {"runways": self.home / "none.geojson"}, "holds no runway"), ((self.made,), {"tracker": {"hits": 3}}, "hits"),

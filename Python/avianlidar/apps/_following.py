@@ -24,10 +24,11 @@ from ._labels import FIRST_BIRD, FIRST_OBJECT
 from ._geojson import read_runways
 from ._regions import APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway
 from ._inputs import read_manifest, read_scenario
-from ._sequence import NO_BIT, _short, content_of
+from ._sequence import DONE, _short, content_of
 from ._tables import read_table
 
 VOLUMES = ("strip", "glide path")
+NO_BIT = ("number_of_threads", "controller")  # properties that change no result
 # Columns of truth.csv.
 NEEDED = ("scan", "bird", "species", "status", "time_s", "x_m", "y_m", "z_m", "range_m", "visibility_m", "rain_mm_h")
 ORIGINS = ("bird", "second track of a bird", "vehicle", "surface", "false alarm", "air")  # origins of a track
@@ -131,10 +132,13 @@ def origin_of(labels: np.ndarray) -> np.ndarray:
 def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
     """For each scan, by its number in the whole set, the rows of the birds that are present, with numbers parsed."""
     found: Dict[int, List[Dict[str, Any]]] = collections.defaultdict(list)
-    for row in read_table(file, NEEDED, "the truth of a sequence"):
-        if row["x_m"]:
+    for number, row in enumerate(read_table(file, NEEDED, "the truth of a sequence"), 2):
+        if not row["x_m"]:
+            continue
+        with naming(f"{file}: line {number}"):
+            rain = float(row["rain_mm_h"] or 0)
             weather = [f"visibility {float(row['visibility_m']):g} m"] if row["visibility_m"] else []
-            weather += [f"rain {float(row['rain_mm_h']):g} mm/h"] if float(row["rain_mm_h"]) > 0.0 else []
+            weather += [f"rain {rain:g} mm/h"] if rain > 0.0 else []
             found[int(row["scan"])].append({
                 "bird": int(row["bird"]), "species": row["species"], "in": row["status"] not in ("absent", "outside"),
                 "time": float(row["time_s"]), "place": [float(row[name]) for name in ("x_m", "y_m", "z_m")],
@@ -233,7 +237,7 @@ class Input:
         known = read_manifest(folder, ", or a scenario")
         self.scenario, self.numbers = read_scenario(self.manifest), sorted(known["sequences"])
         self.assumed = list(known.get("assumed", ()))
-        self.content = {number: content_of(folder / "sequences" / number) for number in self.numbers}
+        self.content = {number: self._whole(number) for number in self.numbers}
         first = self.content[self.numbers[0]]["inputs"]
         with naming(f"{self.manifest}: sensor"):
             self.sensor = Sensor(**{
@@ -245,6 +249,15 @@ class Input:
             if content["inputs"].get("sensor.beams") != beams:
                 raise Error(f"{folder / 'sequences' / number}: has another sensor than {self.manifest}, "
                             "expected sequences of one")
+
+    def _whole(self, number: str) -> Dict[str, Any]:
+        """The content of DONE for a sequence; `Error` unless all files are those with which the sequence was made."""
+        home = self.folder / "sequences" / number
+        for name in ("truth.csv", DONE):
+            if not (home / name).is_file():
+                raise Error(f"{home / name}: is missing, expected a sequence with its truth, "
+                            "as `avianlidar sequence` makes it")
+        return content_of(home)
 
     @functools.cached_property
     def scene(self) -> Scene:

@@ -149,7 +149,8 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
             changed[name] = new, load_json(name)
         item["footprints"], shapes = str(changed[name][0]), changed[name][1]
         features = shapes.get("features") if isinstance(shapes, dict) else None
-        rows = [feature.get("properties") for feature in features or () if isinstance(feature, dict)]
+        features = features if isinstance(features, list) else []
+        rows = [feature.get("properties") for feature in features if isinstance(feature, dict)]
         for properties in (row for row in rows if isinstance(row, dict)):
             value = _height(properties.get(height))
             if value and (id(properties), height) not in moved:

@@ -136,7 +136,8 @@ def write_areas(file, geotiff, description: str) -> None:
 
 def height_name(height: float) -> str:
     """The height in names of files: as short as possible, and different for each height."""
-    return f"{np.format_float_positional(height, trim='-')}m"
+    short = f"{height:g}"
+    return f"{short if float(short) == height else repr(float(height))}m"
 
 
 def notes_of(plan: Plan) -> Dict[str, str]:

@@ -39,14 +39,19 @@ BYTES_OF_PLACE = 200  # memory for a drawn place and its results, bytes
 class Plan:
     """The question that a plan of coverage asks.
 
-    name           name of the sensor     heights  heights of the maps, m scene, sensor  loaded from files      runways
-    in the scene's coordinates coverage       Coverage for the maps  regions  Coverage of places drawn in strips and
-    approaches, or without runways on the maps members, ends  numbers of the places by kind of region (strips,
-    approaches), and by single strip and approach mix            share of each species, with the sum 1; maps of reasons
-    are for the first species, which has the greatest share air            words of the plan's weather year
-    weathers by which sites are ranked, with their shares of the hours; empty if the plan gives no year asked
-    least and greatest height of the places, m; None if the plan has no `heights`, so that each region has its own
-    heights ground         z of the ground below the sensor, m; None without a ground """
+    name           name of the sensor     heights  heights of the maps, m
+    scene, sensor  loaded from files      runways  in the scene's coordinates
+    coverage       Coverage for the maps
+    regions        Coverage of places drawn in strips and approaches, or without runways on the maps
+    members, ends  numbers of the places by kind of region (strips, approaches), and by single strip and approach
+    mix            share of each species, with the sum 1; maps of reasons are for the first species, which has the
+                   greatest share
+    air            words of the plan's weather
+    year           weathers by which sites are ranked, with their shares of the hours; empty if the plan gives no year
+    asked          least and greatest height of the places, m; None if the plan has no `heights`, so that each region
+                   has its own heights
+    ground         z of the ground below the sensor, m; None without a ground
+    """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
         """Checks all parts. `Error` names the plan's file and the member. @param member of the sensor"""

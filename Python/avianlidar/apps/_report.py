@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import pathlib
-import re
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
@@ -342,8 +342,7 @@ class Report:
         known = field_values(first.regions.data)
         made = ("file", "hours", "options", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
-        # the plan without folders of this computer
-        text = re.sub(r'"/(?:[^"\\]|\\.)*/', '"', json.dumps(asked, indent=1, ensure_ascii=False))
+        text = json.dumps(_shown(asked), indent=1, ensure_ascii=False)
         return render(
             "report.html.jinja",
             filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell,
@@ -372,3 +371,12 @@ def _lines(value: Any) -> List[str]:
     """A comment, which may be any value, in lines."""
     parts = value if isinstance(value, list) else [] if value is None else [value]
     return [part if isinstance(part, str) else json.dumps(part, ensure_ascii=False) for part in parts]
+
+
+def _shown(value: Any) -> Any:
+    """A plan without folders of this computer."""
+    if isinstance(value, dict):
+        return {name: _shown(part) for name, part in value.items()}
+    if isinstance(value, list):
+        return [_shown(part) for part in value]
+    return os.path.basename(value) if isinstance(value, str) and os.path.isabs(value) else value

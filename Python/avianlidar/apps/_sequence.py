@@ -76,7 +76,7 @@ class Sequence(Simulation):
                 (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
                 (folder / "boxes" / f"{name}.txt").write_text(
                     boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers), encoding="utf-8")
-                table += self.truth(k, species)
+                table += self._truth(k, species)
                 classes.update((labels & 0xffff).tolist())
                 if progress:
                     progress(number, k - scans.start + 1, len(scans))
@@ -222,7 +222,8 @@ def _difference(before: Any, now: Dict[str, str]) -> str:
 def content_of(folder: pathlib.Path) -> Dict[str, Any]:
     """The content of DONE; `Error` unless all files are those with which the sequence was made."""
     content = load_json(folder / DONE)
-    if not isinstance(content, dict) or content.get("sha256") != _digest(folder):
+    if not isinstance(content, dict) or not isinstance(content.get("inputs"), dict) or \
+            content.get("sha256") != _digest(folder):
         raise Error(f"{folder}: its files differ from the sha256 in its {DONE}: "
                     f"another program has changed, added or removed files. {_AGAIN}")
     return content

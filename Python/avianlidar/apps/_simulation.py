@@ -187,13 +187,16 @@ class Simulation:
                 raise Error(f"{self.file}: objects[{place}]: is under way from {first:g} s for {times[-1]:g} s, "
                             f"expected at most {LONGEST:g} s")
             most = FIRST_BIRD - FIRST_OBJECT
-            if not every * (most - len(blocks)) >= times[-1] + end - begin:
-                raise Error(f"{self.file}: objects[{place}].every: "
-                            f"more than {most} objects would be under way in one sequence")
+            too_many = Error(f"{self.file}: objects[{place}].every: "
+                             f"more than {most} objects would be under way in one sequence")
+            if every * most < times[-1] + end - begin:
+                raise too_many
             start = first
             if math.isfinite(every) and begin - times[-1] > first:
                 start = first + every * math.ceil((begin - times[-1] - first) / every)
             while start < end:
+                if len(blocks) == most:
+                    raise too_many
                 with naming(f"{self.file}: objects[{place}]"):
                     blocks.append(self._under_way(thing, route, legs, start + times, FIRST_OBJECT + len(blocks)))
                 start += every
@@ -238,8 +241,12 @@ class Simulation:
                     self.clutter = Clutter(self._still, self.near)
                 yield k, self.scan, species
 
-    def truth(self, k: int, species: Dict[int, str]) -> List[Dict[str, Any]]:
-        """A row for each bird, with the values of `TRUTH` by name, for the current state of the scan."""
+    def truth(self, k: int, species: Dict[int, str]) -> List[List[Any]]:
+        """A row of `TRUTH` for each bird, for the current state of the scan."""
+        return [[*row.values()] for row in self._truth(k, species)]
+
+    def _truth(self, k: int, species: Dict[int, str]) -> List[Dict[str, Any]]:
+        """The rows of `truth`, with the names of the columns."""
         weather = {"visibility_m": f"{self.scan.visibility:g}" if self.scan.visibility > 0.0 else "",
                    "rain_mm_h": f"{self.scan.rain_rate:g}"}
         rows: Dict[int, Dict[str, Any]] = {

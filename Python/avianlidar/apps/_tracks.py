@@ -117,7 +117,7 @@ class BirdTracks:
             done, total = 0, sum(of.content[number]["scans"] for of, _, _, number in jobs)
             for of, chain, runways, number in jobs:
                 file, identity = _file(out, of, number), self._identity(of, number, chain, runways)
-                if not file.exists() or load_json(file).get("identity") != identity:
+                if not _is_of(file, identity):
                     found = self._follow(of, number, chain, runways,
                                          lambda scans: step("scans followed", done + scans, total))
                     file.parent.mkdir(parents=True, exist_ok=True)
@@ -149,14 +149,24 @@ class BirdTracks:
                         f"expected more than the {self.learning} scans from which only clutter is learned")
         truth, scans = read_truth(home / "truth.csv"), []
         for k, (scan, live) in enumerate(chain.follow(of.scans(number))):
-            scans.append((scan.number, truth.get(scan.number, []), live, origin_of(scan.labels)))
+            if k >= self.learning:
+                scans.append((scan.number, truth.get(scan.number, []), live, origin_of(scan.labels).astype(np.uint8)))
             step(k + 1)
         shown = {"scan": scan.number, "points": np.round(scan.placed, 1).tolist(), "origins": scans[-1][-1].tolist(),
                  "clutter": live.clutter.astype(int).tolist()}
-        return {**score(scans[self.learning:], self.cutoff, self.order, runways),
+        return {**score(scans, self.cutoff, self.order, runways),
                 "seconds": (count - self.learning) / of.sensor.rotation_rate, "shown": shown}
 
 
 def _file(out: pathlib.Path, of: Input, number: str) -> pathlib.Path:
     """The results of a sequence."""
     return out / FOLLOWED / of.name / f"{number}.json"
+
+
+def _is_of(file: pathlib.Path, identity: str) -> bool:
+    """Whether a file holds the results of these inputs and settings."""
+    try:
+        known = load_json(file)
+    except Error:  # also for a missing file
+        return False
+    return isinstance(known, dict) and known.get("identity") == identity and "birds" in known
