@@ -7,6 +7,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanArrays.h"

@@ -6,7 +6,7 @@
 #include "ScanPattern.h"
 #include "ValueError.h"
 #include "vtkAvianLidarBirds.h"
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
 #include "vtkObjectFactory.h"

@@ -310,16 +310,25 @@ int vtkAvianLidarCloudComparison::RequestData(
       this->DensityAwareChamferDistance =
         0.5 * (directions[0].DensityAware + directions[1].DensityAware);
 
-      for (int port = 0; port < Ports; ++port)
+      try
       {
-        vtkPointSet* output = vtkPointSet::GetData(outputVector, port);
-        output->ShallowCopy(clouds[port]);
-        output->GetPointData()->AddArray(directions[port].Distances);
-        this->AddResult(output->GetFieldData());
-        if (ranks.Alone() && ranks.Piece() > 0)
+        for (int port = 0; port < Ports; ++port)
         {
-          LeavePointsOut(output);
+          vtkPointSet* output = vtkPointSet::GetData(outputVector, port);
+          output->ShallowCopy(clouds[port]);
+          output->GetPointData()->AddArray(directions[port].Distances);
+          this->AddResult(output->GetFieldData());
+          if (ranks.Alone() && ranks.Piece() > 0)
+          {
+            LeavePointsOut(output);
+          }
         }
+        ranks.Meet();
+      }
+      catch (...)
+      {
+        this->ForgetResult();
+        throw;
       }
     });
 }

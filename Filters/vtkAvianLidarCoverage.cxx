@@ -443,6 +443,7 @@ void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
   {
     vtkAvianLidarFillClutter(still, in.Beams, clutter);
   }
+  ranks.Meet(); // before the long work
 }
 
 //------------------------------------------------------------------------------

@@ -165,7 +165,7 @@ private:
 
   int RequestDataObject(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
 
-  // Passes of an execution, which all ranks make together.
+  // Passes of an execution. All ranks must call the functions that take `ranks`.
   void PrepareTargets();
   void PreparePlaces(const vtkAvianLidarRanks& ranks, vtkDataSet* places, vtkInformation* info);
   void View(const vtkAvianLidarRanks& ranks, vtkPolyData* clutter);

@@ -5,7 +5,7 @@
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
 #include "vtkCompositeDataIterator.h"

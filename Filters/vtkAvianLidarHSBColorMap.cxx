@@ -3,7 +3,7 @@
 
 #include "Hue.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 

@@ -6,8 +6,8 @@
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
-#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 

@@ -4,7 +4,6 @@
 #include "JsonNode.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarRanks.h"

@@ -310,7 +310,7 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
   }
   in.State.clear();
   const auto merged = vtkAvianLidarScene::FindSurfaces(input);
-  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->checksum);
+  const bool given = ranks.All(merged != nullptr) && ranks.Same(merged->Hash());
   if (given)
   {
     in.Exchange.Forget();
@@ -335,12 +335,8 @@ void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
   in.Setup.materials = in.Surfaces->materials;
   in.Setup.objectIds = in.Surfaces->objectIds;
   in.Setup.materialIds = in.Surfaces->materialIds;
-  in.Summary = avianlidar::summarize(in.Setup, in.Geometry);
-  in.Scene = in.Summary.checksum;
-  for (const std::string& medium : in.Surfaces->media)
-  {
-    in.Scene = avianlidar::hashOf(medium.data(), medium.size(), in.Scene);
-  }
+  in.Summary = avianlidar::summarise(in.Setup);
+  in.Scene = in.Surfaces->Hash();
   if (in.Warnings.IsNew(input, in.Geometry, in.Surfaces->warning) && warn)
   {
     vtkWarningMacro("Input port 1, " << vtkAvianLidarText(in.Surfaces->warning));
@@ -362,6 +358,7 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
     in.TreeBuilds += in.OwnTree != nullptr;
   }
   vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
+  ranks.Meet(); // before the long work
 }
 
 //------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSensorReader.h"
 
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
 #include "vtkInformationVector.h"

@@ -8,7 +8,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBirds.h"
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 

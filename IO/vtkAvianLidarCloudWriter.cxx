@@ -45,7 +45,7 @@ void vtkAvianLidarCloudWriter::WriteData()
   }
   const auto write = [&]
   {
-    vtkAvianLidarGuard::Begin(this);
+    vtkAvianLidarGuard::CheckStart(this);
     this->WriteCloud(input);
     this->SetErrorCode(vtkErrorCode::NoError);
     this->UpdateProgress(1.0);

@@ -6,9 +6,9 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
-#include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellArray.h"

@@ -2,7 +2,7 @@
 #include "vtkAvianLidarUnitNames.h"
 
 #include "vtkAvianLidarAbort.h"
-#include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarRanks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

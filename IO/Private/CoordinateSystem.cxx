@@ -33,7 +33,6 @@ std::string wktOf(int code, bool ellipsoidalHeights)
 /// Returns the system of a WKT, or an empty system if GDAL cannot read the text.
 OGRSpatialReference systemOf(const std::string& wkt)
 {
-  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
   OGRSpatialReference system;
   if (!wkt.empty() && system.importFromWkt(wkt.c_str()) != OGRERR_NONE)
   {
@@ -131,6 +130,7 @@ std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& t
 
 std::string foreignUnitOf(const std::string& wkt)
 {
+  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
   const OGRSpatialReference system = systemOf(wkt);
   if (system.IsEmpty())
   {
@@ -148,6 +148,7 @@ std::string foreignUnitOf(const std::string& wkt)
 
 int utmZoneOf(const std::string& wkt)
 {
+  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
   const OGRSpatialReference system = systemOf(wkt);
   const char* datum = system.GetAttrValue("DATUM");
   int north = 0;

@@ -52,6 +52,17 @@ void requireDone(bool isDone, const char* problem)
     fail(problem, ": ", std::strerror(errno));
   }
 }
+
+/// Writes the names of a file's folder to the disk, if the folder can be read.
+void synchroniseFolderOf(const std::string& name)
+{
+  const int folder = open(fs::path(name).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0)
+  {
+    fsync(folder);
+    close(folder);
+  }
+}
 }
 
 OutputFile::OutputFile(const std::string& name)
@@ -61,11 +72,16 @@ OutputFile::OutputFile(const std::string& name)
   requireDone(stat(name.c_str(), &old) == 0 || errno == ENOENT, Unopened);
   failIf(old.st_mode && !S_ISREG(old.st_mode), "it exists and is not a regular file");
   this->Mode = old.st_mode;
-  while (fs::is_symlink(this->Name)) // the target of a link is replaced, not the link
+  std::error_code error;
+  fs::path path = name;
+  while (fs::is_symlink(path, error)) // the target of a link is replaced, not the link
   {
-    this->Name = fs::path(this->Name).parent_path() / fs::read_symlink(this->Name);
+    path = path.parent_path() / fs::read_symlink(path, error);
   }
-  this->Name = fs::weakly_canonical(fs::absolute(this->Name));
+  const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : ".", error);
+  errno = error.value();
+  requireDone(!error, Unopened);
+  this->Name = folder / path.filename();
   constexpr int mostParts = 16; // greatest number of writers of one file at the same time
   for (int i = 0; i < mostParts; ++i)
   {
@@ -91,6 +107,10 @@ OutputFile::~OutputFile()
 {
   std::remove(this->Part.c_str());
   std::fclose(this->File);
+  if (this->Old >= 0)
+  {
+    close(this->Old);
+  }
 }
 
 void OutputFile::write(const void* bytes, std::size_t count)
@@ -113,12 +133,17 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 {
   first.finish();
   second.finish();
+  // Another writer would remove the old file under the name of the part if it were not locked.
+  first.Old = open(first.Name.c_str(), O_RDONLY | O_CLOEXEC);
+  flock(first.Old, LOCK_EX | LOCK_NB);
   const auto exchange = [&]
   {
     return renameat2(AT_FDCWD, first.Part.c_str(), AT_FDCWD, first.Name.c_str(), RENAME_EXCHANGE) ==
       0;
   };
   const bool isKept = exchange(); // whether the part is now the old file
+  std::error_code ignored;
+  const bool isNew = !isKept && !fs::exists(first.Name, ignored);
   if (!isKept)
   {
     first.takeName();
@@ -129,20 +154,24 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
   }
   catch (const FormatError& error)
   {
-    const bool isUndone = isKept ? exchange() : !first.Mode && std::remove(first.Name.c_str()) == 0;
+    const bool isUndone = isKept ? exchange() : isNew && std::remove(first.Name.c_str()) == 0;
     failIf(!isUndone, error.what(), "; the old ", first.Name, " is replaced already");
     throw;
+  }
+  if (isKept && fs::path(first.Name).parent_path() != fs::path(second.Name).parent_path())
+  {
+    synchroniseFolderOf(first.Name);
   }
 }
 
 /// Writes the contents of the part to the disk.
 void OutputFile::finish()
 {
-  requireDone(std::fflush(this->File) == 0 && fsync(fileno(this->File)) == 0, Unwritten);
   if (this->Mode)
   {
     fchmod(fileno(this->File), this->Mode & ALLPERMS);
   }
+  requireDone(std::fflush(this->File) == 0 && fsync(fileno(this->File)) == 0, Unwritten);
 }
 
 /// Renames the part and writes the names of the folder to the disk.
@@ -150,8 +179,6 @@ void OutputFile::takeName()
 {
   requireDone(std::rename(this->Part.c_str(), this->Name.c_str()) == 0, "cannot be given its name");
   this->Part.clear();
-  const int folder = open(fs::path(this->Name).parent_path().c_str(), O_RDONLY | O_CLOEXEC);
-  fsync(folder);
-  close(folder);
+  synchroniseFolderOf(this->Name);
 }
 }

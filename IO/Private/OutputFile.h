@@ -46,7 +46,7 @@ public:
   /// the part replaces.
   void commit();
 
-  /// Commits two files of one folder, or throws FormatError and commits no file. If the file system
+  /// Commits two files, or throws FormatError and commits no file. If the file system
   /// cannot exchange two names, the first file may already be replaced. The error then names the
   /// replaced file.
   static void commitBoth(OutputFile& first, OutputFile& second);
@@ -56,8 +56,9 @@ private:
   void takeName();
 
   std::string Name;          ///< absolute name of the file, without links
-  std::string Part;          ///< name of the part; empty when the part has the name of the file
+  std::string Part;          ///< name of the part or, after an exchange, of the old file; or empty
   std::FILE* File = nullptr; ///< stream of the part, which is locked until this object is destroyed
+  int Old = -1;              ///< the replaced file, locked while it has the name of the part
   unsigned int Mode = 0;     ///< st_mode of the file that is replaced; 0 without such a file
 };
 }

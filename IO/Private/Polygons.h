@@ -59,7 +59,10 @@ public:
   GEOSCoordSequence* Sequence(const Ring& ring, bool close) const
   {
     Ring all(ring);
-    all.insert(all.end(), close ? 1 : 0, ring[0]);
+    if (close && !ring.empty())
+    {
+      all.push_back(ring.front());
+    }
     return GEOSCoordSeq_copyFromBuffer_r(
       this->Get(), all.data()->data(), static_cast<unsigned int>(all.size()), 0, 0);
   }
@@ -80,6 +83,7 @@ public:
     const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(this->Get(), ring);
     unsigned int n = 0;
     GEOSCoordSeq_getSize_r(this->Get(), sequence, &n);
+    failIf(n == 0, "the polygon library GEOS gave a ring without points");
     Ring points(n);
     GEOSCoordSeq_copyToBuffer_r(this->Get(), sequence, points.data()->data(), 0, 0);
     points.pop_back();

@@ -10,7 +10,7 @@ namespace avianlidar
 /// Set what follows from the rest: largest values, objects, noise and needs.
 inline void finishSetup(ScanSetup& setup)
 {
-  const SceneSummary summary = summarize(setup, 0);
+  const SceneSummary summary = summarise(setup);
   setup.largestReflectance = summary.largestReflectance;
   setup.largestGain = summary.largestGain;
   includeMovers(setup);

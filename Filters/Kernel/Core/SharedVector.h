@@ -32,7 +32,7 @@ public:
   SharedVector() = default;
   SharedVector(std::vector<T> values)
     : Values(std::make_shared<const std::vector<T>>(std::move(values)))
-    , Checksum(hashOf(this->data(), this->size() * sizeof(T), 0))
+    , Checksum(this->empty() ? 0 : hashOf(this->data(), this->size() * sizeof(T), 0))
   {
     static_assert(std::is_trivially_copyable<T>::value, "elements are summarised as bytes");
   }
@@ -44,7 +44,7 @@ public:
   const T* end() const { return this->data() + this->size(); }
   const T& operator[](std::size_t i) const { return (*this->Values)[i]; }
 
-  /// Checksum of the elements (Hash.h); 0 for a vector that was never filled.
+  /// Checksum of the elements (Hash.h); 0 for an empty vector.
   std::uint64_t checksum() const { return this->Checksum; }
 
 private:

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneSummary.h"
 
-#include "Hash.h"
-
 #include <algorithm>
 
 namespace avianlidar
 {
-SceneSummary summarize(const ScanSetup& setup, std::uint64_t geometry)
+SceneSummary summarise(const ScanSetup& setup)
 {
   SceneSummary summary;
   const Material* last = nullptr; // neighbours often have the same material
@@ -20,9 +18,6 @@ SceneSummary summarize(const ScanSetup& setup, std::uint64_t geometry)
     }
     last = &material;
   }
-  const std::uint64_t parts[] = { geometry, setup.materials.checksum(), setup.objectIds.checksum(),
-    setup.materialIds.checksum() };
-  summary.checksum = hashOf(parts, sizeof(parts), 0);
   return summary;
 }
 }

@@ -3,7 +3,6 @@
 
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
-#include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
@@ -61,7 +60,7 @@ std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGuard::Begin(vtkAlgorithm* self)
+void vtkAvianLidarGuard::CheckStart(vtkAlgorithm* self)
 {
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -101,12 +100,4 @@ void vtkAvianLidarGuard::Empty(vtkInformationVector* outputs, const std::string&
       }
     }
   }
-}
-
-//------------------------------------------------------------------------------
-int vtkAvianLidarGuard::Run(vtkAlgorithm* self, vtkInformationVector* outputs, bool errorsAsData,
-  const std::function<void()>& body)
-{
-  return vtkAvianLidarRanks::Execute(
-    self, {}, outputs, errorsAsData, [&](const vtkAvianLidarRanks&) { body(); });
 }

@@ -5,9 +5,9 @@
  * into their field data `error`, and returns 0, or 1 with ErrorsAsData. Not installed.
  *
  * Every RequestData runs in vtkAvianLidarGuarded() or, together with other ranks, in
- * vtkAvianLidarRanks::Execute(). VTK considers a failed filter up to date, and at the next update
- * runs the next filter on the empty outputs. So each filter checks its inputs for such an `error`
- * before it executes.
+ * vtkAvianLidarRanks::Execute() (vtkAvianLidarRanks.h). VTK considers a failed filter up to date,
+ * and at the next update runs the next filter on the empty outputs. So each filter checks its
+ * inputs for such an `error` before it executes.
  */
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h
@@ -17,7 +17,6 @@
 #include "vtkAlgorithm.h"
 
 #include <exception>
-#include <functional>
 #include <new>
 #include <string>
 #include <type_traits>
@@ -28,20 +27,16 @@ namespace vtkAvianLidarGuard
 {
 constexpr char NoMemory[] = "There is not enough memory for this";
 
-/// Begin an execution. Throws an error that names the first input that is empty because its
-/// producer failed, or avianlidar::WorkStopped if an observer has stopped the algorithm at progress
-/// 0, which the executive reports before RequestData.
-void Begin(vtkAlgorithm* self);
+/// Check that an execution may start. Throws an error that names the first input that is empty
+/// because its producer failed, or avianlidar::WorkStopped if an observer has stopped the algorithm
+/// at progress 0, which the executive reports before RequestData.
+void CheckStart(vtkAlgorithm* self);
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
 
 /// Empty all outputs. @param error error text for the field data; empty: no error text
 void Empty(vtkInformationVector* outputs, const std::string& error = {});
-
-/// Run the body of a RequestData. @return what RequestData is to return
-int Run(vtkAlgorithm* self, vtkInformationVector* outputs, bool errorsAsData,
-  const std::function<void()>& body);
 
 /// The problem that a step throws; an empty string for avianlidar::WorkStopped.
 template <class Step>
@@ -70,14 +65,6 @@ std::string ProblemOf(const Step& step)
     return "An unknown exception was thrown";
   }
 }
-}
-
-/// Run the body of a RequestData. The body throws an error, or avianlidar::WorkStopped to stop with
-/// empty outputs.
-template <class Filter, class Body>
-int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, const Body& body)
-{
-  return vtkAvianLidarGuard::Run(self, outputs, self->GetErrorsAsData(), std::cref(body));
 }
 
 #endif

@@ -33,7 +33,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 /// Answers of a rank in All(), which finds the least answer of all ranks.
 enum Answer
 {
-  Absent, ///< the rank threw
+  Threw,
   No,
   Yes
 };
@@ -99,7 +99,6 @@ bool WasAborted(vtkAlgorithm* algorithm)
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
-try
 {
   bool done = false;
   bool otherThrew = false;
@@ -127,10 +126,28 @@ try
   }
   if (!this->Alone() && !otherThrew)
   {
-    const int absent = Absent;
+    const int threw = Threw;
     int least = 0;
-    this->Controller->AllReduce(&absent, &least, 1, vtkCommunicator::MIN_OP);
+    this->Controller->AllReduce(&threw, &least, 1, vtkCommunicator::MIN_OP);
   }
+  try
+  {
+    this->Share(self, mine);
+  }
+  catch (...)
+  {
+    if (this->Alone())
+    {
+      throw;
+    }
+    EndJob(self, mine.empty() ? vtkAvianLidarGuard::NoMemory : mine.c_str());
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine) const
+{
   vtkMultiProcessStream stream;
   stream << mine;
   this->Problem = mine;
@@ -145,23 +162,11 @@ try
     }
     ++rank;
   }
-  if (this->Problem.empty())
-  {
-    SetAborted(self, true);
-  }
-  else if (!mine.empty() || this->Mine == 0)
+  SetAborted(self, this->Problem.empty());
+  if (!mine.empty() || (this->Mine == 0 && !this->Problem.empty()))
   {
     vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(this->Problem));
   }
-  return false;
-}
-catch (...)
-{
-  if (this->Alone())
-  {
-    throw;
-  }
-  EndJob(self, vtkAvianLidarGuard::NoMemory); // the problem cannot be shared
 }
 
 //------------------------------------------------------------------------------
@@ -192,7 +197,7 @@ try
 {
   const auto work = [&](const vtkAvianLidarRanks&)
   {
-    vtkAvianLidarGuard::Begin(self);
+    vtkAvianLidarGuard::CheckStart(self);
     body(ranks);
   };
   if (ranks.Run(self, std::cref(work)))
@@ -279,7 +284,7 @@ bool vtkAvianLidarRanks::All(bool mine) const
   const int answer = mine ? Yes : No;
   int least = 0;
   this->Controller->AllReduce(&answer, &least, 1, vtkCommunicator::MIN_OP);
-  if (least == Absent)
+  if (least == Threw)
   {
     throw RankThrew{};
   }
@@ -305,8 +310,10 @@ bool vtkAvianLidarRanks::Same(std::optional<std::uint64_t> mine) const
   this->Exchange(
     [&]()
     {
-      return this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP) &&
-        this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+      // Every rank makes both calls.
+      const int lowSent = this->Controller->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
+      const int highSent = this->Controller->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+      return lowSent && highSent;
     });
   return least >= largest; // `least` is greater if no rank has a value
 }
@@ -423,16 +430,20 @@ int vtkAvianLidarRanks::UpdateInputs(
   {
     bool good = true;
     bool stopped = false;
+    std::string problem; // every input is updated, because ranks may work together for the next one
     for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
     {
       for (int i = 0; i < self->GetNumberOfInputConnections(port); ++i)
       {
         vtkAlgorithmOutput* input = self->GetInputConnection(port, i);
         auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(self->GetInputExecutive(port, i));
-        good = (!pipeline || pipeline->UpdateData(input->GetIndex())) && good;
+        const std::string wrong = vtkAvianLidarGuard::ProblemOf(
+          [&]() { good = (!pipeline || pipeline->UpdateData(input->GetIndex())) && good; });
+        problem = problem.empty() ? wrong : problem;
         stopped = stopped || WasAborted(input->GetProducer());
       }
     }
+    vtkAvianLidarRequire(problem);
     vtkAvianLidarRequire(
       good ? "" : "What is needed could not be made, see the errors of filters upstream");
     if (stopped)

@@ -9,11 +9,10 @@
  * executes any other request (one piece, or pieces of the user's choice) by itself: the rank sends
  * nothing and does not wait.
  *
- * All ranks must make the same calls in the same order. A rank that throws between two calls takes
- * part in the next call of the other ranks by saying so: the call then throws on all ranks, and the
- * error becomes the error of all ranks. So errors are agreed once, at the end of an execution. If a
- * rank throws within a call, for example without memory, the rank ends the job, because the other
- * ranks would wait for ever.
+ * All ranks must make the same calls in the same order. If a rank throws between two calls, the
+ * next call throws on all ranks, and the error becomes the error of all ranks. So the execution
+ * ends on all ranks, and its errors are shared once. If memory runs out while data are sent, the
+ * rank ends the job, because the other ranks would wait for ever.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -62,8 +61,8 @@ public:
 
   /// Run the body of a RequestData on the ranks that execute the request. If the producer of an
   /// input failed on one of these ranks, the body is not run. Returns 0 or 1. No exception leaves
-  /// the function. After an error, outputs are empty and hold the message. If the work was stopped,
-  /// outputs are empty.
+  /// the function. After an error, outputs are empty and hold the message, unless there is no
+  /// memory for the message. If the work was stopped, outputs are empty.
   template <class Filter, class Work>
   static int Execute(
     Filter* self, vtkInformation* request, vtkInformationVector* outputs, const Work& body)
@@ -164,6 +163,8 @@ private:
   /// Run the body, and report the first problem of all ranks. @return true after success on all
   /// ranks
   bool Run(vtkAlgorithm* self, const Body& body) const;
+  /// Share the problem of this rank, and report the first problem of all ranks.
+  void Share(vtkAlgorithm* self, const std::string& mine) const;
   double Reduce(double mine, int operation) const;
   /// Call Meet() and Send(), unless there is only one process.
   template <class Work>
@@ -180,6 +181,15 @@ private:
   mutable std::string Problem;     ///< problem that Run() reported; empty if the work was stopped
   mutable bool Exchanging = false; ///< true while data are sent
 };
+
+/// Run the body of a RequestData on this process. The body throws an error, or
+/// avianlidar::WorkStopped to stop with empty outputs.
+template <class Filter, class Body>
+int vtkAvianLidarGuarded(Filter* self, vtkInformationVector* outputs, const Body& body)
+{
+  return vtkAvianLidarRanks::Execute(
+    self, {}, outputs, self->GetErrorsAsData(), [&](const vtkAvianLidarRanks&) { body(); });
+}
 
 /// Defines what vtkAvianLidarControllerMacro() declares, except SetController().
 #define vtkAvianLidarCxxRanksMacro(thisClass)                       \

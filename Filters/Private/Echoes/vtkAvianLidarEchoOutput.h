@@ -48,7 +48,7 @@ void FillMovers(const avianlidar::ScanSetup& setup, const avianlidar::ScanBeams&
   vtkPolyData* report);
 
 /// Fill in everything that is needed to repeat the scan, and the bounds of everything that was not
-/// modelled. @param sceneChecksum SceneSummary::checksum of the surfaces
+/// modelled. @param sceneChecksum vtkAvianLidarSurfaces::Hash() of the surfaces
 void FillFields(const avianlidar::ScanSetup& setup, int preset, vtkFieldData* beamFields,
   const vtkAvianLidarMovers& movers, vtkFieldData* surfaceFields, std::uint64_t sceneChecksum,
   vtkFieldData* fields);

@@ -443,3 +443,16 @@ vtkAvianLidarSurfaces vtkAvianLidarSurfaces::Merge(
   merger.Run(leaves, fields, known);
   return std::move(merger.Result);
 }
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarSurfaces::Hash() const
+{
+  const std::uint64_t parts[] = { this->checksum, this->materials.checksum(),
+    this->objectIds.checksum(), this->materialIds.checksum() };
+  std::uint64_t hash = avianlidar::hashOf(parts, sizeof(parts), 0);
+  for (const std::string& medium : this->media)
+  {
+    hash = avianlidar::hashOf(medium.data(), medium.size(), hash);
+  }
+  return hash;
+}
