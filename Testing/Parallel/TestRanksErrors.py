@@ -277,6 +277,22 @@ def test_abort():
         check_good(filters[-1])
 
 
+def test_abort_beside_an_error():
+    """One rank is aborted and another fails: the error of all, and nobody waits for anybody at the next update."""
+    echo = echotools.scan(TOWN, echotools.sensor(), **SETTINGS)
+    messages = echotools.Messages(echo)
+    echo.SetRaysPerBeam(mine(20, -1))
+    observer = echo.AddObserver("ProgressEvent", lambda caller, _: RANK == 0 and caller.SetAbortExecute(1))
+    for _ in range(2):
+        update(echo)
+        assert sizes(echo) == {"0 0"}
+    assert "RaysPerBeam" in heard_by_all(messages)[LAST]
+    echo.RemoveObserver(observer)
+    echo.SetAbortExecute(0)
+    echo.SetRaysPerBeam(20)
+    check_good(echo)
+
+
 def test_abort_of_a_tracker():
     """One rank is aborted while tracks are updated: no rank keeps this cloud, and all go on as without it."""
     places = np.random.default_rng(3).uniform(-100, 100, (20, 3))
