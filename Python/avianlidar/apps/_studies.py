@@ -214,4 +214,5 @@ def reach(options) -> None:
 def report(options) -> None:
     report = Report(_plan(options), options.threads, bar)
     _say_before(report.plans[0])
-    tell(f"{options.out}: the report; {report.write(options.out)}: its tables and pictures")
+    folder = report.write(options.out)
+    tell(f"{options.out}: the report; {folder}: its tables and pictures")
