@@ -57,7 +57,8 @@ class Kept:
         path = self.folder / name
         found = hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
         if found and found not in self.made[name]:
-            self.edited += [name] * (name not in self.edited)
+            if name not in self.edited:
+                self.edited.append(name)
             return path
         content = make()
         # After a stop between record and file, the old file is kept; the record holds both checksums.

@@ -87,8 +87,11 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), skipinitialspace=True)
     names = [name.strip().lower() for name in next(rows, [])]
     plain_names = [UNIT.sub("", name) for name in names]
-    at = {column: plain_names.index(word) for column, words in COLUMNS.items() for word in reversed(words)
-          if word in plain_names}
+    at: Dict[str, int] = {}
+    for column, words in COLUMNS.items():
+        there = [word for word in words if word in plain_names]
+        if there:
+            at[column] = plain_names.index(there[0])
     if not {"longitude", "latitude"} <= at.keys() or not MOST.keys() & at.keys():
         raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation "
                     f"(and unit, kind, name), found {', '.join(names)[:200]}")
@@ -161,7 +164,7 @@ def _shape(part, what: str):
     for place in (one for one in part.iter()
                   if one.tag.rpartition("}")[2].removeprefix("Elevated") in ("Point", "Curve", "Surface")):
         srs = next((one.get("srsName") for one in place.iter() if one.get("srsName")), "urn:ogc:def:crs:EPSG::4326")
-        words = " ".join(one.text or "" for one in place.iter() if one.tag.rpartition("}")[2].startswith("pos"))
+        words = " ".join(one.text or "" for one in place.iter() if one.tag.rpartition("}")[2] in ("pos", "posList"))
         if words.strip():
             try:
                 [float(word) for word in words.replace(",", " ").split()]  # GDAL would read other words as 0
