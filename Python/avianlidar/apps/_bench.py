@@ -237,7 +237,8 @@ class Scored:
 
 def verdict(scored: Sequence[Scored]) -> str:
     """Sentence on the best predictions for a set and their lead: by recall if all have scores, and by IoU."""
-    return " ".join(_best(scored, score) for score in ["recall_at_1"] * all(one.curves for one in scored) + ["iou"])
+    names = ["recall_at_1", "iou"] if all(one.curves for one in scored) else ["iou"]
+    return " ".join(_best(scored, name) for name in names)
 
 
 def _best(scored: Sequence[Scored], score: str) -> str:
@@ -289,7 +290,7 @@ def write_bench(folders: Sequence[Any], predictions: Sequence[Any], out, numbers
 
 def _folder_of(of: Set, folder: pathlib.Path, several: bool) -> pathlib.Path:
     """The folder with the predictions for a set. @param several whether there are several sets"""
-    places = [folder / of.name] + [folder] * (not several)
+    places = [folder / of.name] if several else [folder / of.name, folder]
     for place in places:
         if (place / "sequences").is_dir():
             return place

@@ -99,7 +99,8 @@ def _verdict(study: Study, one: Candidate, unknown: str) -> str:
 
 def _draw_front(axes, study: Study) -> None:
     def bars(of: List[Candidate], shares: List[Value], **style: Any) -> None:
-        values, errors = ([100 * number for number in numbers] for numbers in list(zip(*shares))[:2] or ((), ()))
+        values = [100 * share.value for share in shares]
+        errors = [100 * share.error for share in shares]
         axes.errorbar([one.cost for one in of], values, errors, **style)
     front, about = study.front, study.about
     others = [one for one in study.candidates if not (one.refused or one.front)]
