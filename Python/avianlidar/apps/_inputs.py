@@ -73,10 +73,12 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
         with naming(f"{file}: metar"):
             hours = _metar.read_metar(plan["metar"])
             plan.update(year=hours.year(), hours=hours.words())
-    options = [[f"--{part}-set", f"{name}={_as_option(value)}"]
-               for part, values in changes.items() for name, value in (values or {}).items()]
-    weather_and_year = [["--weather", *(words or ())]] * bool(words) + [["--metar", str(metar)]] * bool(metar)
-    return {**plan, "file": str(file), "options": weather_and_year + options}
+    options = [["--weather", *words]] if words else []
+    if metar:
+        options.append(["--metar", str(metar)])
+    options += [[f"--{part}-set", f"{name}={_as_option(value)}"]
+                for part, values in changes.items() for name, value in (values or {}).items()]
+    return {**plan, "file": str(file), "options": options}
 
 
 def _as_option(value: Any) -> str:

@@ -193,7 +193,9 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     elif len(groups) > 1 and box is None:
         raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; "
                     "expected one airport, or --icao CODE or --bounds W S E N to choose one")
-    for one in (one for key in groups if key not in chosen for one, _ in groups[key]):
-        extract.leave(one, "of another airport")
+    for key in groups:
+        if key not in chosen:
+            for one, _ in groups[key]:
+                extract.leave(one, "of another airport")
     aerodrome = next((extract.aerodromes[key] for key in chosen if isinstance(key, int)), None)
     return [one for key in chosen for one, _ in groups[key]], aerodrome
