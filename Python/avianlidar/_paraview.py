@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The advisor that ParaView's button Advise runs on the server. Plugin/Filters/AvianLidarAdvisor.xml makes the
-proxy."""
+"""The advisor that ParaView's button Advise runs on the server; Plugin/Filters/AvianLidarAdvisor.xml is its proxy."""
 from typing import Any
 
 import numpy as np

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions of the verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs
-need."""
+"""The verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs need."""
 import pathlib
 import warnings
 from collections.abc import Callable, Iterable
