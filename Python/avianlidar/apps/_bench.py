@@ -300,9 +300,14 @@ def _folder_of(of: Set, folder: pathlib.Path, several: bool) -> pathlib.Path:
 
 def tables(scored: Sequence[Scored]) -> Dict[str, List[Any]]:
     """Rows of the tables, by the name of the file."""
-    rows = [(one.set.name, one.set.weather, one.name, *group, words, "1", *value, one.points(group))
-            for one in scored for group in one.values for key, (words, _) in SCORES.items()
-            for value in [one.value(group, key)] if value.number]
+    rows = []
+    for one in scored:
+        for group in one.values:
+            for key, (words, _) in SCORES.items():
+                value = one.value(group, key)
+                if value.number:
+                    rows.append((one.set.name, one.set.weather, one.name, *group, words, "1", *value,
+                                 one.points(group)))
     curves = [(one.set.name, one.name, *place) for one in scored if one.curves
               for place in zip(RECALLS, np.nanmean(one.curves, axis=0))]
     return {"bench.csv": [("set", "weather", "predictions", "by", "group", "score", "unit", "value", "std_error",

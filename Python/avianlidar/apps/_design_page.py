@@ -62,8 +62,9 @@ def answers(study: Study) -> List[str]:
     found.append(f"At {other.number:,} other places, which were not used to choose designs, "
                  f"the design detects {cell(other, '%')}")
     if study.measure == "detected" and study.chosen:
-        found[-1] += {True: ": at least the required share", False: ": less than the required share",
-                      None: ": the error does not decide"}[is_told(other.value, other.error, study.asked)]
+        words = {True: "at least the required share", False: "less than the required share",
+                 None: "the error does not decide"}
+        found[-1] += f": {words[is_told(other.value, other.error, study.asked)]}"
     found[-1] += "."
     unsure = study.undecided()
     if unsure:

@@ -36,9 +36,7 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
             plan["metar"] = str(pathlib.Path(metar).resolve())
         for part, values in changes.items():
             if values and isinstance(plan.get(part, {}), dict):
-                plan[part] = {**plan.get(part, {}), **{
-                    name: list(value) if isinstance(value, (tuple, list)) else
-                    [value] if name in ("masts", "exclusions") else value for name, value in values.items()}}
+                plan[part] = {**plan.get(part, {}), **{name: _in_plan(name, value) for name, value in values.items()}}
     check_json(plan, "coverage.schema.json", str(file))
 
     def from_here(name: Any) -> Any:
@@ -81,11 +79,20 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
     return {**plan, "file": str(file), "options": options}
 
 
+def _in_plan(name: str, value: Any) -> Any:
+    """A setting as a plan holds it: several values, or a member that may have several, as a list."""
+    if isinstance(value, (tuple, list)):
+        return list(value)
+    return [value] if name in ("masts", "exclusions") else value
+
+
 def _as_option(value: Any) -> str:
     """A value as an option of a command."""
     if isinstance(value, (list, tuple)):
         return ",".join(map(_as_option, value))
-    return ("off", "on")[value] if isinstance(value, bool) else str(value)
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return str(value)
 
 
 def _check_question(plan: Dict[str, Any], file: str) -> None:
