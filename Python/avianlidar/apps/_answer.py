@@ -49,7 +49,8 @@ def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = 
     if value == 0.0:
         return "0\u00a0%"
     digits = decimals(100.0 * error) if error > 0.0 else 1
-    return f"{100.0 * value:.{digits}f}{f' ± {100.0 * error:.{digits}f}' if error > 0.0 and bar else ''}\u00a0%"
+    after = f" ± {100.0 * error:.{digits}f}" if error > 0.0 and bar else ""
+    return f"{100.0 * value:.{digits}f}{after}\u00a0%"
 
 
 def cell(row: Dict[str, Any], column: str) -> str:
@@ -70,8 +71,10 @@ def cell(row: Dict[str, Any], column: str) -> str:
 
 def metres(value: float) -> str:
     """A range with two digits, or in tens of metres."""
-    return (f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else
-            "no range")
+    if not value > 0.0:
+        return "no range"
+    rounded_value = float(f"{value:.2g}") if value < 100.0 else 10.0 * round(value / 10.0)
+    return f"{rounded_value:g}\u00a0m"
 
 
 def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
@@ -119,7 +122,8 @@ def over(view: Plan) -> str:
         tops = [f"{view.heights_of(name)[1]:.3g}" for name in view.members]
         return f"over {listed(parts)}, to {listed(tops)}\u00a0m high"
     low, high = view.asked
-    return f"at {f'{low:g}' if low == high else f'{low:g} to {high:g}'}\u00a0m over {listed(parts)}"
+    heights = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    return f"at {heights}\u00a0m over {listed(parts)}"
 
 
 def air_of(view: Plan) -> str:
@@ -196,7 +200,9 @@ def command(view: Plan, verb: str, out: str, **settings: str) -> str:
     `coverage.species`, which replace settings of the same names"""
     file = pathlib.Path(view.file).name if pathlib.Path(view.file).is_absolute() else view.file
     words = ["avianlidar", verb, file, "-o", out]
-    flags = {"--weather", "--sensor-set", "--coverage-set", *(("--metar", "--siting-set") if verb == "report" else ())}
+    flags = {"--weather", "--sensor-set", "--coverage-set"}
+    if verb == "report":
+        flags |= {"--metar", "--siting-set"}
     for flag, *values in view.plan.get("options", ()):
         if flag in flags and f"{flag[2:].partition('-')[0]}.{values[0].partition('=')[0]}" not in settings:
             words += [flag, *values]
