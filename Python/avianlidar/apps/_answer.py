@@ -272,7 +272,8 @@ def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     words = [f"{site['surfaces']}. Objects that no map shows may stand there."]
     masts = []
     for row in site["masts"]:
-        share = percent(*row["share"], view.count, bar=False)
+        value, error = row["share"]
+        share = percent(value, error, view.count, bar=False)
         masts.append(f"{share} with a mast of {row['mast']:g}\u00a0m")
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
