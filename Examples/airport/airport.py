@@ -84,12 +84,16 @@ def work(options):
         tools.update(scene.tree)  # shared by both sensors
 
     columns, results = {}, {}
-    for preset in ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]:
+    presets = ["Airport16", "Airport32"] if options.preset == "both" else [options.preset]
+    kinds = ["vtp", "csv", "las", "pcd"]
+    if scene.geodetic_origin:
+        kinds.append("geojson")
+    for preset in presets:
         clock = tools.Clock(common.seconds)
         result, echoes, image = scan(scene, preset, options, clock)
         options.out.mkdir(parents=True, exist_ok=True)
         with clock("write"):
-            for kind in ("vtp", "csv", "las", "pcd", "geojson")[:5 if scene.geodetic_origin else 4]:
+            for kind in kinds:
                 al.save(echoes, options.out / f"{preset}.{kind}")
         if not options.no_pictures:
             with clock("pictures"):

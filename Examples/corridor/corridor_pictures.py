@@ -105,8 +105,10 @@ def area_view(file, scene, echoes, title, target, angle):
 def draw(scene, scan, echoes, built, options):
     """Writes door.png, stairwell.png, corridor.png (only for the built scene), top.png and range.png."""
     words = f"C16, {options.rays} rays per beam"
-    for name, title, target, angle in AREAS if built else ():
-        area_view(options.out / f"{name}.png", scene, echoes, f"{title}, seen from the lidar; {words}", target, angle)
+    if built:
+        for name, title, target, angle in AREAS:
+            file = options.out / f"{name}.png"
+            area_view(file, scene, echoes, f"{title}, seen from the lidar; {words}", target, angle)
     with tools.figure(options.out / "top.png", figsize=(13, 5)) as axes:
         tools.from_above(axes, scene, echoes, tools.extent(scene, echoes, 0.05), f"From above, {words}")
     tools.range_images(options.out / "range.png", scan, words)

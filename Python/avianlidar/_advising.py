@@ -58,7 +58,8 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
             lines[-1] += (f"; for {unclear} settings these beams do not decide: measure more beams, "
                           "or allow larger errors")
 
-    second, one, unconnected = cost(of[DEFAULT], of[DIRECT]), *m.without
+    second = cost(of[DEFAULT], of[DIRECT])
+    one, unconnected = m.without
     if not m.reflects_twice:
         lines.append(f"One reflection is enough: second reflections return {'less than 1e-6' if m.secondary else '0'} "
                      f"of the light (measured over {len(m.sample)} beams). Two reflections take {second}")
@@ -81,8 +82,9 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
     lines.append(f"Density of rays: {per_cent(polygons)} of the beams are integrated over polygons, {per_cent(cells)} "
                  f"need cells, {per_cent(nothing)} meet nothing. To keep the limits, {', '.join(needs)}")
 
-    weather, (light, echoes) = "none", map(per_cent, m.lost)
+    weather = "none"
     if m.scatters or m.fields["attenuation_coefficient"] > 0:
+        light, echoes = map(per_cent, m.lost)
         back = "the air sends no light back and costs no time"
         if m.scatters:
             back = f"{per_cent(m.of_air)} of the points are echoes of the air; the air takes {cost(m.hazy, m.clear)}"

@@ -81,7 +81,8 @@ def rows_of(what: str, values, row: tuple[int, ...]) -> np.ndarray:
     if rows.dtype.kind not in "biuf":
         raise TypeError(f"{what} are of the type {rows.dtype}, expected real numbers")
     if rows.ndim != 1 + len(row) or rows.shape[1:] != row:
-        raise ValueError(f"{what} have the shape {rows.shape}, expected {f'(n, {row[0]})' if row else '(n,)'}")
+        expected = f"(n, {row[0]})" if row else "(n,)"
+        raise ValueError(f"{what} have the shape {rows.shape}, expected {expected}")
     return np.ascontiguousarray(rows, dtype=float)
 
 

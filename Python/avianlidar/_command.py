@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The arguments and the exit codes of the command `avianlidar` (also `python3 -m avianlidar`). `_verbs` does the
-work."""
+"""Arguments and exit codes of the command `avianlidar` (also `python3 -m avianlidar`). `_verbs` does the work."""
 import argparse
 import math
 import os

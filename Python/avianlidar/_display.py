@@ -106,7 +106,7 @@ def sensor_rows(sensor) -> dict[str, Any]:
     if sensor.half_beamwidth_across:
         rows["full beam width"] += " by " + value("half_beamwidth_across", "mrad", 2e3)
     said, gaussian = sensor.description, sensor.algorithm.GetBeamProfile() == 1
-    shape = [("", "rectangle")[sensor.algorithm.GetBeamOutline()],
+    shape = ["rectangle" if sensor.algorithm.GetBeamOutline() else "",
              f"turned by {sensor.beam_rotation:g} deg" if sensor.beam_rotation else "",
              f"Gaussian, cut at {sensor.gaussian_truncation:g} radii of 1/e2" if gaussian else ""]
     rows.update(beam=", ".join(filter(None, shape)), assumed=", ".join(assumed), what=said.get("comment"),

@@ -143,7 +143,8 @@ class Measurement:
     def __init__(self, like: Any, inputs: Sequence[Any], asked: dict[str, float], count: int,
                  progress: Progress | None):
         """@param like an echo filter with the scan's properties @param inputs beams, surfaces, movers or None"""
-        self.like, (self.beams, self.surfaces, self.movers) = like, inputs
+        self.like = like
+        self.beams, self.surfaces, self.movers = inputs
         self.asked, self.count = np.array([asked[kind] for kind in KINDS]), count
         self.progress, self.done = progress or (lambda *_: None), 0.0
         self.seed, self.threads = like.GetSeed(), like.GetNumberOfThreads()
@@ -224,7 +225,8 @@ class Measurement:
 
     def look_at_scene(self, first: np.ndarray) -> None:
         """Analyses the light of the reference in its first scan, and the difference of plain rays."""
-        (new, truth), weights = self.batches[0], self.weights()
+        new, truth = self.batches[0]
+        weights = self.weights()
         beams = self.beams_of(new)
         witness = [self.scan(beams, WITNESS, seed) for seed in WITNESS_SEEDS]
         self.bias = np.array([max(0.0, ratio - SURELY * deviation) for ratio, deviation in (

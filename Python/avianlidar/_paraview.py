@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The advisor that ParaView's button Advise runs on the server. Plugin/Filters/AvianLidarAdvisor.xml makes the
-proxy."""
+"""The advisor that ParaView's button Advise runs on the server; Plugin/Filters/AvianLidarAdvisor.xml is its proxy."""
 from typing import Any
 
 import numpy as np
@@ -56,9 +55,11 @@ class Advisor(VTKPythonAlgorithmBase):
         return 1
 
     def RequestUpdateExtent(self, request: Any, inputs: Any, outputs: Any) -> int:
-        for info in (port.GetInformationObject(0) for port in inputs if port.GetNumberOfInformationObjects()):
-            info.Set(vtkStreamingDemandDrivenPipeline.UPDATE_PIECE_NUMBER(), 0)
-            info.Set(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES(), 1)
+        for port in inputs:
+            if port.GetNumberOfInformationObjects():
+                info = port.GetInformationObject(0)
+                info.Set(vtkStreamingDemandDrivenPipeline.UPDATE_PIECE_NUMBER(), 0)
+                info.Set(vtkStreamingDemandDrivenPipeline.UPDATE_NUMBER_OF_PIECES(), 1)
         return 1
 
     def RequestData(self, request: Any, inputs: Any, outputs: Any) -> int:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs VTK algorithms with Python's conventions: errors are exceptions, warnings are Python warnings, Ctrl-C stops a
-run."""
+"""Runs VTK algorithms with Python's conventions: exceptions, Python warnings, and Ctrl-C stops a run."""
 import contextlib
 import os
 import re

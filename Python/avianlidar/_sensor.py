@@ -61,7 +61,8 @@ class Sensor(PropertyOwner):
 
     def _take_beams(self, directions, times, positions) -> float:
         """Sets the beams, and returns the time of the last beam, s."""
-        count, found = len(directions) if np.ndim(directions) else 0, []
+        count = len(directions) if np.ndim(directions) else 0
+        found = []
         for name, values, shape in (("directions", directions, (count, 3)), ("times", times, (count,)),
                                     ("positions", positions, (count, 3))):
             found.append(np.zeros(shape) if values is None else np.asarray(values, dtype=float))

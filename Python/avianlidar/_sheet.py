@@ -73,7 +73,8 @@ def check(points: Sequence[dict[str, Any]]) -> None:
             if key not in point:
                 raise ValueError(f"{at}: {key} is missing")
         for key, value in point.items():
-            least, most = 0.0 if key == "light" else 1e-4, MOST.get(key, 0.0)
+            least = 0.0 if key == "light" else 1e-4
+            most = MOST.get(key, 0.0)
             if key == "source":
                 if not isinstance(value, str):
                     raise ValueError(f"{at}.source is {value!r}, expected a text")
@@ -263,10 +264,14 @@ def write(description: dict[str, Any], found: Fit, file) -> None:
 def _text(value, indent: int = 0) -> str:
     """JSON with one line for each mapping of plain values."""
     is_map = isinstance(value, dict)
-    parts = [*value.values()] if is_map else value if isinstance(value, list) else []
+    if is_map:
+        names, parts = [f"{json.dumps(key)}: " for key in value], [*value.values()]
+    else:
+        parts = value if isinstance(value, list) else []
+        names = [""] * len(parts)
     deep = any(isinstance(one, dict) or (isinstance(one, list) and one and isinstance(one[0], dict)) for one in parts)
     if not deep and (indent or not is_map):
         return json.dumps(value, ensure_ascii=False)
-    names, pad = [f"{json.dumps(key)}: " for key in value] if is_map else [""] * len(parts), "\n" + "  " * indent
+    pad = "\n" + "  " * indent
     rows = ",".join(f"{pad}  {name}{_text(one, indent + 1)}" for name, one in zip(names, parts))
     return f"{{{rows}{pad}}}" if is_map else f"[{rows}{pad}]"

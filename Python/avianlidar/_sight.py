@@ -88,7 +88,8 @@ def warnings_of(scan: Any) -> Iterator[str]:
         if not (echoes and seen):  # otherwise a mover was seen
             yield "the scene has no triangles"
         return
-    bounds, place = surfaces.GetBounds(), beams.GetPoint(0) if beams.GetNumberOfPoints() else (0, 0, 0)
+    bounds = surfaces.GetBounds()
+    place = beams.GetPoint(0) if beams.GetNumberOfPoints() else (0, 0, 0)
     looked = (surfaces, surfaces.GetMTime(), place, seen)
     if looked != getattr(scan, "_looked", None):
         scan._looked = looked

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The functions of the verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs
-need."""
+"""The verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs need."""
 import pathlib
 import warnings
 from collections.abc import Callable, Iterable
@@ -140,8 +139,9 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
         finite = values[np.isfinite(values)] if np.isfinite(values).any() else np.array([np.nan])
         rows.append((name, cloud.units[name] or "-", f"{finite.min():.6g}", f"{finite.max():.6g}"))
     table(rows)
-    for line in () if quiet else notes_of(fields):
-        print(line)
+    if not quiet:
+        for line in notes_of(fields):
+            print(line)
 
 
 def info(options) -> None:
@@ -195,7 +195,8 @@ def compare(options) -> None:
     if len(of_sensor) == 1:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, but the other file is not")
     ways = "SimulatedToReference", "ReferenceToSimulated"
-    measure, (a, b) = _compared(*(cloud.data for cloud in clouds)), (file.name for file in files)
+    measure = _compared(*(cloud.data for cloud in clouds))
+    a, b = (file.name for file in files)
     table([("distance of nearest points (m)", f"{a} to {b}", f"{b} to {a}"),
             *((words, *(f"{getattr(measure, f'Get{name}{way}')():.6g}" for way in ways)) for words, name in (
                 ("root mean square", "RMSE"), ("largest", "Hausdorff"),
@@ -266,7 +267,9 @@ def _fit(options) -> None:
                      point["source"]))
     table(rows)
     numbers = [f"{name} {value:.4g}" for name, value in found.numbers.items()]
-    print(*numbers, *([] if np.isnan(found.board) else [f"board of the maker {found.board:.3g} m"]), sep=", ")
+    if not np.isnan(found.board):
+        numbers.append(f"board of the maker {found.board:.3g} m")
+    print(*numbers, sep=", ")
     if found.limit:
         print(found.limit)
     print("the error of ranges by this receiver is unknown: no point can be left out of the fit" if np.isnan(found.bar)

@@ -190,7 +190,8 @@ def advice(plan: Plan, detected_to: float) -> dict[str, Any] | None:
     near = [row for row in rows if row["above"] > 0.0 and row["to"] > 0.0]
     if not near:
         return {"needed": None, "rows": rows, "ways": []}
-    sensor, (low, high) = plan.sensor, band(plan.sensor)
+    sensor = plan.sensor
+    low, high = band(sensor)
     needed = max(math.degrees(math.atan2(row["above"], 0.5 * row["to"])) for row in near)
     ways: list[dict[str, Any]] = []
     regular = (not sensor.channel_elevations and sensor._beams is None and sensor.elevation_step > 0.0 and

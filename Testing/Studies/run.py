@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs a study, or brings tables and pictures of studies into Documentation/.
 
-    Testing/Studies/run.py room --only-main                 one study; --help says what it takes
-    Testing/Studies/run.py pages room birds                 runs these and brings them into the pages
-    Testing/Studies/run.py pages                            all that take minutes at most; wants the data folder
-    Testing/Studies/run.py pages --from build/paper airport    runs nothing: results are in folders of these names
+    Testing/Studies/run.py room --only-main                  one study; --help says what it takes
+    Testing/Studies/run.py pages room birds                  runs these and brings them into the pages
+    Testing/Studies/run.py pages                             all that take minutes at most; wants the data folder
+    Testing/Studies/run.py pages --from build/paper airport  runs nothing: results are in folders of these names
 
 The Python package is that of build/paraview, unless PYTHONPATH names another. Some pictures need a display
 (`xvfb-run -a`), some studies the folder that AVIANLIDAR_DATA_DIR names; where AVIANLIDAR_SCENES_DIR names the scenes

@@ -57,7 +57,8 @@ class Kept:
         path = self.folder / name
         found = hashlib.sha256(read_regular(path)).hexdigest() if path.exists() else ""
         if found and found not in self.made[name]:
-            self.edited += [name] * (name not in self.edited)
+            if name not in self.edited:
+                self.edited.append(name)
             return path
         content = make()
         # After a stop between record and file, the old file is kept; the record holds both checksums.
@@ -151,7 +152,8 @@ class Airport(AirportMap):
 def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:
     """Name, class and triangles (n x 3 x 3, m) of each object of a scene file."""
     for block in leaves_of(scene.surfaces):
-        fields, (points, cells) = field_values(block), triangles_of(block)
+        fields = field_values(block)
+        points, cells = triangles_of(block)
         yield fields["object_names"][0], fields["object_classes"][0], points[cells]
 
 

@@ -49,7 +49,8 @@ def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = 
     if value == 0.0:
         return "0\u00a0%"
     digits = decimals(100.0 * error) if error > 0.0 else 1
-    return f"{100.0 * value:.{digits}f}{f' ± {100.0 * error:.{digits}f}' if error > 0.0 and bar else ''}\u00a0%"
+    after = f" ± {100.0 * error:.{digits}f}" if error > 0.0 and bar else ""
+    return f"{100.0 * value:.{digits}f}{after}\u00a0%"
 
 
 def cell(row: Dict[str, Any], column: str) -> str:
@@ -70,8 +71,10 @@ def cell(row: Dict[str, Any], column: str) -> str:
 
 def metres(value: float) -> str:
     """A range with two digits, or in tens of metres."""
-    return (f"{float(f'{value:.2g}') if value < 100.0 else 10.0 * round(value / 10.0):g}\u00a0m" if value > 0.0 else
-            "no range")
+    if not value > 0.0:
+        return "no range"
+    rounded_value = float(f"{value:.2g}") if value < 100.0 else 10.0 * round(value / 10.0)
+    return f"{rounded_value:g}\u00a0m"
 
 
 def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
@@ -89,7 +92,10 @@ def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
         else:
             found.append((away, f"{metres(away)} {wind(off)} of the {end} of {runway.name}", ""))
     found = sorted(found)[:2]
-    return ", and ".join(words + from_end * (not number) for number, (_, words, from_end) in enumerate(found))
+    parts = [words for _, words, _ in found]
+    if found:
+        parts[0] += found[0][2]  # the distance from an end, for the nearest runway only
+    return ", and ".join(parts)
 
 
 def birds_of(view: Plan) -> str:
@@ -116,14 +122,17 @@ def over(view: Plan) -> str:
         tops = [f"{view.heights_of(name)[1]:.3g}" for name in view.members]
         return f"over {listed(parts)}, to {listed(tops)}\u00a0m high"
     low, high = view.asked
-    return f"at {f'{low:g}' if low == high else f'{low:g} to {high:g}'}\u00a0m over {listed(parts)}"
+    heights = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    return f"at {heights}\u00a0m over {listed(parts)}"
 
 
 def air_of(view: Plan) -> str:
     """The air in which the shares hold."""
-    visibility = view.coverage.visibility
-    return f" in {in_words(view.air)}" if view.air else (
-        f" at {visibility / 1000.0:g}\u00a0km visibility" if visibility > 0.0 else "")
+    if view.air:
+        return f" in {in_words(view.air)}"
+    if view.coverage.visibility > 0.0:
+        return f" at {view.coverage.visibility / 1000.0:g}\u00a0km visibility"
+    return ""
 
 
 def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any],
@@ -180,7 +189,9 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     seen = [(f"{row['height']:g}\u00a0m up from {metres(row['from']) if row['from'] else '0 m'} "
              f"to {metres(row['to'])} away") for row in rows if row["to"] > row["from"]]
     never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
-    where = ["at " + ", ".join(seen)] * bool(seen) + [f"nowhere at {listed(never)} m"] * bool(never)
+    where = ["at " + ", ".join(seen)] if seen else []
+    if never:
+        where.append(f"nowhere at {listed(never)} m")
     return f"{said}; half are in its beams and near enough {', and '.join(where)}."
 
 
@@ -189,7 +200,9 @@ def command(view: Plan, verb: str, out: str, **settings: str) -> str:
     `coverage.species`, which replace settings of the same names"""
     file = pathlib.Path(view.file).name if pathlib.Path(view.file).is_absolute() else view.file
     words = ["avianlidar", verb, file, "-o", out]
-    flags = {"--weather", "--sensor-set", "--coverage-set", *(("--metar", "--siting-set") if verb == "report" else ())}
+    flags = {"--weather", "--sensor-set", "--coverage-set"}
+    if verb == "report":
+        flags |= {"--metar", "--siting-set"}
     for flag, *values in view.plan.get("options", ()):
         if flag in flags and f"{flag[2:].partition('-')[0]}.{values[0].partition('=')[0]}" not in settings:
             words += [flag, *values]
@@ -219,9 +232,10 @@ def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: O
 
 def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The step that compares networks with one lidar."""
+    words = {2: "two", 3: "three"}
     one, *more = [percent(row["value"], row["std_error"], view.count, bar=False) for row in site["gain"]]
-    together = listed([f"{ {2: 'two', 3: 'three'}.get(count, count)} detect {share}"
-                       for count, share in enumerate(more, 2)])
+    counts = [words.get(row["sensors"], row["sensors"]) for row in site["gain"][1:]]
+    together = listed([f"{count} detect {share}" for count, share in zip(counts, more)])
     return {"head": "Weigh a second lidar.", "more": "#sites", "command": "",
             "words": (f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, "
                       f"{together}, if they miss birds independently.")}
@@ -247,16 +261,20 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
     """Sentences on equally good candidates, and on a best candidate at the lattice's edge; each list may be empty."""
     more = "1 more candidate is" if site["alike"] == 1 else f"{site['alike']} more candidates are"
-    edge = "The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."
-    return [f"{more} as good within the error."] * (site["alike"] > 0), [edge] * site["edge"]
+    alike = [f"{more} as good within the error."] if site["alike"] else []
+    at_edge = "The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."
+    return alike, [at_edge] if site["edge"] else []
 
 
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The step that checks the site."""
     alike, edge = how_sure(site)
     words = [f"{site['surfaces']}. Objects that no map shows may stand there."]
-    masts = [f"{percent(value, error, view.count, bar=False)} with a mast of {row['mast']:g}\u00a0m"
-             for row in site["masts"] for value, error in [row["share"]]]
+    masts = []
+    for row in site["masts"]:
+        value, error = row["share"]
+        share = percent(value, error, view.count, bar=False)
+        masts.append(f"{share} with a mast of {row['mast']:g}\u00a0m")
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
     words += alike

@@ -237,7 +237,8 @@ class Scored:
 
 def verdict(scored: Sequence[Scored]) -> str:
     """Sentence on the best predictions for a set and their lead: by recall if all have scores, and by IoU."""
-    return " ".join(_best(scored, score) for score in ["recall_at_1"] * all(one.curves for one in scored) + ["iou"])
+    names = ["recall_at_1", "iou"] if all(one.curves for one in scored) else ["iou"]
+    return " ".join(_best(scored, name) for name in names)
 
 
 def _best(scored: Sequence[Scored], score: str) -> str:
@@ -289,7 +290,7 @@ def write_bench(folders: Sequence[Any], predictions: Sequence[Any], out, numbers
 
 def _folder_of(of: Set, folder: pathlib.Path, several: bool) -> pathlib.Path:
     """The folder with the predictions for a set. @param several whether there are several sets"""
-    places = [folder / of.name] + [folder] * (not several)
+    places = [folder / of.name] if several else [folder / of.name, folder]
     for place in places:
         if (place / "sequences").is_dir():
             return place
@@ -299,9 +300,14 @@ def _folder_of(of: Set, folder: pathlib.Path, several: bool) -> pathlib.Path:
 
 def tables(scored: Sequence[Scored]) -> Dict[str, List[Any]]:
     """Rows of the tables, by the name of the file."""
-    rows = [(one.set.name, one.set.weather, one.name, *group, words, "1", *value, one.points(group))
-            for one in scored for group in one.values for key, (words, _) in SCORES.items()
-            for value in [one.value(group, key)] if value.number]
+    rows = []
+    for one in scored:
+        for group in one.values:
+            for key, (words, _) in SCORES.items():
+                value = one.value(group, key)
+                if value.number:
+                    rows.append((one.set.name, one.set.weather, one.name, *group, words, "1", *value,
+                                 one.points(group)))
     curves = [(one.set.name, one.name, *place) for one in scored if one.curves
               for place in zip(RECALLS, np.nanmean(one.curves, axis=0))]
     return {"bench.csv": [("set", "weather", "predictions", "by", "group", "score", "unit", "value", "std_error",

@@ -87,7 +87,8 @@ class Boxes:
         centres = np.einsum("pc,tcx->tpx", parts, triangles).reshape(-1, 3)
         views = centres - place
         ranges = np.linalg.norm(views, axis=1)
-        across = np.repeat(np.cross(*np.diff(triangles, axis=1).transpose(1, 0, 2)), len(parts), axis=0)
+        first, second, third = triangles.transpose(1, 0, 2)  # corners
+        across = np.repeat(np.cross(second - first, third - second), len(parts), axis=0)
         weights = np.abs(np.einsum("ij,ij->i", across, views)) / ranges**3  # solid angles
         turned, up = self._angles(views @ self.pose[:, :3])
         inside = (up >= self.low) & (up <= self.high) & ((turned - self.begin) % (2 * np.pi) <= self.width)

@@ -66,10 +66,10 @@ def warnings_of(birds: Results, volume: str) -> np.ndarray:
 
 def of_warnings(seconds: np.ndarray) -> Scores:
     """Scores of the warnings of a volume."""
-    limits = {"at all": math.ulp(0.0), **{f"{least:g} s before or more": least for least in WARNED}}
-    return {"mean warning": ("s", scores.mean(seconds)),
-            **{f"warned {words}": ("%", scores.share(int((seconds >= least).sum()), len(seconds)))
-               for words, least in limits.items()}}
+    def warned(which: np.ndarray) -> Tuple[str, Value]:
+        return "%", scores.share(int(which.sum()), len(seconds))
+    return {"mean warning": ("s", scores.mean(seconds)), "warned at all": warned(seconds > 0.0),
+            **{f"warned {least:g} s before or more": warned(seconds >= least) for least in WARNED}}
 
 
 def band_of(height: float) -> str:
@@ -129,7 +129,8 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     by the number of the sequence @return the content of card.json"""
     names, sequences = [of.name for of in inputs], [list(of.values()) for of in results]
     birds = [[bird for one in of for bird in one["birds"]] for of in sequences]
-    overall = [{**of_birds(flock), **of_tracks(of)} for flock, of in zip(birds, sequences)]
+    of_flocks = [of_birds(flock) for flock in birds]
+    overall = [{**of_flock, **of_tracks(of)} for of_flock, of in zip(of_flocks, sequences)]
     warned = [(volume, [warnings_of(flock, volume) for flock in birds]) for volume in VOLUMES if any(map(len, runways))]
     groups = _groups(birds)
     warnings: List[Part] = [("volume", volume, [*map(of_warnings, seconds)]) for volume, seconds in warned]
@@ -141,7 +142,7 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
         "answers": [_answer(name, of, [(volume, seconds[k]) for volume, seconds in warned])
                     for k, (name, of) in enumerate(zip(names, overall))],
         "inputs": [_facts(*of) for of in zip(inputs, sequences, birds)],
-        "overall": _rows(overall), "head": [*of_birds([])],
+        "overall": _rows(overall), "head": [*of_flocks[0]],
         "groups": [{"by": by, "rows": [
             {"name": name, "counts": [found["birds tracked"][1].number for found in of],
              "cells": [row["cells"] for row in _rows(of)]}
@@ -196,8 +197,7 @@ def shown(folder: pathlib.Path, card: Dict[str, Any]) -> Dict[str, Any]:
 
 def _pictures(inputs: Sequence[Input], results: Sequence[Mapping[str, Any]], runways: Sequence[Sequence[Any]],
               warned: Warned) -> Iterator[Tuple[str, str, Tuple[float, float], str, str, Any]]:
-    """Kind, file, size in inches, alternative text, caption, and the function that draws, of each picture. A picture
-    must be drawn before the next is asked for."""
+    """Kind, file, size in inches, alternative text, caption, and the function that draws, of each picture."""
     for of, one, lines in zip(inputs, results, runways):
         number, first = next(iter(one.items()))
         last = first["shown"]
@@ -208,13 +208,14 @@ def _pictures(inputs: Sequence[Input], results: Sequence[Mapping[str, Any]], run
                f"{of.name}, scan {last['scan']} (sequence {number}), from above: its {len(last['clutter'])} echoes; "
                f"the {count} echoes that the clutter filter keeps; "
                "confirmed tracks so far; birds as they were, tracked or not",
-               lambda axes: _draw_strip(axes, ground, first))
+               lambda axes, ground=ground, first=first: _draw_strip(axes, ground, first))
         tracks = [track for sequence in one.values() for track in sequence["tracks"]]
         origins = [track["origin"] for track in tracks]
         words = ", ".join(f"{origins.count(name)} of origin {name}" for name in ORIGINS)
         ground = _ground(of, lines, lambda away: 1.05 * away.max(), [track["begin"][:2] for track in tracks])
         yield ("begin", f"{of.name}-begin.png", (5.0, 4.6), f"Where confirmed tracks of {of.name} begin: {words}.",
-               f"{of.name}: where confirmed tracks begin", lambda axes: _draw_begin(axes, ground, tracks))
+               f"{of.name}: where confirmed tracks begin",
+               lambda axes, ground=ground, tracks=tracks: _draw_begin(axes, ground, tracks))
     yield ("ospa", "ospa.png", (5.6, 3.4), "OSPA distance over time.",
            "OSPA distance over time, mean of the sequences; less is better",
            lambda axes: _draw_ospa(axes, inputs, results))

@@ -91,7 +91,11 @@ def on_the_front(costs, shares) -> np.ndarray:
 
 def is_told(share: float, error: float, asked: float) -> Optional[bool]:
     """Whether a share is at least the required share; None if the error does not decide."""
-    return True if share - TOLD * error >= asked else False if share + TOLD * error < asked else None
+    if share - TOLD * error >= asked:
+        return True
+    if share + TOLD * error < asked:
+        return False
+    return None
 
 
 @dataclasses.dataclass
@@ -170,7 +174,8 @@ class Study:
             raise Error(f"{what}: holds {broken[0]:g}, expected whole numbers")
         if isinstance(given, list):
             return lambda u: ends[min(int(u * len(ends)), len(ends) - 1)]
-        (low, high), logarithmic = ends, given.get("logarithmic", False)
+        low, high = ends
+        logarithmic = given.get("logarithmic", False)
         if not low < high:
             raise Error(f"{what}: is from {low:g} to {high:g}, expected the smaller one first")
         if logarithmic and not low > 0.0:
@@ -228,7 +233,8 @@ class Study:
 
     def _set(self, values: Mapping[str, float]) -> None:
         """Sets the plan's sensor to a design. The sensor's `Error` says why a design is impossible."""
-        sensor, (x, y, _) = self.plan.sensor, self.plan.sensor.position
+        sensor = self.plan.sensor
+        x, y, _ = sensor.position
         changes: Dict[str, Any] = {name: values[name] for name in FIELDS
                                    if name not in ("mast", *BAND) and values[name] != getattr(sensor, name)}
         if "mast" in self.swept:

@@ -62,8 +62,9 @@ def answers(study: Study) -> List[str]:
     found.append(f"At {other.number:,} other places, which were not used to choose designs, "
                  f"the design detects {cell(other, '%')}")
     if study.measure == "detected" and study.chosen:
-        found[-1] += {True: ": at least the required share", False: ": less than the required share",
-                      None: ": the error does not decide"}[is_told(other.value, other.error, study.asked)]
+        words = {True: "at least the required share", False: "less than the required share",
+                 None: "the error does not decide"}
+        found[-1] += f": {words[is_told(other.value, other.error, study.asked)]}"
     found[-1] += "."
     unsure = study.undecided()
     if unsure:
@@ -99,7 +100,8 @@ def _verdict(study: Study, one: Candidate, unknown: str) -> str:
 
 def _draw_front(axes, study: Study) -> None:
     def bars(of: List[Candidate], shares: List[Value], **style: Any) -> None:
-        values, errors = ([100 * number for number in numbers] for numbers in list(zip(*shares))[:2] or ((), ()))
+        values = [100 * share.value for share in shares]
+        errors = [100 * share.error for share in shares]
         axes.errorbar([one.cost for one in of], values, errors, **style)
     front, about = study.front, study.about
     others = [one for one in study.candidates if not (one.refused or one.front)]

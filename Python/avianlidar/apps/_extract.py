@@ -101,7 +101,8 @@ class Extract:
             # a relation of outlines and parts
             areas = [solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]
             shape, form = union(areas), "area"
-        one, corners = Feature("", tags, shape), corners_of(shape) if form else np.empty((0, 2))
+        one = Feature("", tags, shape)
+        corners = corners_of(shape) if form else np.empty((0, 2))
         if not len(corners):
             if shape is None or shape.IsEmpty():
                 self.leave(one, "without a geometry")
@@ -203,7 +204,8 @@ class Extract:
         return one if is_other_assumed or (low <= other_low and other_high <= high) else None
 
     def done(self) -> Extract:
-        for _, one in (pair for alike in self.seen.values() for pair in alike):
+        features = [one for alike in self.seen.values() for _, one in alike]
+        for one in features:
             is_cut = one.tags.get("osm_way_id") in self.cut
             if is_cut and form_of(one.shape) == "area":
                 self.leave(one, CUT)
@@ -240,7 +242,8 @@ def sea(features: List[Feature], box) -> List[Any]:
     """Areas of a box that lie to the right of its coastlines, as OpenStreetMap draws them. A polygon is an island. None
     where coastlines end within the box. @param box ogr, degrees, as the areas"""
     lines, right = box.Boundary(), []
-    for part in (part for one in features for part in parts_of(one.shape)):
+    parts = [part for one in features for part in parts_of(one.shape)]
+    for part in parts:
         points = corners_of(part)
         if form_of(part) == "area" and np.sum(points[:-1, 0] * points[1:, 1] - points[1:, 0] * points[:-1, 1]) < 0.0:
             points = points[::-1]  # land is to the left

@@ -175,8 +175,10 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
         height, source = _height(tags, rule, floor)
         under, why = _first(tags, MIN_HEIGHTS, length_of)
         if under is None:
-            each, (below, why) = rule.get("level_height", floor), _first(tags, MIN_LEVELS, levels_of)
-            under, why = (each * below, f"{why}, {each:g} m each assumed") if below else (None, why)
+            each = rule.get("level_height", floor)
+            below, why = _first(tags, MIN_LEVELS, levels_of)
+            if below:
+                under, why = each * below, f"{why}, {each:g} m each assumed"
         if under is not None and "assumed" in source and (source.startswith("assumed") or under >= height):
             height, source = under + rule.get("thickness", height), f"{source}, above {why}"
         strange = _not_understood(tags, MIN_HEIGHTS + MIN_LEVELS)

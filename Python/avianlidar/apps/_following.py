@@ -150,10 +150,12 @@ def inside(volume: str, runways: Many[Runway], places) -> np.ndarray:
     """Which of n places (n x 3, m) lie in each volume of the runways, volumes x n. Strips reach 150 m to either side of
     the middle and 60 m up. Glide paths begin at both ends of each runway and reach 3 km; they are 75 m wide to either
     side and 45 m high at the end, widen by 0.15 and rise by 3 degrees."""
-    wedges: List[Any] = [
-        (runway.start, *runway.axis(), (STRIP_HALF_WIDTH, 0.0), (STRIP_HEIGHTS[1], 0.0)) for runway in runways
-    ] if volume == "strip" else [
-        (*end, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT) for runway in runways for end in runway.ends()]
+    wedges: List[Any] = []
+    for runway in runways:
+        if volume == "strip":
+            wedges.append((runway.start, *runway.axis(), (STRIP_HALF_WIDTH, 0.0), (STRIP_HEIGHTS[1], 0.0)))
+        else:
+            wedges += [(*end, APPROACH_LENGTH, APPROACH_HALF_WIDTH, APPROACH_HEIGHT) for end in runway.ends()]
     return np.array([scores.in_wedge(places, *wedge) for wedge in wedges], bool).reshape(-1, len(places))
 
 

@@ -126,6 +126,8 @@ def solid(shape):
 
 def union(areas: List[Any]):
     whole = ogr.Geometry(ogr.wkbMultiPolygon)
-    for part in (part for area in areas for part in parts_of(valid(area)) if form_of(part) == "area"):
-        whole.AddGeometry(part)
+    for area in areas:
+        for part in parts_of(valid(area)):
+            if form_of(part) == "area":
+                whole.AddGeometry(part)
     return whole.UnionCascaded()

@@ -36,9 +36,7 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
             plan["metar"] = str(pathlib.Path(metar).resolve())
         for part, values in changes.items():
             if values and isinstance(plan.get(part, {}), dict):
-                plan[part] = {**plan.get(part, {}), **{
-                    name: list(value) if isinstance(value, (tuple, list)) else
-                    [value] if name in ("masts", "exclusions") else value for name, value in values.items()}}
+                plan[part] = {**plan.get(part, {}), **{name: _in_plan(name, value) for name, value in values.items()}}
     check_json(plan, "coverage.schema.json", str(file))
 
     def from_here(name: Any) -> Any:
@@ -73,17 +71,28 @@ def read_plan(file, words: Optional[Sequence[str]] = None, metar=None, **changes
         with naming(f"{file}: metar"):
             hours = _metar.read_metar(plan["metar"])
             plan.update(year=hours.year(), hours=hours.words())
-    options = [[f"--{part}-set", f"{name}={_as_option(value)}"]
-               for part, values in changes.items() for name, value in (values or {}).items()]
-    weather_and_year = [["--weather", *(words or ())]] * bool(words) + [["--metar", str(metar)]] * bool(metar)
-    return {**plan, "file": str(file), "options": weather_and_year + options}
+    options = [["--weather", *words]] if words else []
+    if metar:
+        options.append(["--metar", str(metar)])
+    options += [[f"--{part}-set", f"{name}={_as_option(value)}"]
+                for part, values in changes.items() for name, value in (values or {}).items()]
+    return {**plan, "file": str(file), "options": options}
+
+
+def _in_plan(name: str, value: Any) -> Any:
+    """A setting as a plan holds it: several values, or a member that may have several, as a list."""
+    if isinstance(value, (tuple, list)):
+        return list(value)
+    return [value] if name in ("masts", "exclusions") else value
 
 
 def _as_option(value: Any) -> str:
     """A value as an option of a command."""
     if isinstance(value, (list, tuple)):
         return ",".join(map(_as_option, value))
-    return ("off", "on")[value] if isinstance(value, bool) else str(value)
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return str(value)
 
 
 def _check_question(plan: Dict[str, Any], file: str) -> None:

@@ -22,8 +22,8 @@ class Class(NamedTuple):
     color: Tuple[int, ...]         # blue, green, red
 
 
-# Every class of a sequence, by its id in SemanticKITTI (Documentation/reference/formats.md). Classes to be found come
-# first.
+# Every class of a sequence, by its id in SemanticKITTI (Documentation/reference/formats.md).
+# Classes to be found come first.
 CLASSES = {int(label): Class(name, here, tuple(color))
            for label, (name, here, color) in packaged("classes.json").items()}
 

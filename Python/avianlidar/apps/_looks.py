@@ -69,7 +69,9 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
             sensor.position = (0.0, 0.0, 0.0)
             # the number of threads changes no bit
             inputs = {name: repr(value) for name, value in settings.items() if name != "number_of_threads"}
-            known = [list(species), array, area_factor, inputs, *([[dict(air) for air in airs]] if any(airs) else [])]
+            known = [list(species), array, area_factor, inputs]
+            if any(airs):
+                known.append([dict(air) for air in airs])
             files = files_of(cover, sites, places, known, folder)
             ranks.agree(folder, lambda: [file.name for file in files])
             if len(sites):

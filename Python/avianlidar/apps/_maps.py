@@ -2,10 +2,11 @@
 """Maps of coverage as files: the command `avianlidar coverage`."""
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import pathlib
-from typing import Any, Callable, Dict, Iterator, Optional, Sequence
+from typing import Any, Callable, Dict, Optional, Sequence
 
 import numpy as np
 
@@ -154,8 +155,8 @@ def notes_of(plan: Plan) -> Dict[str, str]:
             "assumed_of_the_sensor": ", ".join(plan.assumed) or "none", "limits": "calculated, not measured"}
 
 
-def _write_each(plan: Plan, folder: pathlib.Path) -> Iterator[None]:
-    """Writes the files of a plan, and stops after each."""
+def _write_each(plan: Plan, folder: pathlib.Path, step: Callable[[], Any]) -> None:
+    """Writes the files of a plan. @param step called after each file"""
     origin = plan.scene.geodetic_origin
     for height in plan.heights:
         cover, at, notes = plan.map_at(height), height_name(height), {**notes_of(plan), "height_m": f"{height:g}"}
@@ -164,16 +165,16 @@ def _write_each(plan: Plan, folder: pathlib.Path) -> Iterator[None]:
             values = plan.mixed(cover, quantity) if quantity.endswith("_probability") else cover[quantity]
             write_geotiff(folder / f"{quantity}_{at}.tif", values[0], *place, f"{quantity} at {height:g} m", unit,
                           cover.status_names if quantity == "status" else (), notes)
-            yield
+            step()
         if origin is not None:
             file = folder / f"detection_probability_{at}"
             write_areas(f"{file}.geojson", f"{file}.tif", "; ".join(map(": ".join, notes.items())))
-            yield
+            step()
     save(plan.coverage.clutter_map, folder / "clutter.vtp")
-    yield
+    step()
     for name, rows in (("shares.csv", plan.shares), ("ends.csv", plan.by_end)):
         write_table(folder / name, rows)
-        yield
+        step()
 
 
 def write_maps(plan: Plan, folder, progress: Callable[[int, int], Any] = lambda *_: None) -> int:
@@ -182,6 +183,6 @@ def write_maps(plan: Plan, folder, progress: Callable[[int, int], Any] = lambda 
     of all files"""
     total = len(plan.heights) * (len(QUANTITIES) + (plan.scene.geodetic_origin is not None)) + 3
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
-    for number, _ in enumerate(_write_each(plan, pathlib.Path(folder)), 1):
-        progress(number, total)
+    done = itertools.count(1)
+    _write_each(plan, pathlib.Path(folder), lambda: progress(next(done), total))
     return total

@@ -77,7 +77,10 @@ def report_of(line: str) -> Hour:
         present = PRESENT.match(word)
         if present:
             kinds = re.findall("..", present[2])
-            rain = max(rain, RAIN[present[1]] if "RA" in kinds else DRIZZLE if "DZ" in kinds else 0.0)
+            if "RA" in kinds:
+                rain = max(rain, RAIN[present[1]])
+            elif "DZ" in kinds:
+                rain = max(rain, DRIZZLE)
             others += [NOT_MODELLED[kind] for kind in kinds if kind in NOT_MODELLED]
     return Hour(found[1], found[2], visibility, rain, tuple(others))
 

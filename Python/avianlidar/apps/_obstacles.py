@@ -87,8 +87,11 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), skipinitialspace=True)
     names = [name.strip().lower() for name in next(rows, [])]
     plain_names = [UNIT.sub("", name) for name in names]
-    at = {column: plain_names.index(word) for column, words in COLUMNS.items() for word in reversed(words)
-          if word in plain_names}
+    at: Dict[str, int] = {}
+    for column, words in COLUMNS.items():
+        there = [word for word in words if word in plain_names]
+        if there:
+            at[column] = plain_names.index(there[0])
     if not {"longitude", "latitude"} <= at.keys() or not MOST.keys() & at.keys():
         raise Error(f"{file}: expected the columns longitude, latitude, and height or elevation "
                     f"(and unit, kind, name), found {', '.join(names)[:200]}")
@@ -144,7 +147,8 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
         slices = [one for one in _all(structure, "VerticalStructureTimeSlice")
                   if not _text(one, "interpretation").endswith("DELTA")]
         last = max(slices, key=lambda one: int(_text(one, "sequenceNumber") or 0), default=None)
-        for part in _all(last, "VerticalStructurePart") if last is not None else ():
+        parts = _all(last, "VerticalStructurePart") if last is not None else []
+        for part in parts:
             name = _text(last, "name")
             what = f"{file}: {name}"
             tags = {"id": next((value for key, value in structure.attrib.items() if key.endswith("}id")), name),
@@ -152,19 +156,22 @@ def _aixm(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], 
             for column, element in (("height", "verticalExtent"), ("elevation", "elevation")):
                 for one in _all(part, element)[:1]:
                     value = _metres((one.text or "").strip(), one.get("uom", "M"), what, MOST[column])
-                    tags.update({column: f"{value:.3f}"} if value is not None else {})
+                    if value is not None:
+                        tags[column] = f"{value:.3f}"
             yield tags, _shape(part, what)
 
 
 def _shape(part, what: str):
     """The place of a part (ogr, degrees), or None."""
-    for place in (one for one in part.iter()
-                  if one.tag.rpartition("}")[2].removeprefix("Elevated") in ("Point", "Curve", "Surface")):
+    for place in part.iter():
+        if place.tag.rpartition("}")[2].removeprefix("Elevated") not in ("Point", "Curve", "Surface"):
+            continue
         srs = next((one.get("srsName") for one in place.iter() if one.get("srsName")), "urn:ogc:def:crs:EPSG::4326")
-        words = " ".join(one.text or "" for one in place.iter() if one.tag.rpartition("}")[2].startswith("pos"))
+        words = " ".join(one.text or "" for one in place.iter() if one.tag.rpartition("}")[2] in ("pos", "posList"))
         if words.strip():
             try:
-                [float(word) for word in words.replace(",", " ").split()]  # GDAL would read other words as 0
+                for word in words.replace(",", " ").split():
+                    float(word)  # raises ValueError for words that GDAL would read as 0
                 shape = ogr.CreateGeometryFromGML(ElementTree.tostring(place, "unicode").replace("Elevated", ""))
             except (RuntimeError, ValueError) as error:
                 raise Error(f"{what}: {words[:60]!r}: cannot be read as coordinates of GML ({error})") from None

@@ -86,7 +86,8 @@ def _expect_map(file: pathlib.Path) -> None:
     kinds = {"is empty": not head, "is in UTF-16": head.startswith((b"\xff\xfe", b"\xfe\xff")),
              "is a web page": head.startswith((b"<!doctype html", b"<html")),
              "is Overpass's own JSON": head.startswith(b"{") and b'"elements"' in head}
-    for what in (what for what, is_so in kinds.items() if is_so):
+    what = next((what for what, is_so in kinds.items() if is_so), "")
+    if what:
         raise Error(f"{file}: {what}, expected an extract of a map: "
                     "export it again as .osm, .osm.pbf, .geojson or .gpkg")
 

@@ -127,15 +127,17 @@ def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     """Draws a map of probabilities or of statuses."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
+    is_status = quantity == "status"
     style: Dict[str, Any] = {"cmap": "viridis", "vmin": 0.0, "vmax": 1.0}
-    if quantity == "status":
+    if is_status:
         limits = np.arange(len(STATUS_COLOURS) + 1) - 0.5
         style = {"cmap": ListedColormap(STATUS_COLOURS), "norm": BoundaryNorm(limits, len(STATUS_COLOURS))}
-    values, data = cover["status"] if quantity == "status" else plan.mixed(cover, quantity), cover.data
+    values = cover["status"] if is_status else plan.mixed(cover, quantity)
+    data = cover.data
     first, step, count = (np.array(of[:2]) for of in (data.GetOrigin(), data.GetSpacing(), data.GetDimensions()))
     extent = np.transpose([first - 0.5 * step, first + (count - 0.5) * step]).ravel()
     axes.imshow(values[0], origin="lower", extent=extent, interpolation="nearest", **style)
-    draw_airport(axes, plan, "0.1" if quantity == "status" else "0.75")
+    draw_airport(axes, plan, "0.1" if is_status else "0.75")
 
 
 def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:

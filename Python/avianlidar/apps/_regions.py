@@ -148,8 +148,9 @@ def _region_shares(runways: Sequence[Runway], shares: Optional[Mapping[str, Any]
             short = [name.partition(" ")[2] for name in names]
             known = {**dict(zip(names, names)), **dict(zip(short, names))}
             known.update({runway.name: name for runway, name in zip(runways, names)} if kind == "strips" else {})
-            for word in (word for word in given if word not in known):
-                raise ValueError(f"{kind} has {word!r}, expected some of {', '.join(short)}")
+            for word in given:
+                if word not in known:
+                    raise ValueError(f"{kind} has {word!r}, expected some of {', '.join(short)}")
             found[kind] = {**dict.fromkeys(names, 0.0), **{known[word]: float(share) for word, share in given.items()}}
         else:
             sizes = ([runway.axis()[1] for runway in runways] if (kind, spread) == ("strips", "area") else

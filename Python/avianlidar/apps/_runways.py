@@ -78,8 +78,8 @@ def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, 
     labels = connected_components(fit)[1] if pieces else fit
     members = sorted((np.flatnonzero(labels == label) for label in np.unique(labels)), key=lambda of: of[-1])
     found = []
-    for group in ([pieces[i] for i in of] for of in members):
-        group.sort(key=lambda one: one.is_displaced)  # the longest way first
+    for numbers in members:
+        group = sorted([pieces[i] for i in numbers], key=lambda one: one.is_displaced)  # the longest way first
         tags = {name: value for one in reversed(group) for name, value in one.tags.items() if name != "runway"}
         points, along, start = np.concatenate([one.points for one in group]), group[0].along, group[0].points[0]
         number = re.match(r"(\d{1,2})[LCR]?\s*/", tags.get("ref", ""))
@@ -193,7 +193,9 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     elif len(groups) > 1 and box is None:
         raise Error(f"{file}: holds runways of {len(groups)} airports: {', '.join(names.values())}; "
                     "expected one airport, or --icao CODE or --bounds W S E N to choose one")
-    for one in (one for key in groups if key not in chosen for one, _ in groups[key]):
-        extract.leave(one, "of another airport")
+    for key in groups:
+        if key not in chosen:
+            for one, _ in groups[key]:
+                extract.leave(one, "of another airport")
     aerodrome = next((extract.aerodromes[key] for key in chosen if isinstance(key, int)), None)
     return [one for key in chosen for one, _ in groups[key]], aerodrome

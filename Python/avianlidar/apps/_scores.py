@@ -73,10 +73,12 @@ def in_wedge(points, threshold, outwards, length: float, half_width: Tuple[float
     """Which points lie below and beside the glide path before a threshold, or in the box over a runway. @param points n
     x 3, m @param outwards unit vector away from the runway, or along the runway @param half_width, height m at the
     threshold, and increase per metre outwards"""
-    points, (x, y) = np.asarray(points, float).reshape(-1, 3), outwards
+    points = np.asarray(points, float).reshape(-1, 3)
+    x, y = outwards
     along, aside = ((points[:, :2] - np.asarray(threshold)) @ [[x, y], [y, -x]]).T
-    return (along >= 0.0) & (along <= length) & (np.abs(aside) <= half_width[0] + half_width[1] * along) & (
-        points[:, 2] <= height[0] + height[1] * along)
+    is_beside = np.abs(aside) <= half_width[0] + half_width[1] * along
+    is_below = points[:, 2] <= height[0] + height[1] * along
+    return (along >= 0.0) & (along <= length) & is_beside & is_below
 
 
 def entered(inside: np.ndarray) -> np.ndarray:

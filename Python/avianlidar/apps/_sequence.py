@@ -191,12 +191,18 @@ class Sequence(Simulation):
             raise Error(f"{folder}: has {scans} scans, but number_of_scans is {self.scans}: {_FEWER}")
         if scans < wanted:
             return False
-        keys: List[Any] = [map(str, classes_of(self.bird_class)), STATUSES, SUBSETS]
-        for name, allowed in [*zip(TABLES, keys), *((name, [name]) for name in COUNTS)]:
-            table = known.get(name) if name in TABLES else {name: known.get(name)}
-            if not isinstance(table, dict) or not {*table} <= {*allowed} or {*map(type, table.values())} - {int}:
-                raise Error(f"{folder / DONE}: {name} is missing or is not a count. {_AGAIN}")
-        return bool(content_of(folder))
+
+        def is_wrong(table: Any, allowed: Any) -> bool:
+            return (not isinstance(table, dict) or not set(table) <= set(allowed)
+                    or any(type(count) is not int for count in table.values()))
+        classes = [str(label) for label in classes_of(self.bird_class)]
+        wrong = [name for name, allowed in zip(TABLES, (classes, STATUSES, SUBSETS))
+                 if is_wrong(known.get(name), allowed)]
+        wrong += [name for name in COUNTS if type(known.get(name)) is not int]
+        if wrong:
+            raise Error(f"{folder / DONE}: {wrong[0]} is missing or is not a count. {_AGAIN}")
+        content_of(folder)
+        return True
 
 
 def _short(value: Any) -> str:

@@ -131,11 +131,14 @@ class Sites:
                            "take a larger spacing, fewer masts or places")
         with naming(f"{plan.file}: siting.surfaces"):
             self._keep_below()
-        heights: Dict[str, float] = {}  # empty if no building height is read from an attribute
+        self.varies_heights = False
+
+        def as_it_is() -> float:  # called for each building height that is read from an attribute
+            self.varies_heights = True
+            return 0.0
         if self.draws:
             with naming(f"{plan.file}: scene"), tempfile.TemporaryDirectory() as copy:
-                with_other_heights(plan.plan["scene"], copy, lambda: heights.setdefault("offset", 0.0))
-        self.varies_heights = bool(heights)
+                with_other_heights(plan.plan["scene"], copy, as_it_is)
 
     def _keep_below(self) -> None:
         """Leaves out candidates whose masts pierce an obstacle limitation surface."""

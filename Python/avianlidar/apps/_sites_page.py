@@ -26,9 +26,10 @@ def kept_surfaces(sites: Sites) -> str:
     code = "code number" if "code" in sites.changed else "code number by its length, assumed:"
     codes = "; ".join(f"{one.runway.name}: {code} {one.code}" for one in sites.surfaces)
     changed = ", ".join(name for name in sites.pierced if isinstance(sites.changed.get(name), dict))
+    changes = f"; the plan changes {changed}" if changed else ""
     count = sum(sites.pierced.values())
     return (f"masts keep below {', '.join(sites.pierced)} surfaces of ICAO Annex 14 ({TABLE['year']}) for {category} "
-            f"approaches, {codes}{f'; the plan changes {changed}' if changed else ''}; {count} of "
+            f"approaches, {codes}{changes}; {count} of "
             f"{count + len(sites.positions)} candidates pierced a surface and are left out ({sites.counted})")
 
 

@@ -35,7 +35,9 @@ def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         count = len(list(folder.glob(pattern)))
-        raise KeyboardInterrupt(*[f"{folder}: {what}: {count}; the same command continues"] if count else []) from None
+        if count:
+            raise KeyboardInterrupt(f"{folder}: {what}: {count}; the same command continues") from None
+        raise KeyboardInterrupt from None
 
 
 def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
@@ -61,7 +63,8 @@ def sequence(options) -> None:
         if values:
             changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
     sequence = Sequence(options.scenario, threads=threads, **changes)
-    done, what = itertools.count(1), "scans" if ranks.size == 1 else "scans of the first rank"
+    done = itertools.count(1)
+    what = "scans" if ranks.size == 1 else "scans of the first rank"
     with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
         manifest = sequence.write(options.out, ranks, None if ranks.rank else
                                   lambda *_: bar(what, next(done), sequence.scans_to_do))
@@ -214,4 +217,5 @@ def reach(options) -> None:
 def report(options) -> None:
     report = Report(_plan(options), options.threads, bar)
     _say_before(report.plans[0])
-    tell(f"{options.out}: the report; {report.write(options.out)}: its tables and pictures")
+    folder = report.write(options.out)
+    tell(f"{options.out}: the report; {folder}: its tables and pictures")

@@ -39,8 +39,11 @@ def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
 
 def texts(row: Iterable[Any]) -> List[Any]:
     """A row of CSV: numbers with six digits, nothing for None and nan."""
-    return ["" if value is None or value != value else f"{value:.6g}" if isinstance(value, float) else value
-            for value in row]
+    def text(value: Any) -> Any:
+        if value is None or value != value:
+            return ""
+        return f"{value:.6g}" if isinstance(value, float) else value
+    return [text(value) for value in row]
 
 
 def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
@@ -85,5 +88,7 @@ def render(template: str, **values: Any) -> bytes:
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.globals["zip"] = zip
     environment.filters["number"] = lambda value, form: "–" if math.isnan(value) else form % value
-    environment.filters.update({name[7:]: values.pop(name) for name in [*values] if name.startswith("filter_")})
+    for name in list(values):
+        if name.startswith("filter_"):
+            environment.filters[name.removeprefix("filter_")] = values.pop(name)
     return environment.get_template(template).render(**values).encode()

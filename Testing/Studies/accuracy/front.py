@@ -35,9 +35,10 @@ def measure(name, sensor, options):
        argument("--reference-rays", type=whole(1000, 1000000), default=30000, help="default 30000"))
 def main(options):
     rows = list(trade_runs.measured(options, measure))
+    of_rays, of_cells = ([row for row in rows if row[3] == method] for method in ("Rays", "Cells"))
     start = ("scene, sensor", "own error of the reference", "RaysPerBeam")
     tools.leave(options.out, "accuracy-cells-rays", (
         *start, "BeamSamples", "energy, rms", "s of one core", "echoes missed or invented"), [row[:-1] for row in rows])
     tools.leave(options.out, "standard-errors", (
         *start, "echoes within 1.96 standard errors, Rays", "echoes within 1.96 standard errors or the bound, Cells"), [
-        (*one[:3], one[-1], other[-1]) for one, other in zip(rows[::2], rows[1::2])])
+        (*one[:3], one[-1], other[-1]) for one, other in zip(of_rays, of_cells)])

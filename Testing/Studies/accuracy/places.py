@@ -87,7 +87,7 @@ def main(options):
         found = list(measure(name, sensor, options))
         if not found:
             sys.exit(f"{name}: no place with {FEWEST} echoes was found")
-        (title, *_), *_ = found
+        title = found[0][0]
         for k, setting in enumerate(JUDGED):
             errors.append((title, setting, *(span([one[k][i] for _, one, _ in found], "{:.2g}", " %") for i in (0, 1))))
         without, two, cells = zip(*(ratios for _, _, ratios in found))
