@@ -99,6 +99,7 @@ bool WasAborted(vtkAlgorithm* algorithm)
 
 //------------------------------------------------------------------------------
 bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
+try
 {
   bool done = false;
   bool otherThrew = false;
@@ -136,13 +137,21 @@ bool vtkAvianLidarRanks::Run(vtkAlgorithm* self, const Body& body) const
   }
   catch (...)
   {
-    if (this->Alone())
+    if (!this->Alone() && !mine.empty())
     {
-      throw;
+      EndJob(self, mine.c_str());
     }
-    EndJob(self, mine.empty() ? vtkAvianLidarGuard::NoMemory : mine.c_str());
+    throw;
   }
   return false;
+}
+catch (...)
+{
+  if (this->Alone())
+  {
+    throw;
+  }
+  EndJob(self, vtkAvianLidarGuard::NoMemory); // there is no memory for the problem
 }
 
 //------------------------------------------------------------------------------
