@@ -300,7 +300,8 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   const double bound =
     std::max({ measure.axes[0].bound(), measure.axes[1].bound(), measure.axes[2].bound() });
   formats::CloudNotes notes = fields::ToNotes(input);
-  notes.notes.push_back({ "las_rounding_bound", "m", { bound }, {} });
+  const names::Name& name = names::LasRoundingBound;
+  notes.notes.push_back({ name.name, name.unit, { bound }, {} });
   std::vector<std::string> left;
   output.description = formats::toText(notes, formats::LasLongestVlr, left);
   if (!left.empty())

@@ -45,7 +45,6 @@ using avianlidar::failIf;
 namespace
 {
 constexpr char TimesFile[] = "times.txt";
-constexpr char Label[] = "semantic_label";
 
 /// Matrix from the sensor's frame (x forward, y left, z up) to the poses' frame.
 using Pose = glm::dmat4x3;
@@ -245,7 +244,8 @@ void ReadScan(vtkAlgorithm* self, const fs::path& folder, std::size_t scan, vtkP
   }
   vtkAvianLidarCloudFields::ToPolyData(cloud, points);
   vtkPointData* data = points->GetPointData();
-  data->SetActiveScalars(data->HasArray(Label) ? Label : names::Intensity.name);
+  const char* label = names::SemanticLabel.name;
+  data->SetActiveScalars(data->HasArray(label) ? label : names::Intensity.name);
   const std::string boxFile = NumberedFile(folder / "boxes", scan, ".txt");
   if (fs::exists(boxFile))
   {

@@ -2,6 +2,7 @@
 #include "KittiFormat.h"
 
 #include "FieldTable.h"
+#include "vtkAvianLidarNames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,8 +130,8 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
         label[i] = load<std::uint16_t>(bytes);
         instance[i] = load<std::uint16_t>(bytes + 2);
       });
-    cloud.columns.push_back({ "semantic_label", "", 1, std::move(label) });
-    cloud.columns.push_back({ "instance_id", "", 1, std::move(instance) });
+    cloud.columns.push_back({ vtkAvianLidarArrays::SemanticLabel.name, "", 1, std::move(label) });
+    cloud.columns.push_back({ vtkAvianLidarArrays::InstanceId.name, "", 1, std::move(instance) });
   }
   dropEmptyCells(cloud);
   if (cloud.size() < n)

@@ -44,6 +44,7 @@ PICTURES = {
     "render_notebook": {"energy-image": "python-range-image"},
     "report_card": {"scan": "tracks-scan"},
     "room": {"xt32-ranges": "room-xt32-ranges"},
+    "scores": {"curves-neubrandenburg": "bench-neubrandenburg"},
     "screenshots": {"head": "coverage-report"},
     "weather": {"weather": "weather"},
     "your_airport": {"airport": "your-airport"},

@@ -389,6 +389,22 @@ constexpr Name ChamferSimulatedToReference{ "density_aware_chamfer_simulated_to_
 /// density-aware Chamfer distance from reference to simulated
 constexpr Name ChamferReferenceToSimulated{ "density_aware_chamfer_reference_to_simulated", "1" };
 
+// Every scan (field data).
+/// filter preset (int)
+constexpr Name Preset{ "preset", "1" };
+/// software version (text)
+constexpr Name Version{ "avian_lidar_version", "" };
+/// checksum of the surfaces (unsigned 64-bit)
+constexpr Name SceneChecksum{ "scene_checksum", "" };
+
+// Clouds read from files (point data, field data).
+/// class (unsigned short)
+constexpr Name SemanticLabel{ "semantic_label", "" };
+/// object (unsigned short)
+constexpr Name InstanceId{ "instance_id", "" };
+/// largest coordinate rounding
+constexpr Name LasRoundingBound{ "las_rounding_bound", "m" };
+
 /// Arrays of the points of a cloud, which readers and writers of files recognise.
 constexpr Name CloudArrays[] = { BeamId, LaserId, Azimuth, VerticalAngle, Timestamp, ObjectId,
   MaterialId, Energy, EnergyReceived, ReturnEnergy, EnergyStdError, Photoelectrons, SignalToNoise,

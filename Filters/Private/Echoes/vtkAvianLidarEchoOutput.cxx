@@ -431,12 +431,12 @@ void vtkAvianLidarEchoOutput::FillFields(const avianlidar::ScanSetup& setup, int
   std::uint64_t sceneChecksum, vtkFieldData* fields)
 {
   fields->PassData(beamFields);
-  names::SetFieldInteger(fields, { "preset", "1" }, preset);
+  names::SetFieldInteger(fields, names::Preset, preset);
   avianlidar::EchoSettings settings = setup.settings;
   settings.attenuationCoefficient = setup.attenuation(); // of all media that fill the scene
   SetSettings(settings, fields);
-  names::SetFieldStrings(fields, { "avian_lidar_version", "" }, { AVIANLIDAR_VERSION });
-  auto checksum = names::Make<vtkTypeUInt64Array>({ "scene_checksum", "" }, 1);
+  names::SetFieldStrings(fields, names::Version, { AVIANLIDAR_VERSION });
+  auto checksum = names::Make<vtkTypeUInt64Array>(names::SceneChecksum, 1);
   const std::uint64_t parts[] = { sceneChecksum, movers.checksum };
   checksum->SetValue(
     0, movers.movers ? avianlidar::hashOf(parts, sizeof(parts), 0) : sceneChecksum);

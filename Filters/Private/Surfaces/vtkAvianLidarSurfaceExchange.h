@@ -36,7 +36,7 @@ public:
   /// @param input surfaces of this rank @param what beginning of error messages, such as "Input
   /// port 1, " @param threads as for vtkAvianLidarRanks::Threads() @param known result of the last
   /// call, null at first. If no surface changed, `known` is returned. Otherwise the new result
-  /// shares the unchanged parts of `known`.
+  /// shares the mesh of `known` if the geometry is equal.
   std::shared_ptr<const vtkAvianLidarSurfaces> Merge(const vtkAvianLidarRanks& ranks,
     vtkDataObject* input, const std::string& what, int threads,
     const std::shared_ptr<const vtkAvianLidarSurfaces>& known);

@@ -53,8 +53,8 @@ struct vtkAvianLidarSurfaces
   /// are sorted (TriangleOrder.h), so that surfaces give the same echoes however they are divided.
   /// Ghost cells, vertices and lines are skipped. Polygons and strips are triangulated. Merging the
   /// result of ToPolyData() gives the same scene.
-  /// @param known earlier result, may be null, whose mesh is shared if the geometry is equal. An
-  /// edited material of a large scene is then merged several times faster.
+  /// @param known earlier result, may be null, whose mesh is shared if the geometry is equal.
+  /// Edited coefficients of a large scene are then merged several times faster.
   /// @param threads number of threads that check the leaves; 0: all threads
   static vtkAvianLidarSurfaces Merge(
     vtkDataObject* input, const vtkAvianLidarSurfaces* known = nullptr, int threads = 0);
