@@ -65,7 +65,7 @@ class Formula:
         return isinstance(node, (ast.Expression, ast.Name, ast.expr_context, *OPERATORS))
 
     def __call__(self, values: Values) -> float:
-        """The finite value of the formula. ValueError gives the numbers for which there is none."""
+        """The value of the formula. ValueError gives the numbers for which the value is not finite."""
         problem: Any = "it is not finite"
         try:
             result = eval(self._code, {"__builtins__": {}, **FUNCTIONS}, {**values})
