@@ -182,7 +182,7 @@ class OneRun(Applications):
                 ("report", self.plan, "in/here/r.html", "in/here/r_files", (_report.Report, "_tables"), 1),
                 ("coverage", self.plan, "in/maps", "in/maps", (_maps, "write_table"), 1),
                 ("siting", self.plan, "in/sites", "in/sites", (al.Coverage, "set"), 5),
-                ("sequence", self.scenario, "in/sets", "in/sets", (al.Sequence, "truth"), 1)):
+                ("sequence", self.scenario, "in/sets", "in/sets", (al.Sequence, "_truth"), 1)):
             for error, status in ((KeyboardInterrupt, 130), (al.Error("no more"), 2)):
                 with self.subTest(verb=verb, error=error):
                     arguments, second = (verb, file, "-o", self.home / out, *([] if verb == "siting" else ["--threads", "1"])), []
