@@ -10,6 +10,7 @@
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -157,7 +158,7 @@ void Measure(
 // Computes the measures of all ranks from the distances of each rank. All ranks must call this
 // function.
 // @param others number of points of the other cloud on all ranks
-void Summarize(
+void Summarise(
   const vtkAvianLidarRanks& ranks, vtkIdType others, double alpha, Direction& direction)
 {
   vtkSmartPointer<vtkIdTypeArray> nearest = direction.Nearest;
@@ -200,7 +201,24 @@ void LeavePointsOut(vtkPointSet* cloud)
 }
 
 vtkStandardNewMacro(vtkAvianLidarCloudComparison);
-vtkAvianLidarCxxControllerMacro(vtkAvianLidarCloudComparison);
+vtkCxxSetSmartPointerMacro(vtkAvianLidarCloudComparison, Controller, vtkMultiProcessController);
+
+//------------------------------------------------------------------------------
+vtkMultiProcessController* vtkAvianLidarCloudComparison::GetController()
+{
+  return this->Controller;
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarCloudComparison::ModifyRequest(vtkInformation* request, int when)
+{
+  if (when == vtkExecutive::BeforeForward && request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    this->ForgetResult(); // VTK does not call RequestData() if a producer returned 0
+  }
+  return vtkAvianLidarRanks::UpdateInputs(this, request, when) &&
+    this->Superclass::ModifyRequest(request, when);
+}
 
 //------------------------------------------------------------------------------
 vtkAvianLidarCloudComparison::vtkAvianLidarCloudComparison()
@@ -269,7 +287,6 @@ int vtkAvianLidarCloudComparison::RequestUpdateExtent(
 int vtkAvianLidarCloudComparison::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  this->ForgetResult();
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks)
     {
@@ -298,7 +315,7 @@ int vtkAvianLidarCloudComparison::RequestData(
       for (int port = 0; port < Ports; ++port)
       {
         const vtkIdType others = whole[1 - port]->GetNumberOfPoints();
-        Summarize(ranks, others, this->ChamferAlpha, directions[port]);
+        Summarise(ranks, others, this->ChamferAlpha, directions[port]);
       }
       this->HausdorffSimulatedToReference = directions[0].Largest;
       this->HausdorffReferenceToSimulated = directions[1].Largest;

@@ -7,6 +7,7 @@ import unittest
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarCloudComparison as Comparison
 
@@ -150,3 +151,13 @@ class BadInput(unittest.TestCase):
             self.assertEqual(comparison.GetOutputDataObject(port).GetNumberOfPoints(), 0)
         for getter in (*FIELDS.values(), *CHAMFER.values()):
             self.assertTrue(math.isnan(getattr(comparison, getter)()), getter)
+
+    def test_a_source_without_its_file(self):
+        reader = vtkSTLReader()
+        reader.SetFileName("missing.stl")
+        comparison, _ = compare(cloud([(0, 0, 0)]), cloud([(1, 0, 0)]))
+        self.assertEqual(comparison.GetHausdorffDistance(), 1)
+        Messages(reader, comparison)
+        comparison.SetInputConnection(1, reader.GetOutputPort())
+        comparison.Update()
+        self.assertTrue(math.isnan(comparison.GetHausdorffDistance()))
