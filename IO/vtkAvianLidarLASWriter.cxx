@@ -270,7 +270,7 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   formats::LasOutput output;
   output.size = input->GetNumberOfPoints();
   output.compressed = formats::endingOf(this->FileName) == ".laz";
-  output.simulated = input->GetFieldData()->HasArray("avian_lidar_version") != 0;
+  output.simulated = input->GetFieldData()->HasArray(names::Version.name) != 0;
   output.sourceId = this->SourceId;
   output.software = "avian-lidar " AVIANLIDAR_VERSION;
   TakeCore(input, output);

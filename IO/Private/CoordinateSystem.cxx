@@ -5,7 +5,6 @@
 #include "VirtualFiles.h"
 
 #include <cpl_conv.h>
-#include <cpl_error.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
@@ -130,7 +129,7 @@ std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& t
 
 std::string foreignUnitOf(const std::string& wkt)
 {
-  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  const scene::QuietGdal quiet;
   const OGRSpatialReference system = systemOf(wkt);
   if (system.IsEmpty())
   {
@@ -148,7 +147,7 @@ std::string foreignUnitOf(const std::string& wkt)
 
 int utmZoneOf(const std::string& wkt)
 {
-  const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  const scene::QuietGdal quiet;
   const OGRSpatialReference system = systemOf(wkt);
   const char* datum = system.GetAttrValue("DATUM");
   int north = 0;

@@ -66,7 +66,6 @@ void synchroniseFolderOf(const std::string& name)
 }
 
 OutputFile::OutputFile(const std::string& name)
-  : Name(name)
 {
   struct stat old = {};
   requireDone(stat(name.c_str(), &old) == 0 || errno == ENOENT, Unopened);
@@ -78,6 +77,7 @@ OutputFile::OutputFile(const std::string& name)
   {
     path = path.parent_path() / fs::read_symlink(path, error);
   }
+  failIf(!path.has_filename(), Unopened);
   const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : ".", error);
   errno = error.value();
   requireDone(!error, Unopened);
@@ -98,6 +98,11 @@ OutputFile::OutputFile(const std::string& name)
         hold(part, O_CREAT | O_EXCL, this->Mode ? this->Mode | S_IWUSR : DEFFILEMODE);
       this->File = made < 0 ? nullptr : fdopen(made, "wb");
       this->Part = part;
+      if (made >= 0 && !this->File)
+      {
+        std::remove(part.c_str());
+        close(made);
+      }
     }
   }
   requireDone(this->File, Unopened);
@@ -135,15 +140,17 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
   second.finish();
   // Another writer would remove the old file under the name of the part if it were not locked.
   first.Old = open(first.Name.c_str(), O_RDONLY | O_CLOEXEC);
-  flock(first.Old, LOCK_EX | LOCK_NB);
+  const bool isNew = first.Old < 0 && errno == ENOENT;
+  if (first.Old >= 0)
+  {
+    flock(first.Old, LOCK_EX | LOCK_NB);
+  }
   const auto exchange = [&]
   {
     return renameat2(AT_FDCWD, first.Part.c_str(), AT_FDCWD, first.Name.c_str(), RENAME_EXCHANGE) ==
       0;
   };
   const bool isKept = exchange(); // whether the part is now the old file
-  std::error_code ignored;
-  const bool isNew = !isKept && !fs::exists(first.Name, ignored);
   if (!isKept)
   {
     first.takeName();
@@ -167,11 +174,12 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
 /// Writes the contents of the part to the disk.
 void OutputFile::finish()
 {
+  requireDone(std::fflush(this->File) == 0, Unwritten);
   if (this->Mode)
   {
     fchmod(fileno(this->File), this->Mode & ALLPERMS);
   }
-  requireDone(std::fflush(this->File) == 0 && fsync(fileno(this->File)) == 0, Unwritten);
+  requireDone(fsync(fileno(this->File)) == 0, Unwritten);
 }
 
 /// Renames the part and writes the names of the folder to the disk.

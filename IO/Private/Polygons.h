@@ -69,6 +69,7 @@ public:
 
   Geometry MakePolygon(const Polygon& polygon) const
   {
+    failIf(polygon.rings.empty() || polygon.rings[0].empty(), "a polygon has no points");
     std::vector<GEOSGeometry*> rings;
     for (const Ring& ring : polygon.rings)
     {
