@@ -322,13 +322,13 @@ void vtkAvianLidarScanFilter::PrepareSurfaces(const vtkAvianLidarRanks& ranks, v
     in.Surfaces =
       in.Exchange.Merge(ranks, input, "Input port 1, ", this->NumberOfThreads, in.Surfaces);
   }
-  this->SummarizeSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
+  this->SummariseSurfaces(input, ranks.Rank() == 0 && !given); // if given, the tree has warned
   in.State = std::move(state);
   in.MergedBy = ranks.Group();
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
+void vtkAvianLidarScanFilter::SummariseSurfaces(vtkDataObject* input, bool warn)
 {
   vtkInternals& in = *this->Internals;
   in.Geometry = in.Surfaces->checksum;
@@ -347,8 +347,8 @@ void vtkAvianLidarScanFilter::SummarizeSurfaces(vtkDataObject* input, bool warn)
 void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input)
 {
   vtkInternals& in = *this->Internals;
-  in.Threads = ranks.Threads(this->NumberOfThreads);
   this->PlaceMedia();
+  in.Threads = ranks.Threads(this->NumberOfThreads);
   this->FindTree(input);
   if (!in.Setup.tree)
   {
@@ -358,7 +358,7 @@ void vtkAvianLidarScanFilter::PrepareTree(const vtkAvianLidarRanks& ranks, vtkDa
     in.TreeBuilds += in.OwnTree != nullptr;
   }
   vtkAvianLidarAbort::Require(in.Setup.tree != nullptr);
-  ranks.Meet(); // before the long work
+  ranks.Meet(); // so that an error of one rank ends the execution before the scan
 }
 
 //------------------------------------------------------------------------------

@@ -283,7 +283,7 @@ private:
 
   std::string MissingInput();
   void PrepareSettings();
-  void SummarizeSurfaces(vtkDataObject* input, bool warn);
+  void SummariseSurfaces(vtkDataObject* input, bool warn);
   void FindTree(vtkDataObject* input);
 };
 

@@ -190,6 +190,11 @@ def test_files():
             reader.SetFileName(good)
             echo.Modified()
             assert len(joined(update(echo).GetOutput())["beam_id"]) > 0
+            reader.SetFileName(mine(*files))
+            for algorithm in {reader, surfaces, echo}:  # all ranks must execute the same filters
+                algorithm.Modified()
+            update(echo)
+            assert sizes(echo) == {"0 0"}  # also after echoes
     reader = vtk.vtkSTLReader()
     reader.SetFileName("missing.stl")
     echo = echotools.scan(reader, **SETTINGS)
@@ -255,12 +260,15 @@ def test_errors_as_data():
 
 
 def test_abort():
-    """One rank is aborted, at once or half-way, or while beams or the tree are made: empty outputs and no error."""
-    for asked, fraction in ((2, 0.0), (2, 0.5), (0, 0.0), (1, 0.0)):
-        tree = al.vtkAvianLidarCollisionTree()
-        tree.SetInputData(TOWN)
+    """One rank is aborted, at once or half-way, or while beams, materials or the tree are made: empty outputs and no
+    error, also two filters further down."""
+    for asked, fraction in ((3, 0.0), (3, 0.5), (0, 0.0), (1, 0.0), (2, 0.0)):
+        material, tree = al.vtkAvianLidarMaterial(), al.vtkAvianLidarCollisionTree()
+        material.SetInputData(TOWN)
+        material.SetMaterial(material.MATERIAL_UNCHANGED)
+        tree.SetInputConnection(material.GetOutputPort())
         sensor = echotools.sensor()
-        filters = (sensor, tree, echotools.scan(tree, sensor, **SETTINGS))
+        filters = (sensor, material, tree, echotools.scan(tree, sensor, **SETTINGS))
         messages = echotools.Messages(*filters)
 
         def heard(caller, _, fraction=fraction):
@@ -283,9 +291,11 @@ def test_abort_beside_an_error():
     messages = echotools.Messages(echo)
     echo.SetRaysPerBeam(mine(20, -1))
     observer = echo.AddObserver("ProgressEvent", lambda caller, _: RANK == 0 and caller.SetAbortExecute(1))
+    faulthandler.dump_traceback_later(SECONDS, exit=True, file=sys.__stderr__)
     for _ in range(2):
         update(echo)
         assert sizes(echo) == {"0 0"}
+        echo.Modified()
     assert "RaysPerBeam" in heard_by_all(messages)[LAST]
     echo.RemoveObserver(observer)
     echo.SetAbortExecute(0)

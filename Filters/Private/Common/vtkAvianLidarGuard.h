@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarGuard.h
- * @brief Ends an execution that fails: reports the error, empties the outputs, writes the message
- * into their field data `error`, and returns 0, or 1 with ErrorsAsData. Not installed.
+ * @brief Checks inputs before an execution, turns exceptions into texts, and empties the outputs of
+ * an execution that fails, with the message as their field data `error`. Not installed.
  *
  * Every RequestData runs in vtkAvianLidarGuarded() or, together with other ranks, in
  * vtkAvianLidarRanks::Execute() (vtkAvianLidarRanks.h). VTK considers a failed filter up to date,

@@ -394,7 +394,7 @@ constexpr Name ChamferReferenceToSimulated{ "density_aware_chamfer_reference_to_
 constexpr Name Preset{ "preset", "1" };
 /// software version (text)
 constexpr Name Version{ "avian_lidar_version", "" };
-/// checksum of the surfaces (unsigned 64-bit)
+/// checksum of surfaces, movers (unsigned 64-bit)
 constexpr Name SceneChecksum{ "scene_checksum", "" };
 
 // Clouds read from files (point data, field data).

@@ -12,6 +12,7 @@
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -77,22 +78,21 @@ bool WasAborted(vtkAlgorithm* algorithm)
 #endif
 }
 
-/// Report the problem, then end the process and thereby the job, because VTK offers no call of
-/// MPI_Abort(). If this rank returned, the other ranks would wait in the exchange for ever. There
-/// may be no memory left, so the function must not throw.
-[[noreturn]] void EndJob(vtkAlgorithm* self, const char* problem) noexcept
+/// Key in the information of a filter whose inputs were stopped, the same on all ranks. The filter
+/// does not execute, so VTK does not mark it as aborted.
+vtkInformationIntegerKey* InputsStopped()
 {
-  constexpr char ending[] = ". The other ranks wait for it, so this rank ends the job.";
-  try
-  {
-    vtkErrorWithObjectMacro(self, << problem << ending);
-  }
-  catch (...)
-  {
-    std::fputs(problem, stderr);
-    std::fputs(ending, stderr);
-    std::fputs("\n", stderr);
-  }
+  static auto* key = vtkInformationIntegerKey::MakeKey("INPUTS_STOPPED", "vtkAvianLidarRanks");
+  return key;
+}
+
+/// Write the problem, then end the process and thereby the job, because VTK offers no call of
+/// MPI_Abort(). If this rank returned, the other ranks would wait in the exchange for ever. There
+/// may be no memory left, which VTK's messages need.
+[[noreturn]] void EndJob(const char* problem) noexcept
+{
+  std::fputs(problem, stderr);
+  std::fputs(". The other ranks wait for it, so this rank ends the job.\n", stderr);
   std::abort();
 }
 }
@@ -123,7 +123,7 @@ try
   }
   if (this->Exchanging)
   {
-    EndJob(self, mine.c_str());
+    EndJob(mine.c_str());
   }
   if (!this->Alone() && !otherThrew)
   {
@@ -139,7 +139,7 @@ try
   {
     if (!this->Alone() && !mine.empty())
     {
-      EndJob(self, mine.c_str());
+      EndJob(mine.c_str());
     }
     throw;
   }
@@ -151,7 +151,7 @@ catch (...)
   {
     throw;
   }
-  EndJob(self, vtkAvianLidarGuard::NoMemory); // there is no memory for the problem
+  EndJob(vtkAvianLidarGuard::NoMemory); // there is no memory for the problem
 }
 
 //------------------------------------------------------------------------------
@@ -171,7 +171,6 @@ void vtkAvianLidarRanks::Share(vtkAlgorithm* self, const std::string& mine) cons
     }
     ++rank;
   }
-  SetAborted(self, this->Problem.empty());
   if (!mine.empty() || (this->Mine == 0 && !this->Problem.empty()))
   {
     vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::Sentence(this->Problem));
@@ -213,17 +212,18 @@ try
   {
     return 1;
   }
+  SetAborted(self, ranks.Problem.empty());
   vtkAvianLidarGuard::Empty(outputs, vtkAvianLidarGuard::Sentence(ranks.Problem));
   return ranks.Problem.empty() || errorsAsData;
 }
-catch (const std::bad_alloc&)
+catch (...)
 {
-  vtkAvianLidarGuard::Empty(outputs);
   try
   {
+    vtkAvianLidarGuard::Empty(outputs);
     vtkErrorWithObjectMacro(self, << vtkAvianLidarGuard::NoMemory);
   }
-  catch (const std::bad_alloc&)
+  catch (...)
   {
     // The return value 0 reports the failure.
   }
@@ -446,10 +446,15 @@ int vtkAvianLidarRanks::UpdateInputs(
       {
         vtkAlgorithmOutput* input = self->GetInputConnection(port, i);
         auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(self->GetInputExecutive(port, i));
+        bool isUpdated = false;
         const std::string wrong = vtkAvianLidarGuard::ProblemOf(
-          [&]() { good = (!pipeline || pipeline->UpdateData(input->GetIndex())) && good; });
+          [&]() { isUpdated = !pipeline || pipeline->UpdateData(input->GetIndex()); });
         problem = problem.empty() ? wrong : problem;
-        stopped = stopped || WasAborted(input->GetProducer());
+        vtkAlgorithm* producer = input->GetProducer();
+        const bool isStopped =
+          WasAborted(producer) || producer->GetInformation()->Has(InputsStopped());
+        stopped = stopped || isStopped;
+        good = good && (isUpdated || isStopped);
       }
     }
     vtkAvianLidarRequire(problem);
@@ -465,15 +470,16 @@ int vtkAvianLidarRanks::UpdateInputs(
     return 1;
   }
   const vtkAvianLidarRanks ranks(controller, request, outputs);
+  self->GetInformation()->Remove(InputsStopped());
   if (ranks.Alone() || ranks.Run(self, std::cref(update)))
   {
     return 1;
   }
   if (ranks.Problem.empty())
   {
-    SetAborted(self, false); // the filter does not execute
-    vtkAvianLidarGuard::Empty(outputs);
+    self->GetInformation()->Set(InputsStopped(), 1);
   }
+  vtkAvianLidarGuard::Empty(outputs, vtkAvianLidarGuard::Sentence(ranks.Problem));
   return 0;
 }
 

@@ -11,8 +11,8 @@
  *
  * All ranks must make the same calls in the same order. If a rank throws between two calls, the
  * next call throws on all ranks, and the error becomes the error of all ranks. So the execution
- * ends on all ranks, and its errors are shared once. If memory runs out while data are sent, the
- * rank ends the job, because the other ranks would wait for ever.
+ * ends on all ranks, and its errors are shared once. If memory runs out while data or errors are
+ * sent, the rank ends the job, because the other ranks would wait for ever.
  */
 #ifndef vtkAvianLidarRanks_h
 #define vtkAvianLidarRanks_h
@@ -160,7 +160,7 @@ public:
 private:
   static int UpdateInputs(
     vtkAlgorithm* self, vtkMultiProcessController* controller, vtkInformation* request, int when);
-  /// Run the body, and report the first problem of all ranks. @return true after success on all
+  /// Run the body, and call Share() if it throws on any rank. @return true after success on all
   /// ranks
   bool Run(vtkAlgorithm* self, const Body& body) const;
   /// Share the problem of this rank, and report the first problem of all ranks.
