@@ -85,7 +85,7 @@ class Coverage(SceneAndSensor):
 
     def __getitem__(self, name: str) -> np.ndarray:
         """`detection_probability`, `track_probability`, `photoelectrons`, `beams_per_scan`, `minimum_effective_area`
-        (m2) or `status`; the axes of an image are z, y, x. The last axis of `pose_probabilities` are the poses."""
+        (m2) or `status`; the axes of an image are z, y, x. `pose_probabilities` has a further, last axis: the poses."""
         data = self.data
         values = point_array(data, name)
         rows = data.GetDimensions()[::-1] if isinstance(data, vtkImageData) else values.shape[:1]

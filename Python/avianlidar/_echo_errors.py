@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes; m, J; SECONDARY a share; TOTAL in J
+BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes; RANGE in m, ENERGY and TOTAL in J, SECONDARY a share
 GHOST = 0.5  # least share of a ghost's energy that comes from two reflections
 SURELY = 1.645  # standard deviations of a one-sided bound of 95 %
 FEW = 3.0  # 95 % bound of a small count, beyond its square root

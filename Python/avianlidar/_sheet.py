@@ -246,7 +246,7 @@ def fit(sensor, points: Sequence[dict[str, Any]] | None = None) -> Fit:
 def write(description: dict[str, Any], found: Fit, file) -> None:
     """Writes the sensor file with the fitted numbers, the residuals and the bar, as a whole."""
     values, sheet = description["values"], description["sheet"]
-    source = f"assumed with the others: fitted to the {len(sheet['points'])} points of the sheet"
+    source = f"assumed: fitted to the {len(sheet['points'])} points of the sheet"
     for name, value in found.numbers.items():
         unit = {"receiver_aperture": "m2", "filter_bandwidth": "nm"}[name]
         values[name] = {"value": float(f"{value:.6g}"), "unit": unit, "source": source}

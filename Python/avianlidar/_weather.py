@@ -36,7 +36,8 @@ def weather(words: Iterable[str] | None) -> dict[str, Any]:
 
 
 def in_weather(settings: Mapping[str, Any], words: Iterable[str] | None) -> dict[str, Any]:
-    """Settings in a weather. ValueError where settings and words both give the visibility or the rain rate."""
+    """Settings together with those of weather words; other settings given by name are kept. ValueError if settings and
+    words both give the visibility or the rain rate."""
     air = weather(words)
     for name in ("visibility", "rain_rate"):
         if name in air and name in settings:

@@ -286,8 +286,7 @@ def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
                      "the share.")
     words += edge
     if site["draws"] < FEWEST_DRAWS:
-        words.append("How certain the choice of the best site is was not computed, "
-                     f"because this needs draws={FEWEST_DRAWS}.")
+        words.append(f"The certainty of the best site was not computed: it needs draws={FEWEST_DRAWS} or more.")
     return {"head": "Check the site.", "more": "#sites", "words": " ".join([*words, "Maps of the site for GIS:"]),
             "command": command(view, "coverage", "maps",
                                **{"sensor.position": ",".join(rounded(view.sensor.position))})}

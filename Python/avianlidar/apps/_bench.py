@@ -24,7 +24,7 @@ from ._simulation import SUBSETS
 from ._tables import embedded, read_table, render, texts
 
 RANGES = (200.0, 400.0, 600.0, 1000.0)  # limits of the groups by range, m
-GROUPS = ("0 to 200 m", "200 to 400 m", "400 to 600 m", "600 to 1000 m", "beyond 1000 m")  # their names
+GROUPS = (*(f"{low:g} to {high:g} m" for low, high in zip((0.0, *RANGES), RANGES)), f"beyond {RANGES[-1]:g} m")
 LOST = 3  # number of consecutive scans with points of a bird, none of which is predicted as bird, that lose its track
 FALSE = (1, 10)  # allowed false points a scan
 RECALLS = np.linspace(0.0, 1.0, 101)  # recalls of the curve

@@ -4,7 +4,8 @@ runways.
 
 The surfaces are the strip, approach and transitional surfaces of ICAO Annex 14. `surfaces.json` has the dimensions,
 their source and assumptions. Not modelled are inner horizontal and conical surfaces, which lie 45 m and more above the
-aerodrome, and take-off climb surfaces. """
+aerodrome, and take-off climb surfaces.
+"""
 from __future__ import annotations
 
 import dataclasses

@@ -24,7 +24,8 @@ from ._scores import Value
 from ._tables import embedded, render, texts
 
 HEIGHTS = (10.0, 30.0, 60.0)  # limits of the bands of a bird's mean height, m
-BANDS = ["below 10 m", "10 to 30 m", "30 to 60 m", "above 60 m"]
+BANDS = [f"below {HEIGHTS[0]:g} m", *(f"{low:g} to {high:g} m" for low, high in zip(HEIGHTS, HEIGHTS[1:])),
+         f"above {HEIGHTS[-1]:g} m"]
 WARNED = (10.0, 30.0, 60.0)  # warning times that are counted, s
 Scores = Dict[str, Tuple[str, Value]]  # unit and value of scores, by the words on the page
 Part = Tuple[str, str, List[Scores]]  # kind and name of a group, and its scores for each input

@@ -90,7 +90,7 @@ def on_the_front(costs, shares) -> np.ndarray:
 
 
 def is_told(share: float, error: float, asked: float) -> Optional[bool]:
-    """Whether a share is at least the required share; None if the error does not decide."""
+    """Whether a share is at least the required share; None if the share differs by less than its error."""
     if share - TOLD * error >= asked:
         return True
     if share + TOLD * error < asked:

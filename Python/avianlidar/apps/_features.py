@@ -54,7 +54,7 @@ def levels_of(text: Any) -> Optional[float]:
 
 def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[float]:
     said = str(text if text is not None else "").strip().strip(";").strip()
-    if not said or len(said) > LONGEST_LENGTH:  # the expressions take a time of the third power of a text's size
+    if not said or len(said) > LONGEST_LENGTH:  # the time of the expressions grows with the third power of the length
         return None
     values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
     known = [value for value in values if value is not None]

@@ -18,7 +18,8 @@ for module in (gdal, ogr, osr):
 
 @contextlib.contextmanager
 def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
-    """Suppresses GDAL's warnings. @param hear is called with them and with the OSM driver's messages on ways"""
+    """Suppresses GDAL's warnings. @param hear is called with them and with the OSM driver's messages on ways
+    and relations"""
     before = gdal.GetConfigOption("CPL_DEBUG")
     gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
     gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")

@@ -4,7 +4,8 @@
 Source: the code form FM 15 METAR (WMO No. 306) and its spellings in archives: statute miles, kilometres, visibility by
 direction, lower case, and reports that continue on the next line. Rain rates are assumed. Debian has no parser of such
 lines for Python (`python3-pymetar` reads the decoded pages of one service), so this module has its own grammar. The
-grammar reads visibility and precipitation, and skips the rest of a report. """
+grammar reads visibility and precipitation, and skips the rest of a report.
+"""
 from __future__ import annotations
 
 import collections
@@ -188,7 +189,7 @@ def _reports(text: str) -> Iterator[Tuple[int, str]]:
 
 
 def read_metar(file) -> Hours:
-    """The METAR and SPECI reports of a file, whatever stands before them. `Error` if the file has none."""
+    """The METAR and SPECI reports of a file, with any text before each report. `Error` if the file has none."""
     found = Hours(str(file), [], [])
     for number, report in _reports(read_regular(file).decode("utf-8", "replace")):
         try:

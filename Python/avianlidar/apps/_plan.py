@@ -54,7 +54,8 @@ class Plan:
     """
 
     def __init__(self, plan: Dict[str, Any], threads: int = 0, scene: Optional[Scene] = None, member: str = "sensor"):
-        """Checks all parts. `Error` names the plan's file and the member. @param member of the sensor"""
+        """Checks all parts. `Error` names the plan's file and the member. @param member the name
+        of the sensor's member of the plan, for errors"""
         self.plan, self.file, self.threads = plan, str(plan.get("file", "plan")), threads
         with naming(f"{self.file}: scene"):
             self.scene = scene or load_scene(plan["scene"])
