@@ -36,7 +36,8 @@ def _hold(name, flags: int = 0, mode: int = 0o666) -> BinaryIO:
 @contextlib.contextmanager
 def replacing(path: pathlib.Path) -> Iterator[str]:
     """A temporary name beside `path`, renamed to `path` at the end, when the content is on the disk. An exception
-    leaves no file. The temporary file of a killed process is removed at the next writing. OutputFile.h does the same."""
+    leaves no file. The temporary file of a killed process is removed at the next writing. OutputFile.h does the
+    same."""
     try:
         mode = path.stat().st_mode  # before links are followed, because links to open pipes lead to no name
     except FileNotFoundError:

@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)  # columns of echoes; RANGE in m, ENERGY and TOTAL in J, SECONDARY a share
+# Columns of echoes; RANGE in m, ENERGY and TOTAL in J, SECONDARY a share of the energy.
+BEAM, RANGE, ENERGY, SECONDARY, TOTAL, OBJECT = range(6)
 GHOST = 0.5  # least share of a ghost's energy that comes from two reflections
 SURELY = 1.645  # standard deviations of a one-sided bound of 95 %
 FEW = 3.0  # 95 % bound of a small count, beyond its square root

@@ -11,8 +11,8 @@
    is below the limit.
 4. Times are processor times of one thread over runs of neighbouring beams, which share work, less the time of a scan
    without beams. Promising settings are timed five times, with other seeds.
-5. The sample is doubled, up to four times its size, if a setting that is 1.5 times as fast as all settings that surely keep
-   every limit is undecided only in its share of wrong echoes.
+5. The sample is doubled, up to four times its size, if a setting that is 1.5 times as fast as all settings that
+   surely keep every limit is undecided only in its share of wrong echoes.
 6. The most accurate of the settings that overlap in time with the fastest one that keeps every limit is advised.
 
 Noise is off, because noise belongs to the receiver and is not an error of the model. Errors have the same bits for any

@@ -108,7 +108,8 @@ class Sensor(PropertyOwner):
 
         points  mappings with `range` (m), `reflectance` (above 0, at most 1), `source` (a text), and optionally
                 `probability` of detection (default 0.5, assumed), `light` on the board (klx, default 0) and `board`,
-                the board's width (m; default: one fitted width for all points). Default: the points of the sensor's file (`sheet.points`)
+                the board's width (m; default: one fitted width for all points). Default: the points of the sensor's
+                file (`sheet.points`)
 
         Returns a Fit with `numbers`, `board` (m) and, for each point, `predicted` (m), `residuals` and `left_out`: the
         relative errors of the range with the point in the fit and without the point. `bar` is the largest of these

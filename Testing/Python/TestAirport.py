@@ -22,7 +22,9 @@ from avianlidar import siting
 from avianlidar._cloud import field_values
 from avianlidar._command import parser
 from avianlidar.apps import _airport as airport
+from avianlidar.apps import _airport_pages as airport_pages
 from avianlidar.apps import _ground
+from avianlidar.apps._airport_map import AirportMap
 from avianlidar.apps._json import packaged
 from avianlidar.apps._maps import coordinate_system
 
@@ -169,7 +171,7 @@ def crossing():
 def blocks(folder):
     """By name: class, triangles."""
     scene = al.load_scene(folder / "airport.lidarscene.json")
-    return scene, {name: (word, triangles) for name, word, triangles in airport.parts_of(scene)}
+    return scene, {name: (word, triangles) for name, word, triangles in airport_pages.parts_of(scene)}
 
 
 def plan_area(triangles):
@@ -346,7 +348,7 @@ class Extracts(unittest.TestCase):
         plan.way([(-1000, 300), (1000, 300)], highway="service", width="8")
         folder, _ = made("coast", plan.write("coast.osm"))
         _, found = blocks(folder)
-        west, east, south, _ = airport.Airport(FOLDER / "coast.osm").rectangle
+        west, east, south, _ = AirportMap(FOLDER / "coast.osm").rectangle
         self.assertAlmostEqual(plan_area(found["Water"][1]), (east - west) * (-1000 - south) - 400 * 300, delta=0.004 * (east - west) * 1000)  # a box of degrees
         shut = siting.read_outlines(folder / "exclusions.geojson", al.load_scene(folder / "airport.lidarscene.json").geodetic_origin)
         for place, free in (((0, 250), True), ((0, 302), False), ((0, 600), False), ((1100, 0), False), ((-1100, 0), False), ((0, -600), False)):
@@ -596,7 +598,7 @@ class StandsOn(unittest.TestCase):
 
     def triangles(self, **more):
         scene = al.Scene(self.scene(**more))
-        return next(triangles for name, _, triangles in airport.parts_of(scene) if name == "Things"), scene
+        return next(triangles for name, _, triangles in airport_pages.parts_of(scene) if name == "Things"), scene
 
     def test_solids_areas_columns(self):
         solid, scene = self.triangles(height=4)
@@ -619,7 +621,7 @@ class StandsOn(unittest.TestCase):
         (FOLDER / "plane.obj").write_text(ground)
         (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
             {"type": "Feature", "properties": {}, "geometry": shape}]}))
-        return next(triangles for name, _, triangles in airport.parts_of(al.Scene(scene)) if name == "Things")
+        return next(triangles for name, _, triangles in airport_pages.parts_of(al.Scene(scene)) if name == "Things")
 
     def test_a_closed_body_is_no_terrain(self):
         corners = [(x, y, z) for z in (0, 10) for y in (-50, 50) for x in (-50, 50)]

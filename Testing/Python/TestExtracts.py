@@ -15,7 +15,7 @@ from avianlidar import siting
 from avianlidar.apps import _extract as extract
 from avianlidar.apps import _features, _gdal, _osm
 from avianlidar.apps import _obstacles as obstacles
-from avianlidar.apps._airport import Airport
+from avianlidar.apps._airport_map import AirportMap
 from avianlidar.apps._json import packaged
 
 KNOWN = packaged("airport.json")
@@ -224,7 +224,7 @@ class Runways(unittest.TestCase):
             plan.point(x, y, aeroway="threshold")
         for tags in more.get("areas", ()):
             plan.area((-300, 450), (300, 650), **tags)
-        made = Airport(plan.write("pieces.osm"))
+        made = AirportMap(plan.write("pieces.osm"))
         found = []
         for one in made.runways:
             line = one.shape.Clone()

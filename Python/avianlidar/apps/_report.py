@@ -290,7 +290,8 @@ class Report:
         """The airport with the sensor, the regions of the plan, and where birds are detected at each height."""
         extent = pictures.answer_extent(view)
         found = pictures.found_at(view, extent)
-        seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} of the map at {height:g} m" for height, classes in found)
+        seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} of the map at {height:g} m"
+                         for height, classes in found)
         shares = {row["region"]: share_of(row) for row in view.by_end}
         regions = "; dotted: the plan's strips and approaches, with the share detected in each" if view.runways else ""
         return self._draw(

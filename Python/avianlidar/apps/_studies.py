@@ -95,10 +95,12 @@ def bench(options) -> None:
 
 
 def airport(options) -> None:
-    from ._airport import Airport, counts
-    made = Airport(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bar)
+    from ._airport import write
+    from ._airport_map import AirportMap
+    from ._airport_pages import counts
+    extract = AirportMap(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bar)
     with only_run(options.out, goes_on=False):
-        kept = made.write(options.out)
+        kept, made = write(extract, options.out)
     close_bar()
     for name in kept.edited:
         warn(f"{options.out / name} was edited and is kept; remove this file to have it made again")
@@ -106,7 +108,7 @@ def airport(options) -> None:
     if buildings and all(row.get("height_from") == "assumed" for row in buildings):
         warn(f"{options.extract} says no height of any building: all heights are assumed by kind, "
              f"{options.out / 'assumed.csv'} lists these heights")
-    print(f"{options.out}: {made.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
+    print(f"{options.out}: {extract.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
           f"{len(buildings)} {'building' if len(buildings) == 1 else 'buildings'}; README.txt says what is assumed")
     print(counts(made))
 
