@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 
 namespace avianlidar::formats
@@ -159,7 +160,7 @@ void OutputFile::commitBoth(OutputFile& first, OutputFile& second)
   {
     second.takeName();
   }
-  catch (const FormatError& error)
+  catch (const std::exception& error)
   {
     const bool isUndone = isKept ? exchange() : isNew && std::remove(first.Name.c_str()) == 0;
     failIf(!isUndone, error.what(), "; the old ", first.Name, " is replaced already");
