@@ -6,6 +6,7 @@ Run by pvpython in one process and by pvbatch on two ranks (the argument)."""
 
 import glob
 import os
+import shutil
 import sys
 
 import numpy
@@ -44,7 +45,7 @@ def fresh():
 def remove(names):
     if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == 0:
         for name in glob.glob(os.path.join(OUTPUT_DIR, names)):
-            os.remove(name)
+            shutil.rmtree(name) if os.path.isdir(name) else os.remove(name)  # pieces of ranks have a folder
 
 
 def played():

@@ -3,6 +3,7 @@
 against the full model. They are not in the repository: without AVIANLIDAR_DATA_DIR skipped (77)."""
 import os
 import sys
+import types
 import unittest
 
 from echotools import CELLS, RAYS
@@ -33,7 +34,9 @@ class ModelNeedsScenery(unittest.TestCase):
 
     def test_room(self):
         # One reflection, no noise: nothing but silent beams is left out, and no echo differs at all.
-        scans = room.Room(room.arguments(["--no-pictures"]))
+        options = types.SimpleNamespace(data=DATA, scans=None, poses=None, desk=room.DESK, sensors=None)
+        room.complete(options)
+        scans = room.Room(options)
         for sensor in scans.scans:
             with self.subTest(sensor):
                 lidar = room_compare.echo_filter(scans.scans[sensor], scans.without(sensor)[0])
