@@ -105,8 +105,8 @@ FAULTS = [Fault(*fault) for fault in (
     ("switch_twice", "an off-by-one", "Python-Test(Scores|Tracks)$",
      "Python/avianlidar/apps/_scores.py", "return sum(a != b for a, b in zip(had, had[1:]))", "return sum(a != b for a, b in zip(had, had[2:]))"),
     ("image_axes", "a swapped axis", "Python-TestCoverageMaps$",
-     "Python/avianlidar/_coverage.py", "values.reshape(data.GetDimensions()[::-1] + values.shape[1:])",
-     "values.reshape(data.GetDimensions() + values.shape[1:])"),
+     "Python/avianlidar/_coverage.py", "data.GetDimensions()[::-1] if isinstance(data, vtkImageData)",
+     "data.GetDimensions() if isinstance(data, vtkImageData)"),
     # ParaView's panels.
     ("panel_default", "a wrong default in a panel", "Plugin-TestProxies$",
      "Plugin/Filters/AvianLidarBeamSource.xml", 'name="RangeGate" default_values="4000"', 'name="RangeGate" default_values="400"'),

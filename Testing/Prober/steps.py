@@ -41,7 +41,8 @@ class World:
         pipeline = Pipeline(self.settings)
         for name in ("echo", "view", "coverage"):
             threads = pipeline.algorithms[name]
-            threads.SetNumberOfThreads(1 if threads.GetNumberOfThreads() != 1 else 2)
+            if threads.GetNumberOfThreads() >= 0:  # a bad number stays bad
+                threads.SetNumberOfThreads(1 if threads.GetNumberOfThreads() != 1 else 2)
         copies = World.__new__(World)
         copies.route, copies.data, copies.movers = self.route, copy_of(self.data), copy_of(self.movers)
         copies.table = self.table and copy_of(self.table)

@@ -207,7 +207,7 @@ class Producers(InFolder):
         self.assertEqual(shift.GetOutput().GetExtent(), (0, 89, 0, 3, 0, 0))
 
     def test_data_without_a_pipeline(self):
-        """The empty output of what failed, handed on by a script; as a block, too. A field `error` of the user's own is no error."""
+        """The empty output of what failed, handed on by a script; as a block, also of blocks. A field `error` of the user's own is no error."""
         failing = surfaces()
         failing.algorithm.ErrorsAsDataOn()
         heard = Messages(failing.algorithm)
@@ -217,7 +217,7 @@ class Producers(InFolder):
         failed = failing.algorithm.GetOutputDataObject(0)
         blocks = group(town(3, 1).GetBlock(0), vtk.vtkPolyData())
         blocks.GetBlock(1).SetFieldData(failed.GetFieldData())
-        for data in (failed, blocks):
+        for data in (failed, blocks, group(town(3, 1).GetBlock(0), failed)):
             echo = scan(data, **SETTINGS)
             messages = Messages(echo)
             self.assertEqual(update(echo), 0)

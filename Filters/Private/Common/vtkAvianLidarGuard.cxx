@@ -8,6 +8,7 @@
 
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkDataObjectTreeIterator.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkInformationVector.h"
@@ -36,6 +37,10 @@ std::string ErrorOf(vtkDataObject* data)
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
   {
     auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+    if (auto* nodes = vtkDataObjectTreeIterator::SafeDownCast(each))
+    {
+      nodes->VisitOnlyLeavesOff(); // a failed filter may have made a composite, which is a node
+    }
     for (each->InitTraversal(); error.empty() && !each->IsDoneWithTraversal(); each->GoToNextItem())
     {
       vtkDataObject* block = each->GetCurrentDataObject();
