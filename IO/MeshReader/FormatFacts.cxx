@@ -363,10 +363,13 @@ std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
 {
   const char* const blanks = " \t";
   std::vector<std::string_view> words;
+  words.reserve(8); // of most lines
   while (words.empty())
   {
     failIf(text.empty(), "is cut short: lines are missing at its end");
-    const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+    const auto* const end = std::find_if(
+      text.begin(), text.end(), [](char byte) { return byte == '\n' || byte == '\r'; });
+    const std::string_view line = text.substr(0, static_cast<std::size_t>(end - text.begin()));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     std::string_view rest = line.substr(0, line.find('#'));
     for (std::size_t at; (at = rest.find_first_not_of(blanks)) != std::string_view::npos;)
@@ -375,8 +378,8 @@ std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
       words.push_back(rest.substr(0, rest.find_first_of(blanks)));
       rest.remove_prefix(words.back().size());
     }
-    failIf(!words.empty() && words.size() < least, "is cut short: the line \"", line.substr(0, 80),
-      "\" has ", words.size(), " numbers, expected ", least);
+    failIf(!words.empty() && words.size() < least, "is cut short or damaged: the line \"",
+      line.substr(0, 80), "\" has ", words.size(), " numbers, expected ", least);
   }
   return words;
 }
@@ -420,8 +423,8 @@ void CheckPlyRows(const std::string& header, std::string_view rows)
       {
         expected += isList && expected < words.size() ? 1 + CountOf(words[expected]) : 1;
       }
-      failIf(words.size() < expected, "is cut short: row ", row + 1, " of an element has ",
-        words.size(), " numbers, expected ", expected);
+      failIf(words.size() < expected, "is cut short or damaged: row ", row + 1,
+        " of an element has ", words.size(), " numbers, expected ", expected);
     }
   }
 }
@@ -565,7 +568,7 @@ void CheckOff(const std::string& text)
   if (CountOf(counts[0]) == 0)
   {
     counts.erase(counts.begin()); // the word OFF
-    counts = counts.empty() ? TakeRow(rows, 2) : counts;
+    counts = counts.empty() ? TakeRow(rows, 1) : counts;
   }
   for (std::size_t vertex = counts.size() < 2 ? 0 : CountOf(counts[0]); vertex > 0; --vertex)
   {
@@ -574,7 +577,7 @@ void CheckOff(const std::string& text)
   for (std::size_t face = counts.size() < 2 ? 0 : CountOf(counts[1]); face > 0; --face)
   {
     const std::vector<std::string_view> words = TakeRow(rows, 1);
-    failIf(words.size() < 1 + CountOf(words[0]), "is cut short: a face of ", words[0],
+    failIf(words.size() < 1 + CountOf(words[0]), "is cut short or damaged: a face of ", words[0],
       " vertices has ", words.size() - 1);
   }
 }
