@@ -12,6 +12,7 @@
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanArrays.h"
 #include "vtkAvianLidarScanShape.h"
+#include "vtkAvianLidarText.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -177,7 +178,7 @@ bool vtkAvianLidarBeamSource::IsGood(const char* what, const std::string& error)
 {
   if (!error.empty())
   {
-    vtkErrorMacro("" << what << ": " << error << ".");
+    vtkErrorMacro("" << what << ": " << vtkAvianLidarText(error) << ".");
   }
   return error.empty();
 }

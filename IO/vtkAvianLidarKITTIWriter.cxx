@@ -85,12 +85,13 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   vtkDataArray* intensity = fields::Find(input, names::Intensity.name);
   std::optional<Labels> labels;
   std::optional<formats::OutputFile> labelFile;
+  formats::OutputFile file(this->FileName);
   if (this->WriteLabels)
   {
     labels.emplace(input, this->LabelSource == LABEL_SOURCE_MATERIAL);
-    labelFile.emplace(std::filesystem::path(this->FileName).replace_extension(".label").string());
+    // beside the target if FileName is a link
+    labelFile.emplace(std::filesystem::path(file.name()).replace_extension(".label").string());
   }
-  formats::OutputFile file(this->FileName);
   failIf(labelFile && labelFile->isSameAs(file),
     "FileName is the name of the labels beside it, expected another ending than .label, such as "
     ".bin");

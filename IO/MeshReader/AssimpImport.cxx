@@ -292,14 +292,21 @@ double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::si
     mesh.warnings = Check3mf(model);
     return PrintUnit(model);
   }
-  static const std::set<std::string> looked{ ".ply", ".gltf", ".glb", ".ifc", ".stp", ".step",
-    ".amf", ".x3d", ".ogex" };
-  const std::string text = looked.count(ending) > 0 ? TextOf(files) : "";
-  if (ending == ".ply")
+  static const std::map<std::string, void (*)(const std::string&)> checks{ { ".ply", CheckPly },
+    { ".off", CheckOff }, { ".nff", CheckNff }, { ".obj", CheckObj } };
+  if (const auto check = checks.find(ending); check != checks.end())
   {
-    CheckPly(text);
+    const std::string text = TextOf(files);
+    if (!text.empty()) // otherwise Assimp reports the error
+    {
+      check->second(text);
+    }
+    return 1.0;
   }
-  else if (ending == ".gltf" || ending == ".glb")
+  static const std::set<std::string> looked{ ".gltf", ".glb", ".ifc", ".stp", ".step", ".amf",
+    ".x3d", ".ogex" };
+  const std::string text = looked.count(ending) > 0 ? TextOf(files) : "";
+  if (ending == ".gltf" || ending == ".glb")
   {
     mesh.warnings = CheckGltf(text);
   }

@@ -328,12 +328,24 @@ bool ReadVertex(const char*& at, const char* end, Vec3& vertex)
   return !hasMore || weight == 1.0 || more < end;
 }
 
+/// Moves `at` behind the next word. Returns whether the word is a number as Assimp reads numbers,
+/// with a decimal point or a decimal comma.
+bool SkipNumber(const char*& at, const char* end)
+{
+  SkipBlanks(at, end);
+  at += at < end && *at == '+';
+  double number = 0.0;
+  const auto [next, error] = std::from_chars(at, end, number);
+  at = next < end && *next == ',' ? std::from_chars(next + 1, end, number).ptr : next;
+  return error != std::errc::invalid_argument && (at == end || std::strchr(" \t\r#", *at));
+}
+
 /// Calls use(begin, end) for each line, without the end of the line.
 template <class Use>
-void ForEachLine(const std::vector<char>& bytes, const Use& use)
+void ForEachLine(std::string_view text, const Use& use)
 {
-  const char* const end = bytes.data() + bytes.size();
-  for (const char* line = bytes.data(); line < end;)
+  const char* const end = text.data() + text.size();
+  for (const char* line = text.data(); line < end;)
   {
     const char* next = line;
     while (next < end && *next != '\n' && !(*next == '\r' && (next + 1 == end || next[1] != '\n')))
@@ -342,6 +354,78 @@ void ForEachLine(const std::vector<char>& bytes, const Use& use)
     }
     use(line, next);
     line = std::min(next + 1, end);
+  }
+}
+
+/// Removes the next line that has words from the text. Returns its words up to a comment (#).
+/// Throws Error if no such line follows, or if the line has too few words.
+std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
+{
+  const char* const blanks = " \t";
+  std::vector<std::string_view> words;
+  words.reserve(8); // of most lines
+  while (words.empty())
+  {
+    failIf(text.empty(), "is cut short: lines are missing at its end");
+    const auto* const end = std::find_if(
+      text.begin(), text.end(), [](char byte) { return byte == '\n' || byte == '\r'; });
+    const std::string_view line = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    std::string_view rest = line.substr(0, line.find('#'));
+    for (std::size_t at; (at = rest.find_first_not_of(blanks)) != std::string_view::npos;)
+    {
+      rest.remove_prefix(at);
+      words.push_back(rest.substr(0, rest.find_first_of(blanks)));
+      rest.remove_prefix(words.back().size());
+    }
+    failIf(!words.empty() && words.size() < least, "is cut short or damaged: the line \"",
+      line.substr(0, 80), "\" has ", words.size(), " numbers, expected ", least);
+  }
+  return words;
+}
+
+/// Returns the count at the beginning of a word, or 0 if the word does not begin with a count.
+std::size_t CountOf(std::string_view word)
+{
+  std::size_t count = 0;
+  std::from_chars(word.data(), word.data() + word.size(), count);
+  return count;
+}
+
+/// Throws Error if a PLY file in ASCII has fewer rows or numbers than its header declares.
+void CheckPlyRows(const std::string& header, std::string_view rows)
+{
+  static const std::regex declaration("[\n\r](format|element|property)\\s+(\\S+)\\s+(\\S+)");
+  std::vector<std::pair<std::size_t, std::vector<bool>>> elements; // rows, and which are lists
+  for (std::sregex_iterator at(header.begin(), header.end(), declaration), end; at != end; ++at)
+  {
+    const std::string key = (*at)[1], word = (*at)[2];
+    if (key == "format" && word != "ascii")
+    {
+      return;
+    }
+    if (key == "element")
+    {
+      elements.push_back({ CountOf((*at)[3].str()), {} });
+    }
+    else if (key == "property" && !elements.empty())
+    {
+      elements.back().second.push_back(word == "list");
+    }
+  }
+  for (const auto& [count, lists] : elements)
+  {
+    for (std::size_t row = 0; row < count && !lists.empty(); ++row)
+    {
+      const std::vector<std::string_view> words = TakeRow(rows, lists.size());
+      std::size_t expected = 0;
+      for (const bool isList : lists)
+      {
+        expected += isList && expected < words.size() ? 1 + CountOf(words[expected]) : 1;
+      }
+      failIf(words.size() < expected, "is cut short or damaged: row ", row + 1,
+        " of an element has ", words.size(), " numbers, expected ", expected);
+    }
   }
 }
 }
@@ -460,10 +544,6 @@ double OpenGexUnit(const std::string& text, char& upAxis)
 
 void CheckPly(const std::string& text)
 {
-  if (text.empty())
-  {
-    return; // Assimp reports an error later
-  }
   const char* const end = "end_header";
   for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + 1))
   {
@@ -471,12 +551,67 @@ void CheckPly(const std::string& text)
     if (at > 0 && before != std::string::npos && (text[before] == '\n' || text[before] == '\r'))
     {
       static const std::regex strips("[\n\r]element\\s+tristrips\\b");
-      failIf(std::regex_search(text.substr(0, at), strips),
+      const std::string header = text.substr(0, at);
+      failIf(std::regex_search(header, strips),
         "has triangle strips, which are not supported: export it with faces");
+      CheckPlyRows(header, std::string_view(text).substr(at + std::strlen(end)));
       return;
     }
   }
   fail("is broken: its header has no line end_header");
+}
+
+void CheckOff(const std::string& text)
+{
+  std::string_view rows = text;
+  std::vector<std::string_view> counts = TakeRow(rows, 1);
+  if (CountOf(counts[0]) == 0)
+  {
+    counts.erase(counts.begin()); // the word OFF
+    counts = counts.empty() ? TakeRow(rows, 1) : counts;
+  }
+  for (std::size_t vertex = counts.size() < 2 ? 0 : CountOf(counts[0]); vertex > 0; --vertex)
+  {
+    TakeRow(rows, 3);
+  }
+  for (std::size_t face = counts.size() < 2 ? 0 : CountOf(counts[1]); face > 0; --face)
+  {
+    const std::vector<std::string_view> words = TakeRow(rows, 1);
+    failIf(words.size() < 1 + CountOf(words[0]), "is cut short or damaged: a face of ", words[0],
+      " vertices has ", words.size() - 1);
+  }
+}
+
+void CheckNff(const std::string& text)
+{
+  std::string_view rows = text;
+  while (rows.find_first_not_of(" \t\r\n") != std::string_view::npos)
+  {
+    const std::vector<std::string_view> words = TakeRow(rows, 0);
+    const bool isPolygon = words.size() == 2 && (words[0] == "p" || words[0] == "pp");
+    for (std::size_t vertex = isPolygon ? CountOf(words[1]) : 0; vertex > 0; --vertex)
+    {
+      TakeRow(rows, 3);
+    }
+  }
+}
+
+void CheckObj(const std::string& text)
+{
+  std::size_t line = 0;
+  ForEachLine(text,
+    [&line](const char* begin, const char* end)
+    {
+      ++line;
+      const char* at = begin;
+      // A backslash continues the line.
+      if (IsVertex(at, end) && std::find(at, end, '\\') == end)
+      {
+        failIf(!SkipNumber(at, end) || !SkipNumber(at, end) || !SkipNumber(at, end), "line ", line,
+          " is \"", std::string_view(begin, std::min<std::size_t>(end - begin, 80)),
+          "\", expected a vertex with three coordinates");
+      }
+    });
 }
 
 std::vector<std::string> Check3mf(const std::string& text)
@@ -566,7 +701,7 @@ Vec3 MoveObjToOrigin(std::vector<char>& bytes)
   Vec3 offset{};
   double farthest = 0.0;
   bool isFirst = true, canMove = true;
-  ForEachLine(bytes,
+  ForEachLine({ bytes.data(), bytes.size() },
     [&](const char* at, const char* end)
     {
       Vec3 vertex;
@@ -591,7 +726,7 @@ Vec3 MoveObjToOrigin(std::vector<char>& bytes)
   }
   std::vector<char> moved;
   moved.reserve(bytes.size());
-  ForEachLine(bytes,
+  ForEachLine({ bytes.data(), bytes.size() },
     [&](const char* at, const char* end)
     {
       Vec3 vertex;

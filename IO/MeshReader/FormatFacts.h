@@ -40,9 +40,19 @@ double X3dUnit(const std::string& text);
 /// @param upAxis becomes 'y' or 'z' if the file gives the axis that points up
 double OpenGexUnit(const std::string& text, char& upAxis);
 
-/// Refuses PLY files with triangle strips, which Assimp reads wrong, and files whose header has no
-/// end, on which Assimp never stops. @param text contents of the file. Throws Error.
+/// Refuses PLY files with triangle strips, which Assimp reads wrong, files whose header has no end,
+/// on which Assimp never stops, and ASCII files that are cut short, for which Assimp invents
+/// triangles. @param text contents of the file. Throws Error.
 void CheckPly(const std::string& text);
+
+/// Refuse files that are cut short, for which Assimp invents triangles. @param text contents of the
+/// file. Throw Error.
+void CheckOff(const std::string& text);
+void CheckNff(const std::string& text);
+
+/// Refuses OBJ files with vertices of fewer than three numbers, which Assimp leaves out or reads
+/// wrong. @param text contents of the file. Throws Error, which names the line.
+void CheckObj(const std::string& text);
 
 /// Refuses 3MF files that name an object that the file does not contain. @param text XML. Throws
 /// Error.

@@ -192,9 +192,10 @@ void addComments(const FieldTable& table, Cloud& cloud)
   }
 }
 
-void dropEmptyCells(Cloud& cloud)
+void dropEmptyCells(Cloud& cloud, bool hasEmptyCells)
 {
   std::vector<std::size_t> kept;
+  std::size_t empty = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i)
   {
     const double* p = cloud.points.data() + 3 * i;
@@ -202,10 +203,16 @@ void dropEmptyCells(Cloud& cloud)
     {
       kept.push_back(i);
     }
+    empty += hasEmptyCells && std::isnan(p[0]) && std::isnan(p[1]) && std::isnan(p[2]);
   }
   if (kept.size() == cloud.size())
   {
     return;
+  }
+  if (const std::size_t lost = cloud.size() - kept.size() - empty; lost > 0)
+  {
+    cloud.warnings.push_back(
+      std::to_string(lost) + " points whose coordinates are not finite are left out");
   }
   const auto keep = [&kept](auto& values, std::size_t components)
   {

@@ -55,8 +55,9 @@ TableTargets targetsOf(const FieldTable& table, Cloud& to);
 std::uint64_t readRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
   const KeepGoing& keepGoing);
 
-/// Leaves out the points whose coordinates are not finite.
-void dropEmptyCells(Cloud& cloud);
+/// Leaves out the points whose coordinates are not finite, with a warning of their number.
+/// @param hasEmptyCells whether points of three NaN are cells of a grid, which give no warning
+void dropEmptyCells(Cloud& cloud, bool hasEmptyCells = false);
 
 /// Adds the comments of a file to the notes of its cloud.
 void addComments(const FieldTable& table, Cloud& cloud);

@@ -134,11 +134,6 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
     cloud.columns.push_back({ vtkAvianLidarArrays::InstanceId.name, "", 1, std::move(instance) });
   }
   dropEmptyCells(cloud);
-  if (cloud.size() < n)
-  {
-    cloud.warnings.push_back(
-      std::to_string(n - cloud.size()) + " points whose coordinates are not finite are left out");
-  }
   return cloud;
 }
 }

@@ -39,6 +39,9 @@ public:
   /// failure.
   void seek(std::uint64_t at);
 
+  /// Returns the absolute name of the file, without links.
+  const std::string& name() const { return this->Name; }
+
   /// Returns whether the other file has the same name.
   bool isSameAs(const OutputFile& other) const { return this->Name == other.Name; }
 

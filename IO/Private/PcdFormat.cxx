@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PcdFormat.h"
+
+#include "CloudNotes.h"
 #include "TextLines.h"
 
 #include <lzf.h>
@@ -62,6 +64,7 @@ void understandSize(Words& words, PcdHeader& header)
   const std::uint64_t width = oneOf(words, "WIDTH", 0), height = oneOf(words, "HEIGHT", 1);
   const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   failIf(width > most || height > most, "WIDTH or HEIGHT is above 4294967295");
+  header.organised = height > 1;
   header.points = oneOf(words, "POINTS", width * height);
   failIf(!words["WIDTH"].empty() && header.points != width * height, "POINTS is ", header.points,
     ", expected WIDTH times HEIGHT, ", width * height);
@@ -243,7 +246,10 @@ Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing)
     cloud.warnings.push_back("its header says that it has " + std::to_string(header.points) +
       " points, and more follow, which are left out");
   }
-  dropEmptyCells(cloud);
+  CloudNotes notes;
+  const bool isOwn = std::any_of(header.comments.begin(), header.comments.end(),
+    [&notes](const std::string& comment) { return fromText(comment, notes); });
+  dropEmptyCells(cloud, header.organised || isOwn); // grids of this project may have one row
   cloud.sensor = { { header.viewpoint[0], header.viewpoint[1], header.viewpoint[2] } };
   // A later note of this project's writers replaces this position.
   cloud.notes.push_back({ "position", "m", { cloud.sensor->begin(), cloud.sensor->end() }, {} });

@@ -18,13 +18,14 @@ struct PcdHeader : FieldTable
 {
   std::array<double, 7> viewpoint{ { 0, 0, 0, 1, 0, 0, 0 } }; ///< x y z, m, then quaternion w x y z
   bool compressed = false;
+  bool organised = false; ///< whether the points are a grid, whose empty cells have NaN coordinates
 };
 
 /// Reads and checks the header up to DATA. Throws FormatError if the declared points do not fit the
 /// length of the file.
 PcdHeader readPcdHeader(ByteSource& source);
 
-/// Reads a cloud, without the points whose coordinates are not finite (empty cells). Throws
+/// Reads a cloud, without the points whose coordinates are not finite; see dropEmptyCells(). Throws
 /// FormatError if the file is not a PCD file, is cut short, or lacks x, y or z.
 Cloud readPcd(ByteSource& source, const KeepGoing& keepGoing);
 

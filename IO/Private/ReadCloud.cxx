@@ -232,15 +232,19 @@ std::string knownEndings()
 
 std::string labelFileOf(const std::string& fileName)
 {
-  const fs::path beside = fs::path(fileName).replace_extension(".label");
-  const fs::path apart =
-    fs::absolute(beside).parent_path().parent_path() / "labels" / beside.filename();
   std::error_code ignored;
-  for (const fs::path& candidate : { beside, apart })
+  for (fs::path beside :
+    { fs::path(fileName), fs::canonical(fileName, ignored) }) // of a link, both
   {
-    if (fs::is_regular_file(candidate, ignored))
+    beside.replace_extension(".label");
+    const fs::path apart =
+      fs::absolute(beside, ignored).parent_path().parent_path() / "labels" / beside.filename();
+    for (const fs::path& candidate : { beside, apart })
     {
-      return candidate.string();
+      if (fs::is_regular_file(candidate, ignored))
+      {
+        return candidate.string();
+      }
     }
   }
   return std::string();

@@ -38,8 +38,8 @@ std::string endingOf(const std::string& fileName);
 const CloudFormat* formatOf(const std::string& fileName);
 
 /// Returns the file of SemanticKITTI's labels of a .bin file: the same name with .label, in the
-/// folder of the .bin file or in a folder `labels` beside that folder. Returns an empty text if the
-/// file of labels does not exist.
+/// folder of the .bin file or in a folder `labels` beside that folder. If the .bin file is a link,
+/// its target counts after the link. Returns an empty text if the file of labels does not exist.
 std::string labelFileOf(const std::string& fileName);
 
 /// Reads a file and its labels or, if `packets` is not null, the revolution `turn`.

@@ -44,14 +44,18 @@ def replacing(path: pathlib.Path) -> Iterator[str]:
         mode = 0
     if mode and not stat.S_ISREG(mode):
         raise FileExistsError(f"{path}: it exists and is not a regular file")
-    path = path.resolve()  # a link is kept
+    given, path = path, path.resolve()  # a link is kept
     file, name, most = None, "", 16
     for part in (f"{path}.avianpart{i}" for i in range(most)):
         with contextlib.suppress(OSError, Error), _hold(part):  # an error if another process writes the part
             os.unlink(part)
-        with contextlib.suppress(FileExistsError, BlockingIOError):
+        try:
             if not file:
                 file, name = _hold(part, NEW, stat.S_IMODE(mode or 0o666) | stat.S_IWUSR), part
+        except (FileExistsError, BlockingIOError):
+            pass
+        except OSError as error:  # names the part
+            raise OSError(error.errno, error.strerror, str(given)) from None
     if not file:
         raise FileExistsError(f"{path} is being written by {most} other processes")
     with file:

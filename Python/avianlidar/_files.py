@@ -16,7 +16,7 @@ import numpy as np
 
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, add_array, vertices
-from ._pipeline import Error, callers_level, file_name, update
+from ._pipeline import Error, callers_level, file_name, plain, update
 from ._properties import set_properties
 from ._suffixes import PACKETS, READERS, TABLES
 from ._writers import refuse, suffixes, write
@@ -134,7 +134,11 @@ def _read_table(path: pathlib.Path) -> Cloud:
     """Reads what `_write_csv` writes, and tables of other programs: whole numbers become int64, columns name_0, name_1,
     ... (or name:0, ...) become one array, and colours (rgb) become bytes."""
     units, table = _table(path)
-    columns = dict(zip(units, table.T))
+    finite = np.isfinite(table[:, [axis in tuple("xyz") for axis in units]]).all(axis=1)
+    if not finite.all():
+        warnings.warn(f"{path}: {np.sum(~finite)} points whose coordinates are not finite are left out", RuntimeWarning,
+                      stacklevel=callers_level())
+    columns = dict(zip(units, table[finite].T))
     data = vertices(np.column_stack([columns.pop(axis) for axis in "xyz"]))
     while columns:
         name = next(iter(columns))
@@ -162,6 +166,22 @@ def save(cloud, file, **properties: Any) -> None:
     """
     file_name(pathlib.Path(file))  # before a scan runs
     write(Cloud(getattr(cloud, "echoes", cloud)), file, **properties)
+
+
+def _check_xml(path: pathlib.Path) -> None:
+    """Raises the error of XML that is damaged. The parser of VTK's reader would print the error instead."""
+    from vtkmodules.vtkIOXMLParser import vtkXMLDataParser
+    parser, errors = vtkXMLDataParser(), []
+
+    def heard(_, event, message):
+        errors.append(plain(message or ""))
+
+    setattr(heard, "CallDataType", "string0")
+    parser.AddObserver("ErrorEvent", heard)
+    parser.SetFileName(file_name(path))
+    parser.Parse()
+    if errors:
+        raise Error(f"{path}: {errors[0]}")
 
 
 def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
@@ -192,11 +212,15 @@ def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
         with open(path, "rb") as stream:
             if b"<VTKFile" not in stream.read(4096):  # VTK reports several errors for such files
                 raise ValueError(f"{path}: this is not a VTK XML file")
+        _check_xml(path)
     else:
         reader = getattr(_wrapped, READERS[suffix])()
     set_properties(reader, **properties)
     reader.SetFileName(file_name(path))
-    update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)
+    try:
+        update(reader, run=(lambda: reader.UpdateTimeStep(time)) if time is not None else None)
+    except Error as error:
+        raise Error(f"{path}: {error}" if suffix == ".vtp" else str(error)) from None
     cloud = Cloud(reader.GetOutput())
     revolutions = cloud.fields["number_of_revolutions"] if time is None and suffix in PACKETS else 1
     if revolutions > 1:

@@ -153,6 +153,7 @@ class Verbs(unittest.TestCase):
     def test_errors_are_one_line_with_status_2(self):
         (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
         (OUTPUT / "fake.vtp").write_text("no mesh", encoding="utf-8")
+        (OUTPUT / "cut.vtp").write_text('<VTKFile type="PolyData">', encoding="utf-8")
         (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", encoding="utf-8")
         scan = ("scan", SCENE, "-o", "x.las")
         cases = ((("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"), (("scan", SCENE, "-o", "x.doc"), "cannot write 'x.doc'"),
@@ -164,6 +165,7 @@ class Verbs(unittest.TestCase):
                  ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
                  ((*scan, "--scan-set", "attenuation_coefficient=nan"), "not a finite number"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
+                 (("info", OUTPUT / "cut.vtp"), "cut.vtp: vtkXMLDataParser: Error parsing XML"),
                  (("info", "none.vtp"), "no such file: none.vtp"), (("info", OUTPUT), "is not a regular file"),
                  (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
                  (("sensors", "VLP99"), "'VLP99' is not known"))

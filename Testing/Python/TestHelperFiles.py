@@ -85,6 +85,12 @@ class Files(InFolder):
                 file.write_text(text, encoding="ascii")
                 with self.assertRaisesRegex(ValueError, words):
                     al.load_cloud(file)
+        for suffix, text in ((".csv", "x,y,z,i\n1,2,nan,5\n1,2,3,6\n1,1e400,2,7\n"), (".xyz", "1 2 inf 5\n1 2 3 6\n-inf 2 2 7\n")):
+            file = self.folder / f"table{suffix}"
+            file.write_text(text, encoding="ascii")
+            with self.assertWarnsRegex(RuntimeWarning, f"{file}: 2 points whose coordinates are not finite are left out"):
+                cloud = al.load_cloud(file)
+            self.assertEqual((cloud.points.tolist(), *cloud.values())[::-1], ([6], [[1, 2, 3]]))
 
     def test_no_points_at_all(self):
         """vtkPolyData as it is made, without an object for points; and no echoes."""
@@ -106,9 +112,12 @@ class Files(InFolder):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 call()
         damaged = self.folder / "damaged.vtp"
-        damaged.write_text("<VTKFile", encoding="utf-8")
-        with self.assertRaises(al.Error):
-            al.load_cloud(damaged)
+        self.scan.save(damaged)
+        whole = damaged.read_bytes()
+        for content in (b"<VTKFile", whole[:-99], whole.replace(b"NumberOfPoints=\"", b"NumberOfPoints=\"9")):
+            damaged.write_bytes(content)
+            with self.assertRaisesRegex(al.Error, r"\A.*damaged\.vtp: [^\n]*\Z"):
+                al.load_cloud(damaged)
 
     def test_file_systems_without_locks(self):
         """Files are written; parts of others, which nobody can tell from abandoned ones there, stay."""

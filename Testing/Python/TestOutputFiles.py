@@ -156,6 +156,12 @@ class Single(Written):
                 self.assertEqual(os.readlink(name), place)
                 os.remove(name)
 
+    def test_links_into_a_missing_folder(self):
+        for name in NAMES:
+            os.symlink("missing/other-" + name, name)
+            with self.assertRaisesRegex((OSError, al.Error), rf"No such file or directory: '?{name}'?\Z|{name}: .*No such file or directory\.\Z"):
+                al.save(self.data, name)
+
     def test_links_to_what_is_still_to_be_made(self):
         for name in NAMES:
             os.symlink("other-" + name, name)
@@ -258,6 +264,15 @@ class Pairs(Written):
     def assert_old(self, labels=b"old", points=b"older"):
         for name, content in (("echoes.label", labels), ("echoes.bin", points)):
             self.assertEqual((self.folder / name).read_bytes() if os.path.isfile(name) else None, content)
+
+    def test_labels_are_beside_the_target_of_a_link(self):
+        os.mkdir("real")
+        (self.folder / "real" / "a.label").write_bytes(b"old")
+        os.symlink("real/a.bin", "echoes.bin")
+        self.assertEqual(self.kitti()[0].Write(), 1)
+        self.assertEqual((sorted(os.listdir()), sorted(os.listdir("real"))), (["echoes.bin", "real"], ["a.bin", "a.label"]))
+        self.assertEqual((self.folder / "real" / "a.label").stat().st_size, 4 * self.data.GetNumberOfPoints())
+        self.assertIn("semantic_label", al.load_cloud("echoes.bin"))
 
     def test_two_write_one_pair(self):
         """Each its own parts, the last to end counts."""

@@ -110,8 +110,10 @@ class Reader(InFolder):
 
     def test_empty_cells_are_left_out(self):
         one(b"1 2 3 7\nnan nan nan -1\n4 5 6 8\n-nan 1 2 9\n1 nan 2 9\n1 2 inf 9\n", "x y z n", "F4 F4 F4 I4", WIDTH=2, HEIGHT=3, POINTS=6)
-        data = read(FILE)
+        data = read(FILE, said=["3 points whose coordinates are not finite are left out"])
         self.assertEqual((points(data).tolist(), array(data, "n").tolist()), ([[1, 2, 3], [4, 5, 6]], [7, 8]))
+        put(b"nan nan nan\n4 5 6\n")  # no grid, in which such cells are empty
+        self.assertEqual(points(read(FILE, said=["1 points whose coordinates are not finite"])).tolist(), [[4, 5, 6]])
 
     def test_viewpoint(self):
         put(VIEWPOINT="1 2 -7 1 0 0 0")
@@ -243,6 +245,11 @@ class Written(InFolder):
         self.write(lidar.GetOutput())
         self.assertEqual(shape(), (3, 45))
         self.assertEqual([row[0] for row in parse()[1].reshape(3, 45)["laser_id"]], [2, 0, 1])
+        lidar = scan(town(), given(beams, NumberOfChannelElevations=1), ReturnMode=1)
+        lidar.Update()
+        self.write(lidar.GetOutput())
+        self.assertEqual((shape(), np.isfinite(parse()[1]["x"]).all()), ((1, 45), np.False_))
+        self.assertEqual(read(FILE).GetNumberOfPoints(), lidar.GetOutput().GetNumberOfPoints())  # empty cells give no warning
 
     def test_several_returns_of_a_beam(self):
         self.assertGreater(array(self.data, "number_of_returns").max(), 1)

@@ -30,6 +30,10 @@ class Texts(InFolder):
         file = self.scene('{"file": "%s.obj"}' % LATIN, "latin-1")
         with self.assertRaisesRegex(al.Error, r"is not JSON.*B\\xE4"):
             al.load_scene(file)
+        sensor = self.folder / "a.lidarsensor.json"
+        sensor.write_bytes('{"version": 1}'.encode("utf-16"))
+        with self.assertRaisesRegex(al.Error, r"a\.lidarsensor\.json: is not JSON.*\\xFF"):
+            al.Sensor(sensor)
         reader = wrapped.vtkAvianLidarSceneReader()
         reader.SetFileName(str(file))
         heard = Messages(reader)
