@@ -540,6 +540,10 @@ class Wrong(unittest.TestCase):
         files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
                  (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is not an extract by its name")]
         for name, content, said in (("text.gpkg", "no map", "GDAL cannot"),
+                                    *((f"{at}.geojson", '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"aeroway": "runway"}, '
+                                       f'"geometry": {{"type": "LineString", "coordinates": [[{at}, {at}], [{at}, {at + 1}]]}}}}]}}',
+                                       f"{at}.geojson: holds no runway, expected lines or areas with the tag aeroway=runway; left out: coordinates that are not degrees")
+                                      for at in (95, 5940000)),
                                     ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read")):
             (FOLDER / name).write_text(content)
             files.append((FOLDER / name, said))

@@ -2,10 +2,12 @@
 """Predictions held against labels: counts by hand, thresholds and curves by brute force, tracks lost, files and their errors."""
 import itertools
 import json
+import math
 import os
 import pathlib
 import shutil
 import unittest
+import warnings
 
 import numpy as np
 
@@ -87,6 +89,11 @@ class Scores(unittest.TestCase):
         rank = _bench.ranked(np.zeros(0, np.float32), np.zeros(0, bool), np.zeros(0, bool))
         for nothing in (_bench.average_precision(rank), _bench.curve(rank), _bench.threshold(rank, 1)):
             self.assertTrue(np.isnan(nothing).all())
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            mean, deviation = _bench._mean_curve([[math.nan, 1.0, 1.0], [math.nan, math.nan, 3.0]])
+        np.testing.assert_array_equal(mean, [math.nan, 1, 2])
+        np.testing.assert_allclose(deviation, [math.nan, math.nan, math.sqrt(2)])
 
     def test_threshold_by_brute_force(self):
         for seed, most in itertools.product(range(3), (0, 1, 40)):

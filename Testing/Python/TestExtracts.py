@@ -6,6 +6,7 @@ import json
 import math
 import re
 import unittest
+import warnings
 
 import numpy as np
 from osgeo import gdal, ogr, osr
@@ -166,7 +167,7 @@ class Formats(unittest.TestCase):
         file = ta.FOLDER / "back.osm"
         file.write_text(text.replace("<way", nodes + ways + "<way", 1).replace("</osm>", relations + "</osm>"), encoding="utf-8")
         self.assertEqual([kind for kind, *_ in things(file)], ["runway", "wood"])
-        self.assertEqual(left(file), {("building", "no nodes"): 1, ("wood", "no nodes"): 1})
+        self.assertEqual(left(file), {("building", "no extent"): 1, ("wood", "no extent"): 1})
         ta.run("airport", file, "-o", ta.fresh("back"))
 
     def test_rings_of_too_few_corners(self):
@@ -189,12 +190,40 @@ class Formats(unittest.TestCase):
                     got = things(file)
                     self.assertEqual(len(got), len(expected) + (number > 0 and "start_date" not in properties), (properties, shape))
 
+    def test_rings_and_corners_in_wrong_places(self):
+        """Holes beside their outline and far away, and coordinates that are not degrees, are counted as left out."""
+        whole = ta.FOLDER / "strays.geojson"
+        gdal.VectorTranslate(str(whole), str(runway(ta.Map()).write("strays.osm")), layers=["lines"])
+        text = json.loads(whole.read_text(encoding="utf-8"))
+
+        def ring(x, y, size=1e-3):
+            return [[x, y], [x + size, y], [x + size, y + size], [x, y + size], [x, y]]
+
+        house, inner = ring(13.301, 53.603), ring(13.3013, 53.6033, 4e-4)
+        for number, (coordinates, holes, reason) in enumerate((
+                ([house, ring(13.303, 53.603)], 0, extract.STRAY), ([house, ring(14, 54), inner, inner[:2]], 1, extract.STRAY),
+                ([inner, house], 1, ""), ([[*house[:2], [13.302, 1e400], *house[3:]]], 0, extract.NO_DEGREES),
+                ([ring(387000, 5940000)], 0, extract.NO_DEGREES))):
+            feature = {"type": "Feature", "properties": {"building": "yes"}, "geometry": {"type": "Polygon", "coordinates": coordinates}}
+            whole.write_text(json.dumps({**text, "features": [*text["features"], feature]}).replace("Infinity", "1e400"), encoding="utf-8")
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                found = [one.shape for one in _osm.read_extract(whole, KNOWN).features if one.kind == "building"]
+            self.assertEqual(left(whole), {("building", reason): 1} if reason else {}, number)
+            self.assertEqual(len(found), reason != extract.NO_DEGREES, number)
+            for shape in found:
+                self.assertAlmostEqual(shape.Area() * 1e6, 1.0 - 0.16 * holes, delta=1e-6, msg=str(number))
+
     def test_what_is_not_a_whole_extract(self):
         whole = fenced().write("whole.osm")
+        system = b'{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:99999999"}}, "features": []}'
         for name, content, words in (
                 ("none.osm", b"", "is empty"), ("page.osm", b"\n<html><body>too many requests</body></html>", "is a web page"),
                 ("own.geojson", b'{"version": 0.6, "generator": "Overpass API", "elements": []}', "is Overpass's own JSON"),
                 ("wide.osm", "<osm/>".encode("utf-16"), "is in UTF-16"), ("half.osm", whole.read_bytes()[:6000], "cannot be read to its end"),
+                *((f"node{number}.osm", re.sub(b'lat="53[^"]*"', said, whole.read_bytes(), count=1), f"node 1: lat is {words}")
+                  for number, (said, words) in enumerate(((b'lat="53,602"', "'53,602'"), (b'lat="abc"', "'abc'"), (b"", "''"), (b'lat="95"', "'95'")))),
+                ("system.geojson", system, "the coordinate system is 'EPSG:99999999'"),
                 ("half.osm.pbf", ta.pbf(whole).read_bytes()[:-200], "cannot be read to its end")):
             file = ta.FOLDER / name
             file.write_bytes(content)
@@ -287,7 +316,7 @@ class Heights(unittest.TestCase):
                 ("5000", None), ("nan", None), ("", None), (None, None), ("1" + " " * 100_000 + "x", None)):
             found = _features.length_of(text)
             self.assertEqual(found if found is None else round(found, 9), metres, text)
-        for text, levels in (("2;3", 3), ("2,3", 3), ("1,5", 1.5), ("2-3", 3), ("3+1", 4), ("2 floors", 2), ("0", None), ("ground", None), (None, None)):
+        for text, levels in (("2;3", 3), ("2,3", 3), ("1,5", 1.5), ("2-3", 3), ("3+1", 4), ("2 floors", 2), ("0", None), ("ground", None), ("B1", None), ("1e3", None), ("250", None), (None, None)):
             self.assertEqual(_features.levels_of(text), levels, text)
 
     def test_heights_of_tags(self):
@@ -356,7 +385,7 @@ class LeftOut(unittest.TestCase):
         line = next(line for line in words.splitlines() if "features were read" in line)
         self.assertTrue(line.startswith("18 features were read, 4 are in the scene, 14 were left out: "), line)
         self.assertTrue(line.endswith("; 1 height was not understood: 'tall'"), line)
-        for part in ("1 outside the scene", "3 ruins, or gone", "2 not built", "2 below ground", "2 unknown kind", "1 unclosed", "1 no nodes",
+        for part in ("1 outside the scene", "3 ruins, or gone", "2 not built", "2 below ground", "2 unknown kind", "1 unclosed", "1 no extent",
                      "1 no building", "1 a point without an outline"):
             self.assertIn(part, line)
         with open(folder / "assumed.csv", encoding="utf-8", newline="") as stream:
@@ -366,6 +395,21 @@ class LeftOut(unittest.TestCase):
         self.assertIn("assumed: no rule knows power=generator", [row[5] for row in table])
         mast = next(row for row in rows(folder) if row["kind"] == "obstacle")
         self.assertEqual((mast["top"], mast["top_from"]), (30.0, "height"))
+
+    def test_numbers_that_are_not_understood(self):
+        """Texts of heights, storeys and widths, of which -1 (as in Microsoft's footprints) says that the height is not known."""
+        plan = runway(ta.Map())
+        for x, (name, text) in enumerate([*(("height", text) for text in ("-5", "0", "-0.5", "-1.0")),
+                                          *(("building__levels", text) for text in ("-1", "1e3", "B1", "0"))]):
+            plan.area((20 * x, 300), (20 * x + 10, 310), building="yes", **{name: text})
+        plan.point(0, 400, natural="tree", height="-3")
+        for y, width in ((500, "-30"), (600, "0"), (700, "abc"), (800, "1e3"), (900, "61")):
+            plan.way([(-800, y), (800, y)], aeroway="runway", width=width)
+        folder, words = ta.made("strange", plan.write("strange.osm"))
+        self.assertRegex(words, "; 7 heights were not understood: '-5', '0', '-0.5', '-1'; 4 widths were not understood: '-30', 'abc', '0', '1e3'\n")
+        self.assertIn("strange.osm says no height of any building", words)
+        self.assertNotIn("are from assumed", (folder / "README.txt").read_text(encoding="utf-8"))
+        self.assertEqual(sorted(row["width"] for row in rows(folder) if row["kind"] == "runway"), [45, 45, 45, 45, 45, 61])
 
 
 class Holes(unittest.TestCase):
@@ -442,6 +486,8 @@ class Surveyed(unittest.TestCase):
             self.assertEqual(read(text), (expected, []), text)
         self.assertEqual(read("longitude,latitude,height,unit,kind\n13.302,53.603,,m,mast\n13.302,,45,m,mast\n13.302,99,45,m,mast\n\n")[1], [obstacles.NO_PLACE] * 3)
         for name, text, words in (("obstacles.csv", "a,b,c\n1,2,3\n", "expected the columns longitude"), ("obstacles.csv", "longitude,latitude,height,unit\n1,2,3,furlong\n", "row 2: the unit is 'furlong'"),
+                                  ("obstacles.csv", 'longitude,latitude,height\n1,2,3\n"1,2,3\n1,2,3\n', "obstacles.csv: line 3: is not CSV"),
+                                  ("obstacles.csv", 'longitude,latitude,height\n"1,2,3\n"1",2,3\n', "obstacles.csv: line 2: is not CSV"),
                                   ("bad.xml", "<a>", "cannot be read as AIXM 5.1"), ("other.xml", "<a/>", "holds no VerticalStructure"), ("x.txt", "", "is not a file of obstacles by its name")):
             (ta.FOLDER / name).write_text(text)
             with self.assertRaisesRegex(RuntimeError, words):

@@ -412,7 +412,8 @@ class Plans(unittest.TestCase):
         for member, change in (
                 ("siting.spacing: ", {"siting": {"spacing": 0.001}}), ("extent: ", {"extent": [1, 0, 0, 1]}),
                 ("preset", {"sensor": {}}), ("heigts", {"heigts": [3]}), ("Species", {"coverage": {"species": "dodo"}}),
-                ("heights: ", {"heights": [15, 15.0]}),
+                ("heights: ", {"heights": [15, 15.0]}), ("heights[0]: ", {"heights": [1e30]}),
+                ("heights: -50 m is below the sensor and all surfaces", {"heights": [20, -50]}),
                 ("mix: ", {"mix": {"crow": 1.0, "dodo": 1.0}}),
                 ("coverage.species: ", {"mix": {"crow": 1}, "coverage": {"species": "crow"}}),
                 ("regions: ", {"regions": {"taxiways": 1}}),
@@ -448,6 +449,21 @@ class Plans(unittest.TestCase):
         (self.folder / "cut.geojson").write_bytes(gzip.compress(PLAN.read_bytes())[:-100])
         self.assertRegex(self.said(self.write(runways="cut.geojson")), "my.coverage.json: runways: .*cut.geojson: its compression by gzip is damaged")
 
+    def test_runways_in_several_lines(self):
+        """Lines of one feature that continue one another are one runway, other lines are runways of their own."""
+        origin = (53.6, 13.3, 0.0)
+        ends = siting.to_geodetic([(-900, 0, 0), (-10, 1, 0), (10, 0, 0), (900, 1, 0), (-900, 300, 0), (900, 300, 0)], origin)[:, :2].tolist()
+        file = self.folder / "lines.geojson"
+        for order, wanted in (([(2, 3), (0, 1)], [(-900, 0, 900, 1)]), ([(1, 0), (3, 2)], [(900, 1, -900, 0)]),
+                              ([(0, 3), (4, 5)], [(-900, 0, 900, 1), (-900, 300, 900, 300)])):
+            shape = {"type": "MultiLineString", "coordinates": [[ends[a], ends[b]] for a, b in order]}
+            file.write_text(json.dumps({"features": [{"properties": {"aeroway": "runway", "ref": "09/27"}, "geometry": shape}]}))
+            found = siting.read_runways(file, origin)
+            np.testing.assert_allclose([(*one.start, *one.end) for one in found], wanted, atol=1e-3)
+            self.assertEqual([(one.name, one.width) for one in found], [("09/27", 45.0)] * len(wanted))
+        file.write_text('{"features": [{"properties": {"kind": "runway"}, "geometry": {"type": "MultiLineString", "coordinates": []}}]}')
+        self.assertRaisesRegex(al.Error, "features.0.: the coordinates of a MultiLineString", siting.read_runways, file, origin)
+
     def test_points_of_a_spreadsheet(self):
         file = self.write(siting={"points": "points.csv"})
         table = self.folder / "points.csv"
@@ -456,7 +472,7 @@ class Plans(unittest.TestCase):
             warnings.simplefilter("always")
             np.testing.assert_allclose(Sites(Plan(read_plan(file))).positions[:, :2], [(300, -900), (600, -900)])
         self.assertEqual([str(w.message)[:6] for w in said], ["1 of 3"])
-        for content, words in (("x,y\n1,2\n3,nan\n", "row 2"), ("x,z\n1,2\n", "columns x and y")):
+        for content, words in (("x,y\n1,2\n3,nan\n", "row 2"), ("x,z\n1,2\n", "columns x and y"), ('x,y\n1,2\n"3,4\n5,6\n', "points.csv: line 3: is not CSV")):
             table.write_text(content)
             with self.subTest(words):
                 self.assertRegex(self.said(file), f"my.coverage.json: siting.*{words}")

@@ -203,6 +203,20 @@ EGLL 010220Z NIL=
         for line in (1, 8, 15):
             self.assertIn(f"the first in line {line}, ", hours.words())
 
+    def test_times_that_are_wrong_or_there_twice(self):
+        def hours(text):
+            (HERE / "times.txt").parent.mkdir(parents=True, exist_ok=True)
+            (HERE / "times.txt").write_text(text, encoding="utf-8")
+            return _metar.read_metar(HERE / "times.txt").words()
+
+        for time in ("320100Z", "000100Z", "012500Z", "010060Z"):
+            self.assertRegex(hours(f"EGLL 010000Z 24005KT CAVOK\nEGLL {time} 24005KT 0100 FG\n"),
+                             f"1 METAR reports of EGLL, 1 hours; left out: 1, the first in line 2, 'EGLL {time} .*' .expected a day, an hour")
+        for dates, number in (({"": 1, " ": 1}, 48), ({"202001": 2}, 24), ({"2020-01-": 2}, 24), ({"202001": 2, "202002": 2}, 48)):
+            day = "".join(f"{month}{'01' if month.strip() else ''} EGLL 01{hour:02d}00Z 24005KT CAVOK\n" for month, times in dates.items()
+                          for _ in range(times) for hour in range(24))
+            self.assertIn(f" METAR reports of EGLL, {number} hours", hours(day), dates)
+
     def test_hours_are_counted_by_class(self):
         hours = _metar.Hours("", [_metar.report_of(line) for line in REPORTS.splitlines()[2:] if "////" not in line and "NIL" not in line], [])
         found = {tuple(part["weather"]): 12 * part["share"] for part in hours.year()}

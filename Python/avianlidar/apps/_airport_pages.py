@@ -95,16 +95,16 @@ def counts(found: AirportScene) -> str:
 
     def verb(count: int, one: str, more: str) -> str:
         return f"{count:,} {one if count == 1 else more}"
-    sources = "\n".join(str(row.get(name, "")) for row in found.rows
-                        for name in ("height_from", "top_from", "min_height_from"))
-    strange = re.findall("^assumed: [^ ]+ is ('.*?'|\".*?\")(?:, above.*)?$", sources, re.MULTILINE)
     words = (f"{verb(there + left, 'feature was', 'features were')} read, {verb(there, 'is', 'are')} in the scene, "
              f"{verb(left, 'was', 'were')} left out")
     if left:
         words += ": " + ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common())
-    if strange:
-        words += (f"; {verb(len(strange), 'height was', 'heights were')} not understood: "
-                  f"{', '.join(list(dict.fromkeys(strange))[:4])}")
+    for what, names in (("height", ("height_from", "top_from", "min_height_from")), ("width", ("width_from",))):
+        sources = "\n".join(str(row.get(name, "")) for row in found.rows for name in names)
+        strange = re.findall("^assumed: [^ ]+ is ('.*?'|\".*?\")(?:, above.*)?$", sources, re.MULTILINE)
+        if strange:
+            words += (f"; {verb(len(strange), f'{what} was', f'{what}s were')} not understood: "
+                      f"{', '.join(list(dict.fromkeys(strange))[:4])}")
     return words
 
 
@@ -138,7 +138,8 @@ def readme(found: AirportScene, place: Place) -> bytes:
                for kind in kinds}
     table = "\n".join(f"  {kind}: {count}{''.join(of_kind[kind])}" for kind, count in kinds.items())
     sources = {str(row.get(name, "")) for row in found.rows for name in ("height_from", "top_from")}
-    quoted = "".join(f"  heights are from {words}\n" for words in sorted(sources) if ": " in words)
+    quoted = "".join(f"  heights are from {words}\n" for words in sorted(sources)
+                     if ": " in words and not words.startswith("assumed"))
     heights = ground_of(found.scene, ends_of(found.sides))
     x, y, z = place.position
     without = "; without clutter, because clutter behind leaves takes long to compute" if found.leaves else ""

@@ -298,6 +298,12 @@ def _folder_of(of: Set, folder: pathlib.Path, several: bool) -> pathlib.Path:
     raise Error(f"{folder}: holds no predictions for {of.name}, expected {expected}")
 
 
+def _mean_curve(values) -> Tuple[np.ndarray, np.ndarray]:
+    """Mean and standard deviation of each column; nan where fewer than one or two values are finite."""
+    known = np.ma.masked_invalid(values)
+    return known.mean(axis=0).filled(math.nan), known.std(axis=0, ddof=1).filled(math.nan)
+
+
 def tables(scored: Sequence[Scored]) -> Dict[str, List[Any]]:
     """Rows of the tables, by the name of the file."""
     rows = []
@@ -309,7 +315,7 @@ def tables(scored: Sequence[Scored]) -> Dict[str, List[Any]]:
                     rows.append((one.set.name, one.set.weather, one.name, *group, words, "1", *value,
                                  one.points(group)))
     curves = [(one.set.name, one.name, *place) for one in scored if one.curves
-              for place in zip(RECALLS, np.nanmean(one.curves, axis=0))]
+              for place in zip(RECALLS, _mean_curve(one.curves)[0])]
     return {"bench.csv": [("set", "weather", "predictions", "by", "group", "score", "unit", "value", "std_error",
                            "sequences", "points"), *rows],
             "curves.csv": [("set", "predictions", "recall", "precision"), *curves]}
@@ -340,9 +346,9 @@ def _picture(out: pathlib.Path, scored: Sequence[Scored]) -> Optional[Dict[str, 
 
 def _draw_curves(axes, curves: Dict[str, np.ndarray]) -> None:
     for name, values in curves.items():
-        middle = np.nanmean(values, axis=0)
+        middle, deviation = _mean_curve(values)
         line, = axes.plot(RECALLS, middle, label=name)
         if len(values) > 1:
-            error = np.nanstd(values, axis=0, ddof=1) / math.sqrt(len(values))
+            error = deviation / math.sqrt(len(values))
             axes.fill_between(RECALLS, middle - error, middle + error, color=line.get_color(), alpha=0.2, linewidth=0)
     pictures.finish(axes, xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))

@@ -16,6 +16,8 @@ from ._gdal import corners_of, form_of, geometry, is_closed, parts_of, solid, un
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
+NO_DEGREES, NO_EXTENT = "coordinates that are not degrees (longitude, latitude)", "no extent"
+STRAY = "a hole outside its outline"
 
 
 def _has_extent(shape, corners: np.ndarray, form: str) -> bool:
@@ -112,6 +114,10 @@ class Extract:
                 self._do_not_know(tags)
             return
         closed, use = form == "area" or is_closed(shape), ""
+        kinds = self._kinds(tags, form, closed)
+        if not np.all(np.abs(corners) <= (360.0, 90.0)):  # also False for nan
+            self.leave(Feature(next(iter(kinds), ("",))[0], tags), NO_DEGREES)
+            return
         if self.model_tags.find(tags) is not None:
             self.models.append(one)
         if tags.get("aeroway") == "threshold" and form == "point":
@@ -125,18 +131,17 @@ class Extract:
         if tags.get("natural") == COAST and form != "point":
             self._keep(Feature(COAST, tags, shape), form, corners)
             return
-        kinds = self._kinds(tags, form, closed)
         if not kinds:
             self._leave_unknown(one, form, use)
         reason = self._reason(tags) if kinds else None
         for kind, taken in kinds:
             one = Feature(kind, tags, shape)
             if not reason and taken == "area":
-                one.shape = solid(shape)
+                one.shape = solid(shape, lambda one=one: self.leave(one, STRAY))
             elif taken != form:
                 one.shape = ogr.ForceToMultiLineString(shape)
             if reason or not _has_extent(one.shape, corners, taken):
-                self.leave(one, reason or (CUT if tags.get("osm_way_id") in self.cut else "no nodes"))
+                self.leave(one, reason or (CUT if tags.get("osm_way_id") in self.cut else NO_EXTENT))
                 continue
             self._keep(one, taken, corners)
 

@@ -12,7 +12,7 @@ import numpy as np
 from ._gdal import form_of
 from ._json import packaged
 
-TALLEST = 1000.0  # greatest plausible height, m
+TALLEST, HIGHEST = 1000.0, 200.0  # greatest plausible height, m, and number of storeys
 LONGEST_LENGTH = 100  # characters
 THOUSANDS = "[, \u00a0\u202f'\u2019]"  # separators between groups of three digits
 NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
@@ -28,7 +28,9 @@ HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height
 LEVELS = ("building:levels", "num_floors", "levels", "floors")
 MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
 MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
-NOTHING = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")  # texts that give no height
+# texts that give no number: -1 in Microsoft's footprints, no storey above the ground, objects that begin at the ground
+NO_HEIGHT, NO_LEVEL = re.compile(r"\s*(?:-1(?:\.0*)?)?\s*"), re.compile(r"\s*0*\s*")
+NO_MIN_HEIGHT = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
 
 
@@ -41,24 +43,24 @@ def number_of(text: str, most: float = np.inf) -> float:
     return float(text.replace(",", ".", 1).replace(",", ""))
 
 
-def length_of(text: Any) -> Optional[float]:
+def length_of(text: Any, most: float = TALLEST) -> Optional[float]:
     """Metres in "12", "12.5 m", "40 ft", "39'4\"", "1,200 ft", "approx 12"; the greatest value in "2;3" and "12-15".
-    None for a text without a length."""
-    return _greatest(text, _one_length)
+    None for a text without a length. @param most greatest plausible length, m"""
+    return _greatest(text, _one_length, most)
 
 
 def levels_of(text: Any) -> Optional[float]:
     """The number in "2", "2 floors", "3+1"; the greatest in "2;3", "2,3" and "2-3". None for other texts."""
-    return _greatest(re.sub(r",(?!5\b)", ";", str(text)) if text else text, _one_number_of_levels)
+    return _greatest(re.sub(r",(?!5\b)", ";", str(text)) if text else text, _one_number_of_levels, HIGHEST)
 
 
-def _greatest(text: Any, one: Callable[[str], Optional[float]]) -> Optional[float]:
+def _greatest(text: Any, one: Callable[[str], Optional[float]], most: float) -> Optional[float]:
     said = str(text if text is not None else "").strip().strip(";").strip()
     if not said or len(said) > LONGEST_LENGTH:  # the time of the expressions grows with the third power of the length
         return None
     values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
     known = [value for value in values if value is not None]
-    return max(known) if len(known) == len(values) and 0.0 < max(known) <= TALLEST else None
+    return max(known) if len(known) == len(values) and 0.0 < max(known) <= most else None
 
 
 def _one_length(text: str) -> Optional[float]:
@@ -139,9 +141,9 @@ def _first(tags: Dict[str, str], names: Tuple[str, ...],
     return next(((value, name) for value, name in values if value is not None), (None, "assumed"))
 
 
-def _not_understood(tags: Dict[str, str], names: Tuple[str, ...]) -> str:
-    """The first of some tags whose text is neither a number nor one of the texts without a height."""
-    strange = (name for name in names if name in tags and not NOTHING.fullmatch(tags[name]))
+def _not_understood(tags: Dict[str, str], names: Tuple[str, ...], nothing: re.Pattern[str]) -> str:
+    """The first of some tags whose text is neither a number nor one of the texts that give no number."""
+    strange = (name for name in names if name in tags and not nothing.fullmatch(tags[name]))
     return next((f"assumed: {name} is {tags[name][:40]!r}" for name in strange), "")
 
 
@@ -159,7 +161,8 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
             return (lowest + floor * (levels - 1.0) + up,
                     f"{source}, {lowest:g} m for the lowest and {floor:g} m for others assumed")
         return each * levels + up, f"{source if levels else 'roof:levels'}, {each:g} m each assumed"
-    return rule["height"], _not_understood(tags, HEIGHTS) or "assumed"
+    strange = _not_understood(tags, HEIGHTS, NO_HEIGHT) or _not_understood(tags, LEVELS, NO_LEVEL)
+    return rule["height"], strange or "assumed"
 
 
 def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
@@ -181,7 +184,7 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
                 under, why = each * below, f"{why}, {each:g} m each assumed"
         if under is not None and "assumed" in source and (source.startswith("assumed") or under >= height):
             height, source = under + rule.get("thickness", height), f"{source}, above {why}"
-        strange = _not_understood(tags, MIN_HEIGHTS + MIN_LEVELS)
+        strange = _not_understood(tags, MIN_HEIGHTS + MIN_LEVELS, NO_MIN_HEIGHT)
         if under is None and "thickness" in rule and not tags.get("min_height", "").startswith("0"):
             under, why = height - rule["thickness"], "assumed"
         elif strange and not (under and under < height):
@@ -190,8 +193,10 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
         if under is not None and 0.0 <= under < height:
             properties.update(min_height=round(float(under), 3) or None, min_height_from=why)
     if "width" in rule and form_of(feature.shape) != "area":
-        value, source = _first(tags, WIDTHS, length_of)
-        properties.update(width=round(float(rule["width"] if value is None else value), 3), width_from=source)
+        value, source = _first(tags, WIDTHS, lambda text: length_of(text, known["widest"]))
+        if value is None:
+            value, source = rule["width"], _not_understood(tags, WIDTHS, NO_HEIGHT) or source
+        properties.update(width=round(float(value), 3), width_from=source)
     if feature.kind in ("runway", "taxiway", "apron", "road", "parking"):
         said = tags.get("surface", "")
         surface = next((name for name, words in known["surfaces"].items() if said in words), None)

@@ -114,14 +114,22 @@ def is_closed(shape) -> bool:
     return len(points or ()) > 3 and points[0][:2] == points[-1][:2]
 
 
-def solid(shape):
-    """The polygons in a closed line or an area, without rings that enclose nothing. May be empty."""
+def solid(shape, stray: Callable[[], Any] = lambda: None):
+    """The polygons in a closed line or an area, without rings that enclose nothing and without holes outside the outer
+    rings. May be empty. @param stray is called for each hole outside the outer rings"""
     area = shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
     polygons = [[ring.GetPoints() or () for ring in part] for part in parts_of(area)]
     if all(len(ring) > 3 for rings in polygons for ring in rings) and area.IsValid():
         return area
     # GEOS refuses rings of fewer than three corners.
     kept = [[ring for ring in rings if len(ring) > 3] for rings in polygons if rings and len(rings[0]) > 3]
+    outside = union([geometry("Polygon", rings[:1]) for rings in kept])
+    for rings in kept:
+        for ring in rings[:0:-1]:
+            hole = union([geometry("Polygon", [ring])])
+            if hole.Area() > 0.0 == hole.Intersection(outside).Area():
+                rings.remove(ring)
+                stray()
     return union([geometry("MultiPolygon", kept)])
 
 

@@ -14,7 +14,7 @@ from .._cloud import Cloud
 from .._coverage import places_of
 from .._pipeline import Error, update
 from .._properties import set_properties
-from ._json import load_json, naming
+from ._json import load_json, naming, packaged
 from ._regions import Runway
 
 
@@ -67,6 +67,23 @@ def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarra
     return to_enu(degrees, origin)
 
 
+def _lines(shape: Dict[str, Any], origin: Sequence[float]) -> List[np.ndarray]:
+    """The ends (2 x 2, m) of each line in GeoJSON. Lines of a MultiLineString that lie on one line are one."""
+    is_many = shape["type"] == "MultiLineString"
+    lines = shape.get("coordinates") if is_many else [shape.get("coordinates")]
+    if not isinstance(lines, list) or not lines:
+        raise ValueError("the coordinates of a MultiLineString are not a list of lines")
+    ends = [_corners(line, origin, 2)[[0, -1]] for line in lines]
+    points = np.concatenate(ends)
+    first = points[np.argmax(np.hypot(*(points - points[0]).T))]
+    last = points[np.argmax(np.hypot(*(points - first).T))]
+    if (last - first) @ (ends[0][1] - ends[0][0]) < 0.0:
+        first, last = last, first
+    x, y = last - first
+    beside = np.abs((points - first) @ (-y, x)) / max(np.hypot(x, y), 1.0)
+    return [np.array([first, last])] if is_many and beside.max() <= packaged("airport.json")["runway_offset"] else ends
+
+
 def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and
     `width` (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
@@ -74,11 +91,13 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     found: List[Runway] = []
     for number, feature in enumerate(features_of(path)):
         properties, shape = feature["properties"], feature["geometry"]
-        if "runway" in (properties.get("kind"), properties.get("aeroway")) and shape.get("type") == "LineString":
-            name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
-            width = properties.get("width", 45.0)
-            with naming(f"{path}: features[{number}]"):
-                (x0, y0), (x1, y1) = _corners(shape.get("coordinates"), origin, 2)[[0, -1]].tolist()
+        is_runway = "runway" in (properties.get("kind"), properties.get("aeroway"))
+        if not is_runway or shape.get("type") not in ("LineString", "MultiLineString"):
+            continue
+        width = properties.get("width", 45.0)
+        with naming(f"{path}: features[{number}]"):
+            for (x0, y0), (x1, y1) in (ends.tolist() for ends in _lines(shape, origin)):
+                name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
                 length = np.hypot(x1 - x0, y1 - y0)
                 if not isinstance(width, (int, float)) or not width > 0 or not length > 1.0:
                     raise ValueError(f"{name}: expected a line of some length and a width above 0 m, "

@@ -35,6 +35,8 @@ NOT_MODELLED = {"SN": "snow", "SG": "snow grains", "IC": "ice crystals", "PL": "
                 "GS": "small hail", "UP": "unknown precipitation"}
 # A station and a time. A time without Z counts only before a wind, because heads of bulletins also have six digits.
 START = re.compile(r"\b([A-Z][A-Z0-9]{3})\s+(\d{6})(?:Z\b|(?=\s+(?:(?:AUTO|COR)\s+)?\S{3,8}(?:KT|MPS|KMH)\b))")
+TIME = re.compile(r"(?:0[1-9]|[12]\d|3[01])(?:[01]\d|2[0-3])[0-5]\d")  # day, hour and minute
+DATE = re.compile(r"\b((?:19|20)\d\d)-?(0[1-9]|1[0-2])-?(0[1-9]|[12]\d|3[01])")
 FORECAST = re.compile(r"(?:\d{4}/\d{4}|\d{6})\s")  # validity period of a TAF (forecast)
 # Remarks, trends, and the end of a report; clouds, temperatures and pressure.
 END = re.compile(r"\s(?:RMKS?|NOSIG|TEMPO|BECMG|INTER|PROB\d\d|FM\d{4,6}|TTF)\b.*|=.*")
@@ -53,6 +55,7 @@ class Hour(NamedTuple):
     visibility: float  # m; infinite for 10 km or more
     rain: float  # mm/h
     others: Tuple[str, ...]  # codes of precipitation that is not modelled
+    date: str = ""  # year, month and day before the report, if the file gives them
 
 
 def _plain(line: str) -> str:
@@ -64,6 +67,8 @@ def report_of(line: str) -> Hour:
     found = START.search(_plain(line))
     if not found:
         raise ValueError("expected a station and a time as in 'ZSSS 010000Z'")
+    if not TIME.fullmatch(found[2]):
+        raise ValueError("expected a day, an hour and a minute as in 010000Z")
     text = re.sub(r"(\d)\s+(SM|KM)\b", r"\1\2", END.sub("", found.string[found.end():])).strip()
     if re.search(r"\bTAF\b", found.string[:found.start()]) or FORECAST.match(text):
         raise ValueError("a forecast (TAF)")
@@ -83,7 +88,8 @@ def report_of(line: str) -> Hour:
             elif "DZ" in kinds:
                 rain = max(rain, DRIZZLE)
             others += [NOT_MODELLED[kind] for kind in kinds if kind in NOT_MODELLED]
-    return Hour(found[1], found[2], visibility, rain, tuple(others))
+    date = DATE.search(found.string[:found.start()])
+    return Hour(found[1], found[2], visibility, rain, tuple(others), "".join(date.groups()) if date else "")
 
 
 def _visibility(words: List[str]) -> Optional[float]:
@@ -123,9 +129,12 @@ class Hours:
 
     def weighted(self) -> Iterator[Tuple[float, Hour]]:
         """Reports, each with its share of an hour."""
-        # the same day and hour occur again in the next month
-        for _, group in itertools.groupby(self.reports, key=lambda one: one.time[:4]):
+        # without a date, the same day and hour occur again in the next month
+        hours: Dict[Any, List[Hour]] = collections.defaultdict(list)
+        for number, (hour, group) in enumerate(itertools.groupby(self.reports, key=lambda one: one.time[:4])):
             together = list(group)
+            hours[max(one.date for one in together) or number, hour] += together
+        for together in hours.values():
             yield from ((1.0 / len(together), one) for one in together)
 
     def classes(self) -> Dict[Tuple[str, ...], float]:

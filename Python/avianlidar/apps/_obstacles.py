@@ -2,8 +2,6 @@
 """Surveyed obstacles in the formats of State publications: AIXM 5.1, and CSV with named columns."""
 from __future__ import annotations
 
-import csv
-import io
 import math
 import pathlib
 import re
@@ -17,6 +15,7 @@ from .._pipeline import Error
 from ._features import NUMBER, TALLEST, Feature, number_of
 from ._gdal import degrees, form_of, geometry, plain
 from ._osm import CONTROLS
+from ._tables import csv_rows
 
 METRES = {**dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
           **dict.fromkeys(("ft", "foot", "feet", "'", "′"), 0.3048)}
@@ -84,7 +83,7 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Tuple[Dict[str, str], A
     except UnicodeDecodeError:
         text = content.decode("latin-1")
     head = text.split("\n", 1)[0]
-    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), skipinitialspace=True)
+    rows = csv_rows(file, text, max(",;\t", key=head.count))
     names = [name.strip().lower() for name in next(rows, [])]
     plain_names = [UNIT.sub("", name) for name in names]
     at: Dict[str, int] = {}

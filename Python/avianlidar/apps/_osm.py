@@ -9,6 +9,7 @@ import mmap
 import pathlib
 import re
 import tempfile
+import xml.parsers.expat
 from typing import Any, Dict, List, Tuple
 from xml.etree import ElementTree
 
@@ -24,6 +25,7 @@ SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"
 LARGEST = 256 << 20  # greatest size of an extract, bytes
 # control characters, and marks of text direction, which would disorder a line
 CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+CRS = re.compile(rb'"crs"\s*:\s*\{[^{}]*"properties"\s*:\s*\{\s*"name"\s*:\s*("(?:[^"\\]|\\.)*")')
 TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # format of tags in GDAL's OSM driver
 
 
@@ -42,6 +44,33 @@ def _memberless(file: pathlib.Path) -> int:
         return sum(re.search(rb"""v=["'](multipolygon|boundary)""", one[1]) is not None
                    and re.search(rb"""type=["']way""", one[1]) is None
                    for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
+
+
+def _check_nodes(source: pathlib.Path) -> None:
+    """Raises an error for a node of OpenStreetMap's XML whose coordinates GDAL would read as others, such as 0."""
+    def start(tag: str, own: Dict[str, str]) -> None:
+        for name, most in (("lat", 90.0), ("lon", 180.0)) if tag == "node" else ():
+            with contextlib.suppress(ValueError):
+                if abs(float(own.get(name, ""))) <= most:
+                    continue
+            raise Error(f"node {own.get('id')}: {name} is {own.get(name, '')[:40]!r}, expected degrees as in 53.602")
+
+    parser = xml.parsers.expat.ParserCreate()
+    parser.StartElementHandler = start
+    with open(source, "rb") as stream, contextlib.suppress(xml.parsers.expat.ExpatError):  # GDAL names the latter
+        parser.ParseFile(stream)
+
+
+def _check_system(file: pathlib.Path) -> None:
+    """Raises an error for GeoJSON in a coordinate system that is not known, which GDAL would read as degrees."""
+    with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        found = CRS.search(data)
+        name = json.loads(found[1]) if found else "CRS84"
+    try:
+        if not name.endswith("CRS84"):
+            osr.SpatialReference().SetFromUserInput(name)
+    except RuntimeError:
+        raise Error(f"{file}: the coordinate system is {name[:80]!r}, expected a system of EPSG, or degrees") from None
 
 
 def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
@@ -134,7 +163,11 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                         source = _in_order(file, folder / "in_order.osm")
                 except ElementTree.ParseError as error:
                     raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
+            with naming(str(file)):
+                _check_nodes(source)
             found.left += [Feature("relation", {}, reason="no ways")] * _memberless(source)
+        elif driver == "GeoJSON":
+            _check_system(file)
         data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, settings if driver == "OSM" else ())
         stack.enter_context(naming(str(file)))
         stack.enter_context(quiet(found.hear if driver == "OSM" else None))

@@ -10,6 +10,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from .. import vtkAvianLidar as _wrapped
+from .._cloud import leaves_of
 from .._coverage import Coverage, places_of
 from .._pipeline import Error, update
 from .._ranks import digest_of, digest_of_arrays
@@ -68,6 +69,11 @@ class Plan:
             update(self.sensor.algorithm)
         self.heights: List[float] = list(plan.get("heights", HEIGHTS))
         self.asked = (min(self.heights), max(self.heights)) if "heights" in plan else None
+        lowest = min((leaf.GetBounds()[4] for leaf in leaves_of(self.scene.surfaces) if leaf.GetNumberOfPoints()),
+                     default=-math.inf)
+        if self.asked and self.asked[0] < min(lowest, self.sensor.position[2]):
+            raise Error(f"{self.file}: heights: {self.asked[0]:g} m is below the sensor and all surfaces of the scene, "
+                        f"whose lowest height is {lowest:g} m above the origin")
         self.air = tuple(plan.get("weather", ()))
         self.settings: Dict[str, Any] = {"number_of_threads": threads, **in_weather(plan.get("coverage", {}), self.air)}
         if self.air:

@@ -144,7 +144,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     for one in areas:
         hull = moved(one.shape, to_local).ConvexHull()
         ends, width = _axis_of(hull)
-        area = _Piece(one, ends, width=f"{width:.1f}")
+        area = _Piece(one, ends, width=f"{min(width, known['widest']):.1f}")
         inside = sum(line.Intersection(hull).Length() for piece, line in drawn if abs(piece.along @ area.along) > ALONG)
         if inside < area.length / 2:  # the area is not along the line
             pieces.append(area)

@@ -2,7 +2,6 @@
 """Search for sites of lidars, a plan's `siting`. `_sites_page` writes what is found."""
 from __future__ import annotations
 
-import csv
 import dataclasses
 import itertools
 import pathlib
@@ -50,7 +49,7 @@ def _read_points(name: str) -> np.ndarray:
     """The columns x and y of a CSV file, n x 2, m."""
     try:
         points = np.array([(float(row["x"]), float(row["y"])) for row in read_table(name)])
-    except (KeyError, TypeError, ValueError, csv.Error) as error:
+    except (KeyError, TypeError, ValueError) as error:
         raise Error(f"{name}: expected the columns x and y in the first line and numbers (m) below ({error})") from None
     if not len(points):
         raise Error(f"{name}: has no rows, expected numbers (m) below the first line")

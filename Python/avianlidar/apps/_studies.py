@@ -105,7 +105,7 @@ def airport(options) -> None:
     for name in kept.edited:
         warn(f"{options.out / name} was edited and is kept; remove this file to have it made again")
     buildings = [row for row in made.rows if "height" in row]
-    if buildings and all(row.get("height_from") == "assumed" for row in buildings):
+    if buildings and all(str(row.get("height_from")).startswith("assumed") for row in buildings):
         warn(f"{options.extract} says no height of any building: all heights are assumed by kind, "
              f"{options.out / 'assumed.csv'} lists these heights")
     print(f"{options.out}: {extract.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "

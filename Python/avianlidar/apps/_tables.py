@@ -7,7 +7,7 @@ import csv
 import io
 import math
 import pathlib
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -20,14 +20,26 @@ from .._writers import as_csv
 from ._geojson import to_geodetic
 
 
+def csv_rows(file, text: str, delimiter: str = ",") -> Iterator[List[str]]:
+    """Rows of CSV. `Error` names the line in which a row begins that has a wrong quote, such as one that is not
+    closed and would take the following rows into its cell."""
+    rows, begin = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, skipinitialspace=True, strict=True), 1
+    try:
+        for row in rows:
+            yield row
+            begin = rows.line_num + 1
+    except csv.Error as error:
+        raise Error(f"{file}: line {begin}: is not CSV ({error}), expected each quote to be closed") from None
+
+
 def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
     """Rows of CSV by the names of the columns. @param columns required @param expected what the file should be"""
-    text = io.StringIO(read_regular(file).decode("utf-8-sig"), newline="")
-    rows = csv.DictReader(text, skipinitialspace=True)
-    missing = [name for name in columns if name not in (rows.fieldnames or ())]
+    rows = [row for row in csv_rows(file, read_regular(file).decode("utf-8-sig")) if row]
+    names = rows[0] if rows else []
+    missing = [name for name in columns if name not in names]
     if missing:
         raise Error(f"{file}: has no column {missing[0]}, expected {expected}")
-    return list(rows)
+    return [{**dict.fromkeys(names), **dict(zip(names, row))} for row in rows[1:]]
 
 
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
