@@ -22,7 +22,10 @@ from ._geojson import to_geodetic
 
 def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
     """Rows of CSV by the names of the columns. @param columns required @param expected what the file should be"""
-    text = io.StringIO(read_regular(file).decode("utf-8-sig"), newline="")
+    try:
+        text = io.StringIO(read_regular(file).decode("utf-8-sig"), newline="")
+    except UnicodeDecodeError as error:
+        raise Error(f"{file}: is not text in UTF-8 ({error})") from None
     rows = csv.DictReader(text, skipinitialspace=True)
     missing = [name for name in columns if name not in (rows.fieldnames or ())]
     if missing:
