@@ -17,6 +17,7 @@ from .._weather import in_words
 from .._writers import as_csv
 from . import _pictures as pictures
 from ._card import cell
+from ._json import naming
 from ._labels import BIRD, MOVING
 from ._scores import Value, mean
 from ._inputs import read_manifest
@@ -67,10 +68,11 @@ class Set:
             if (home / DONE).exists():  # sets of other programs have none
                 content_of(home)
         self.name = self.folder.resolve().name
-        self.bird_class = int(scenario.get("bird_class", BIRD))
-        self.weather = in_words(scenario.get("weather", ())) or "clear"
-        files = scenario["scene"], scenario["sensor"]["preset"]
-        self.scene, self.sensor = (pathlib.Path(name).name.split(".")[0] for name in files)
+        with naming(f"{self.folder / 'manifest.json'}: scenario"):
+            self.bird_class = int(scenario.get("bird_class", BIRD))
+            self.weather = in_words(scenario.get("weather", ())) or "clear"
+            files = scenario["scene"], scenario["sensor"]["preset"]
+            self.scene, self.sensor = (pathlib.Path(name).name.split(".")[0] for name in files)
 
     def species(self, number: str) -> Dict[int, str]:
         """The species of the birds of a sequence by instance."""

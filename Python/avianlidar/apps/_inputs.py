@@ -169,4 +169,6 @@ def read_manifest(folder, others: str = "") -> Dict[str, Any]:
     parts = manifest.get("sequences") if isinstance(manifest, dict) else None
     if not isinstance(parts, dict) or not parts:
         raise Error(f"{file}: names no sequences, expected the manifest of {made}")
+    if not isinstance(manifest.get("scenario"), dict):
+        raise Error(f"{file}: holds no scenario, expected the manifest of {made}")
     return manifest
