@@ -279,6 +279,13 @@ class Sequences(Applications):
                 done.write_text(text)
             self.refused(out, words)
             done.write_text(json.dumps(kept))
+        for name in ("scans", "scans_with_birds_seen"):
+            for count in (-5, 3):
+                if (name, count) != ("scans_with_birds_seen", 3):
+                    done.write_text(json.dumps({**kept, name: count}))
+                    self.refused(out, "expected the files of 3 scans|is not a count")
+        done.write_text(json.dumps(kept)[:-1] + ', "scans": 2}')
+        self.refused(out, "done.json: is not JSON .the key 'scans' is there twice")
         for name in set(kept) - {"inputs"}:  # for people
             done.write_text(json.dumps({**kept, name: "x"}))
             with self.subTest(name=name):

@@ -194,8 +194,21 @@ class Files(unittest.TestCase):
                 file = wrong / "sequences" / "00" / "predictions" / name
                 file.unlink() if content is None else file.write_bytes(content)
             return make
+        damaged = OUTPUT / "damaged" / "set"
+        shutil.rmtree(damaged, ignore_errors=True)
+        shutil.copytree(self.home, damaged)
+        (damaged / "sequences" / "00" / "done.json").write_text("{}", encoding="utf-8")
+        for number, (key, value) in enumerate((("bird_class", "x"), ("weather", 5), ("sensor", 5), (None, 5))):
+            other = OUTPUT / f"manifest{number}"
+            other.mkdir(exist_ok=True)
+            manifest = json.loads((self.home / "manifest.json").read_text())
+            manifest["scenario"] = {**manifest["scenario"], key: value} if key else value
+            (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+            with self.subTest(key), self.assertRaisesRegex(al.Error, f"manifest{number}/manifest.json: .*scenario"):
+                write_bench([other], [OUTPUT / "right"], OUTPUT / "out-wrong")
         nan = np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tobytes()
         for words, spoil, folder, options in (
+                ("its files differ from the sha256", None, damaged, {}),
                 ("holds no manifest.json", None, OUTPUT / "right", {}),
                 ("has no sequence 07", None, self.home, {"numbers": ["07"]}),
                 ("no scan from number 6 on", None, self.home, {"first": 6}),

@@ -9,7 +9,7 @@ import numpy as np
 import TestSequence
 import avianlidar as al
 from avianlidar import _command
-from avianlidar.apps import _card, _following, _report
+from avianlidar.apps import _card, _following, _report, _sequence
 from avianlidar.apps._following import ORIGINS, TRACK, Input, Live, score
 from avianlidar.apps._inputs import read_plan
 from avianlidar.siting import Runway
@@ -242,8 +242,18 @@ class Files(unittest.TestCase):
         manifest = json.loads((other / "manifest.json").read_text())
         manifest["scenario"]["sensor"]["preset"] = "Search1550"
         (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+        spoilt = []
+        for name, change, words in (("velodyne/000000.bin", -16, "label: has .* bytes"), ("labels/000000.label", -3, "label: has"),
+                                    ("subsets/000000.subset", 1, "subset: has"), ("velodyne/000099.bin", 16, "velodyne: expected the files")):
+            folder = self.broken("spoilt" + name.replace("/", "-"))
+            file, done = folder / "sequences/00" / name, folder / "sequences/00/done.json"
+            content = file.read_bytes() if file.exists() else b""
+            file.write_bytes(content[:change] if change < 0 else content + bytes(change))
+            done.write_text(json.dumps({**json.loads(done.read_text()), "sha256": _sequence._digest(done.parent)}), encoding="utf-8")
+            spoilt.append((folder, words))
         (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
         for inputs, settings, words in (
+                *(((folder,), {}, words) for folder, words in spoilt),
                 ((empty,), {}, "no manifest.json"), ((cut,), {}, "truth.csv: is missing"), ((changed,), {}, "its files differ from the sha256"),
                 ((other,), {}, "another sensor"), ((self.made, self.made), {}, "twice"),
                 ((self.made,), {"learning_scans": self.SCANS}, "more than the"),

@@ -17,9 +17,11 @@ from .._weather import in_words
 from .._writers import as_csv
 from . import _pictures as pictures
 from ._card import cell
+from ._json import naming
 from ._labels import BIRD, MOVING
 from ._scores import Value, mean
 from ._inputs import read_manifest
+from ._sequence import DONE, content_of
 from ._simulation import SUBSETS
 from ._tables import embedded, read_table, render, texts
 
@@ -62,11 +64,15 @@ class Set:
         if {*numbers} - {*parts}:
             raise Error(f"{self.folder / 'manifest.json'}: has no sequence {min({*numbers} - {*parts})}, "
                         f"expected some of {', '.join(parts)}")
+        for home in (self.folder / "sequences" / number for number in self.numbers):
+            if (home / DONE).exists():  # sets of other programs have none
+                content_of(home)
         self.name = self.folder.resolve().name
-        self.bird_class = int(scenario.get("bird_class", BIRD))
-        self.weather = in_words(scenario.get("weather", ())) or "clear"
-        files = scenario["scene"], scenario["sensor"]["preset"]
-        self.scene, self.sensor = (pathlib.Path(name).name.split(".")[0] for name in files)
+        with naming(f"{self.folder / 'manifest.json'}: scenario"):
+            self.bird_class = int(scenario.get("bird_class", BIRD))
+            self.weather = in_words(scenario.get("weather", ())) or "clear"
+            files = scenario["scene"], scenario["sensor"]["preset"]
+            self.scene, self.sensor = (pathlib.Path(name).name.split(".")[0] for name in files)
 
     def species(self, number: str) -> Dict[int, str]:
         """The species of the birds of a sequence by instance."""
@@ -274,7 +280,7 @@ def write_bench(folders: Sequence[Any], predictions: Sequence[Any], out, numbers
     jobs = [(scored, _folder_of(scored.set, folder, len(sets) > 1))
             for of in by_set for scored, folder in zip(of, given)]
     out, done, total = pathlib.Path(out), itertools.count(1), sum(len(scored.set.numbers) for scored, _ in jobs)
-    with only_run(out):
+    with only_run(out, goes_on=False):
         for scored, place in jobs:
             for number in scored.set.numbers:
                 scored.add(*scored.set.points(number, place), scored.set.species(number))

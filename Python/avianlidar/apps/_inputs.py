@@ -155,8 +155,9 @@ def read_scenario(file) -> Dict[str, Any]:
     scenario = load_json(path)
     if isinstance(scenario, dict) and "sequences" in scenario:
         scenario = scenario.get("scenario")  # a manifest
+    scenario = checked(scenario, str(file))
     with naming(str(file)):
-        return with_files(checked(scenario, str(file)), lambda name: str((path.parent / name).resolve()))
+        return with_files(scenario, lambda name: str((path.parent / name).resolve()))
 
 
 def read_manifest(folder, others: str = "") -> Dict[str, Any]:
@@ -168,4 +169,6 @@ def read_manifest(folder, others: str = "") -> Dict[str, Any]:
     parts = manifest.get("sequences") if isinstance(manifest, dict) else None
     if not isinstance(parts, dict) or not parts:
         raise Error(f"{file}: names no sequences, expected the manifest of {made}")
+    if not isinstance(manifest.get("scenario"), dict):
+        raise Error(f"{file}: holds no scenario, expected the manifest of {made}")
     return manifest

@@ -7,7 +7,7 @@ import functools
 import json
 import math
 import pathlib
-from typing import Any, Iterator
+from typing import Any, Dict, Iterator, List, Tuple
 
 from .._files import read_regular
 from .._pipeline import Error, words_of
@@ -30,10 +30,18 @@ def _integer(text: str) -> int:
     return int(text)
 
 
+def _unique(pairs: List[Tuple[str, Any]]) -> Dict[str, Any]:
+    names = [name for name, _ in pairs]
+    if len({*names}) < len(names):
+        raise ValueError(f"the key {max(names, key=names.count)!r} is there twice")
+    return dict(pairs)
+
+
 def load_json(file) -> Any:
     """The content of a JSON file, which may be compressed by gzip; `Error` names the problem. Numbers are finite."""
     try:
-        return json.loads(read_regular(file), parse_constant=_finite, parse_float=_finite, parse_int=_integer)
+        return json.loads(read_regular(file), object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite,
+                          parse_int=_integer)
     except RecursionError:
         raise Error(f"{file}: is not JSON that can be read: nested too deeply") from None
     except ValueError as error:

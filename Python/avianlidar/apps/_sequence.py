@@ -32,6 +32,7 @@ from ._simulation import STATUSES, SUBSETS, TRUTH, Simulation
 DONE = "done.json"
 PART = ".part"  # suffix of a folder that is being written
 FOLDERS = {"velodyne": ".bin", "labels": ".label", "subsets": ".subset", "boxes": ".txt"}  # suffix of the files
+POINT = {"velodyne": 16, "labels": 4, "subsets": 1}  # bytes of a point
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # files of a whole sequence
 TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # tables in DONE
 COUNTS = ("scans", "scans_with_birds_seen")
@@ -193,12 +194,10 @@ class Sequence(Simulation):
             return False
 
         def is_wrong(table: Any, allowed: Any) -> bool:
-            return (not isinstance(table, dict) or not set(table) <= set(allowed)
-                    or any(type(count) is not int for count in table.values()))
+            return not isinstance(table, dict) or not set(table) <= set(allowed)
         classes = [str(label) for label in classes_of(self.bird_class)]
         wrong = [name for name, allowed in zip(TABLES, (classes, STATUSES, SUBSETS))
                  if is_wrong(known.get(name), allowed)]
-        wrong += [name for name in COUNTS if type(known.get(name)) is not int]
         if wrong:
             raise Error(f"{folder / DONE}: {wrong[0]} is missing or is not a count. {_AGAIN}")
         content_of(folder)
@@ -232,7 +231,27 @@ def content_of(folder: pathlib.Path) -> Dict[str, Any]:
             content.get("sha256") != _digest(folder):
         raise Error(f"{folder}: its files differ from the sha256 in its {DONE}: "
                     f"another program has changed, added or removed files. {_AGAIN}")
+    tables = [content.get(name) for name in TABLES] + [{name: content.get(name)} for name in COUNTS]
+    for name, table in zip((*TABLES, *COUNTS), tables):
+        if not isinstance(table, dict) or any(type(count) is not int or count < 0 for count in table.values()):
+            raise Error(f"{folder / DONE}: {name} is missing or is not a count. {_AGAIN}")
+    _check_scans(folder, content["scans"])
     return content
+
+
+def _check_scans(folder: pathlib.Path, count: int) -> None:
+    """`Error` unless all folders of a sequence hold its scans, with a label and a subset for each point."""
+    names = [f"{number:06d}" for number in range(count)]
+    for name, suffix in FOLDERS.items():
+        if sorted(file.stem for file in (folder / name).glob(f"*{suffix}")) != names:
+            raise Error(f"{folder / name}: expected the files of {count} scans, 000000{suffix} and so on. {_AGAIN}")
+    for name in names:
+        points = (folder / "velodyne" / f"{name}.bin").stat().st_size / POINT["velodyne"]
+        for kind, size in POINT.items():
+            file = folder / kind / f"{name}{FOLDERS[kind]}"
+            if file.stat().st_size != size * int(points):
+                raise Error(f"{file}: has {file.stat().st_size} bytes, expected {size} for each of "
+                            f"{int(points)} points. {_AGAIN}")
 
 
 def _digest(folder: pathlib.Path) -> str:

@@ -34,7 +34,11 @@ def csv_rows(file, text: str, delimiter: str = ",") -> Iterator[List[str]]:
 
 def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Dict[str, str]]:
     """Rows of CSV by the names of the columns. @param columns required @param expected what the file should be"""
-    rows = [row for row in csv_rows(file, read_regular(file).decode("utf-8-sig")) if row]
+    try:
+        text = read_regular(file).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise Error(f"{file}: is not text in UTF-8 ({error})") from None
+    rows = [row for row in csv_rows(file, text) if row]
     names = rows[0] if rows else []
     missing = [name for name in columns if name not in names]
     if missing:
