@@ -5,7 +5,9 @@ import math
 import os
 import pathlib
 import re
+import signal
 import sys
+import threading
 import traceback
 import warnings
 from typing import Any
@@ -295,14 +297,24 @@ def parser() -> Parser:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Runs the command. @return 0; 2 after an error, which is printed in one line"""
+    """Runs the command. SIGTERM stops a run as Ctrl-C does. @return 0; 2 after an error, which is printed in one line;
+    130 after Ctrl-C; 143 after SIGTERM"""
     from . import _terminal, _verbs
     from ._pipeline import words_of
     from ._ranks import Ranks
     sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # daemons have no streams
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
     options = parser().parse_args(argv)
-    code = 2
+    code, terminated = 2, []
+
+    def terminate(number, _):
+        terminated.append(number)
+        raise KeyboardInterrupt
+
+    takes_over = (threading.current_thread() is threading.main_thread()
+                  and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL)
+    if takes_over:
+        signal.signal(signal.SIGTERM, terminate)
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: _terminal.warn(str(message))
@@ -310,7 +322,7 @@ def main(argv: list[str] | None = None) -> int:
             sys.stdout.flush()
         code = 0
     except KeyboardInterrupt as stop:
-        code = 130
+        code = 143 if terminated else 130
         _terminal.say(": ".join(("stopped", *map(str, stop.args))))
     except BrokenPipeError:  # the reader of the pipe has ended, as in `| head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -320,6 +332,8 @@ def main(argv: list[str] | None = None) -> int:
     except (RuntimeError, OSError, ValueError, TypeError, LookupError, ArithmeticError, Warning) as error:
         _terminal.say(words_of(error))
     finally:  # also after an unexpected exception, which is raised with its traceback
+        if takes_over:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
         if code != 141:
             sys.stdout.flush()
         if code and Ranks().size > 1:

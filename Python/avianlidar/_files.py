@@ -168,6 +168,19 @@ def save(cloud, file, **properties: Any) -> None:
     write(Cloud(getattr(cloud, "echoes", cloud)), file, **properties)
 
 
+def numbers_of(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "") -> np.ndarray:
+    """The numbers of each line that begins with the key, lines x columns. @param least least allowed number"""
+    try:
+        lines = read_regular(file).decode().splitlines()
+        rows = np.array([line[len(key):].split() for line in lines if line.startswith(key)], float)
+        rows = rows if rows.size else np.empty((0, columns))
+        if rows.shape[1] == columns and ((rows >= least) & (rows < 2e9)).all():
+            return rows
+    except ValueError:  # also raised for text that is not UTF-8
+        pass
+    raise ValueError(f"{file}: expected lines of {key or 'numbers'}, {columns} in each, from {least:g} to 2e9")
+
+
 def _check_xml(path: pathlib.Path) -> None:
     """Raises the error of XML that is damaged. The parser of VTK's reader would print the error instead."""
     from vtkmodules.vtkIOXMLParser import vtkXMLDataParser

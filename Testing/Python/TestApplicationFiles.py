@@ -224,14 +224,15 @@ class OneRun(Applications):
 
     def test_a_signal(self):
         before = sorted(self.home.rglob("*"))
-        job = subprocess.Popen([sys.executable, "-m", "avianlidar", "report", str(self.plan), "-o", str(self.home / "new" / "r.html")],
-                               stderr=subprocess.PIPE, text=True)
-        while job.poll() is None and not (self.home / "new").exists():
-            time.sleep(0.005)
-        job.send_signal(signal.SIGINT)
-        self.assertEqual(job.communicate(timeout=60)[1], "avianlidar: stopped\n")
-        self.assertEqual(job.returncode, 130)
-        self.assertEqual(sorted(self.home.rglob("*")), before)
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            job = subprocess.Popen([sys.executable, "-m", "avianlidar", "report", str(self.plan), "-o", str(self.home / "new" / "r.html")],
+                                   stderr=subprocess.PIPE, text=True)
+            while job.poll() is None and not (self.home / "new").exists():
+                time.sleep(0.005)
+            job.send_signal(number)
+            self.assertEqual(job.communicate(timeout=60)[1], "avianlidar: stopped\n")
+            self.assertEqual(job.returncode, status)
+            self.assertEqual(sorted(self.home.rglob("*")), before)
 
     def test_what_was_there_stays(self):
         files, page = self.home / "r_files", self.home / "r.html"

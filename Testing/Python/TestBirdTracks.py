@@ -244,7 +244,8 @@ class Files(unittest.TestCase):
         (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
         spoilt = []
         for name, change, words in (("velodyne/000000.bin", -16, "label: has .* bytes"), ("labels/000000.label", -3, "label: has"),
-                                    ("subsets/000000.subset", 1, "subset: has"), ("velodyne/000099.bin", 16, "velodyne: expected the files")):
+                                    ("subsets/000000.subset", 1, "subset: has"), ("velodyne/000099.bin", 16, "velodyne: expected the files"),
+                                    ("times.txt", -10, "times.txt: expected"), ("poses.txt", -40, "poses.txt: expected")):
             folder = self.broken("spoilt" + name.replace("/", "-"))
             file, done = folder / "sequences/00" / name, folder / "sequences/00/done.json"
             content = file.read_bytes() if file.exists() else b""

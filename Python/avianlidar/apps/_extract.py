@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import dataclasses
 import datetime
+import functools
 import re
 from typing import Any, Counter, Dict, List, Optional, Set, Tuple
 
@@ -137,7 +138,7 @@ class Extract:
         for kind, taken in kinds:
             one = Feature(kind, tags, shape)
             if not reason and taken == "area":
-                one.shape = solid(shape, lambda one=one: self.leave(one, STRAY))
+                one.shape = solid(shape, functools.partial(self.leave, one, STRAY))
             elif taken != form:
                 one.shape = ogr.ForceToMultiLineString(shape)
             if reason or not _has_extent(one.shape, corners, taken):

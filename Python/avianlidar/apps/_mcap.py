@@ -15,7 +15,7 @@ from typing import Iterator, List, Sequence, Tuple
 import numpy as np
 
 from .._disk import replacing
-from .._files import read_regular
+from .._files import numbers_of, read_regular
 from .._version import __version__
 
 _MAGIC = b"\x89MCAP0\r\n"
@@ -130,38 +130,29 @@ def _boxes(time: int, file: pathlib.Path) -> bytes:
         raise ValueError(f"{file}: expected lines of a class, 9 numbers, an id and a number of points") from None
 
 
-def _table(file: pathlib.Path, columns: int, least: float = -2e9, key: str = "") -> np.ndarray:
-    """The numbers of each line that begins with the key."""
-    try:
-        lines = read_regular(file).decode().splitlines()
-        rows = np.array([line[len(key):].split() for line in lines if line.startswith(key)], float).reshape(-1, columns)
-        if ((rows >= least) & (rows < 2e9)).all():
-            return rows
-    except ValueError:  # also raised for text that is not UTF-8
-        pass
-    raise ValueError(f"{file}: expected lines of {key or 'numbers'}, {columns} in each, from {least:g} to 2e9")
-
-
 def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndarray]]:
     """Name, time (ns), pose and points of each scan. A calibration turns camera poses into lidar poses."""
     if not (folder / "velodyne").is_dir():
         raise ValueError(f"{folder}: is not a folder of a sequence, "
                          "expected one with velodyne/, times.txt and poses.txt")
     files = sorted((folder / "velodyne").glob("*.bin"))
-    times, poses = _table(folder / "times.txt", 1, least=0)[:, 0], _table(folder / "poses.txt", 12).reshape(-1, 3, 4)
+    times = numbers_of(folder / "times.txt", 1, least=0)[:, 0]
+    poses = numbers_of(folder / "poses.txt", 12).reshape(-1, 3, 4)
     if not len(files) == len(times) == len(poses):
         raise ValueError(f"{folder}: has {len(files)} scans, {len(times)} times and {len(poses)} poses, "
                          "expected as many of each")
     last = [0, 0, 0, 1]
-    camera = np.vstack([*_table(folder / "calib.txt", 12, key="Tr:").reshape(-1, 4), last])
+    camera = np.vstack([*numbers_of(folder / "calib.txt", 12, key="Tr:").reshape(-1, 4), last])
     if camera.shape != (4, 4) or abs(np.linalg.det(camera)) < 0.5:
         raise ValueError(f"{folder / 'calib.txt'}: "
                          "expected one line Tr: with a rotation and a translation in 12 numbers")
     for file, time, pose in zip(files, times, poses):
         content, label = read_regular(file), folder / "labels" / f"{file.stem}.label"
-        labels = np.frombuffer(read_regular(label) if label.parent.is_dir() else bytes(len(content) // 16 * 4), "<u4")
-        if len(content) != 16 * len(labels):
-            raise ValueError(f"{file}: has {len(content)} bytes, expected 16 for each of {len(labels)} labels")
+        given = read_regular(label) if label.parent.is_dir() else bytes(len(content) // 16 * 4)
+        if len(content) != 4 * len(given) or len(content) % 16:
+            raise ValueError(f"{file}: has {len(content)} bytes, and its labels have {len(given)}, "
+                             "expected 16 and 4 for each point")
+        labels = np.frombuffer(given, "<u4")
         x, y, z, light = np.frombuffer(content, "<f4").reshape(-1, 4).T
         if not ((light >= 0) & (light <= 1)).all():
             raise ValueError(f"{file}: the fourth numbers of its points are not all reflectances, "

@@ -17,7 +17,7 @@ import numpy as np
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import Cloud
 from .._disk import only_run, synchronize, write_whole
-from .._files import read_regular
+from .._files import numbers_of, read_regular
 from .._pipeline import Error, Updates, callers_level
 from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
 from .._version import __version__
@@ -149,8 +149,10 @@ class Sequence(Simulation):
                     if home / name in shorter:
                         os.replace(home / name, old)
                     os.replace(part, home / name)
-                except BaseException:
+                except BaseException as error:
                     shutil.rmtree(part, ignore_errors=True)
+                    if isinstance(error, OSError) and not error.filename:  # such as a full disk
+                        raise OSError(error.errno, error.strerror, str(home / name)) from None
                     raise
                 shutil.rmtree(old, ignore_errors=True)
                 synchronize(home)
@@ -240,7 +242,8 @@ def content_of(folder: pathlib.Path) -> Dict[str, Any]:
 
 
 def _check_scans(folder: pathlib.Path, count: int) -> None:
-    """`Error` unless all folders of a sequence hold its scans, with a label and a subset for each point."""
+    """`Error` unless all folders of a sequence hold its scans, with a label and a subset for each point, a time and a
+    pose."""
     names = [f"{number:06d}" for number in range(count)]
     for name, suffix in FOLDERS.items():
         if sorted(file.stem for file in (folder / name).glob(f"*{suffix}")) != names:
@@ -252,6 +255,9 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
             if file.stat().st_size != size * int(points):
                 raise Error(f"{file}: has {file.stat().st_size} bytes, expected {size} for each of "
                             f"{int(points)} points. {_AGAIN}")
+    for text, columns in (("times.txt", 1), ("poses.txt", 12)):
+        if len(numbers_of(folder / text, columns)) != count:
+            raise Error(f"{folder / text}: expected a line for each of {count} scans. {_AGAIN}")
 
 
 def _digest(folder: pathlib.Path) -> str:

@@ -43,7 +43,7 @@ def read_table(file, columns: Sequence[str] = (), expected: str = "") -> List[Di
     missing = [name for name in columns if name not in names]
     if missing:
         raise Error(f"{file}: has no column {missing[0]}, expected {expected}")
-    return [{**dict.fromkeys(names), **dict(zip(names, row))} for row in rows[1:]]
+    return [{**dict.fromkeys(names, ""), **dict(zip(names, row))} for row in rows[1:]]
 
 
 def write_table(file, rows: Sequence[Dict[str, Any]]) -> None:
