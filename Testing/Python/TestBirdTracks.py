@@ -192,14 +192,15 @@ class Files(unittest.TestCase):
             self.assertIn(text.replace("\u00a0", " "), page)
 
     def test_goes_on(self):
-        """What is there of the same stays; other settings make it again; the same bits."""
+        """What is there of the same stays; other settings or damage make it again; the same bits."""
         file = self.out / "followed/made/01.json"
         before, content = file.stat().st_mtime_ns, file.read_bytes()
         self.assertEqual(self.tracks().write(self.out), self.card)
         self.assertEqual(file.stat().st_mtime_ns, before)
-        file.write_text("{}", encoding="utf-8")
-        self.tracks().write(self.out)
-        self.assertEqual(file.read_bytes(), content)
+        for damaged in ({}, {**json.loads(content), "birds": 5}):
+            file.write_text(json.dumps(damaged), encoding="utf-8")
+            self.tracks().write(self.out)
+            self.assertEqual(file.read_bytes(), content)
         other = self.home / "other"
         shutil.copytree(self.out, other)
         self.tracks(cutoff=5.0).write(other)
@@ -245,11 +246,13 @@ class Files(unittest.TestCase):
         spoilt = []
         for name, change, words in (("velodyne/000000.bin", -16, "label: has .* bytes"), ("labels/000000.label", -3, "label: has"),
                                     ("subsets/000000.subset", 1, "subset: has"), ("velodyne/000099.bin", 16, "velodyne: expected the files"),
-                                    ("times.txt", -10, "times.txt: expected"), ("poses.txt", -40, "poses.txt: expected")):
-            folder = self.broken("spoilt" + name.replace("/", "-"))
+                                    ("times.txt", -10, "times.txt: expected"), ("poses.txt", -40, "poses.txt: expected"),
+                                    ("truth.csv", lambda text: text.replace(b"seen", b"lost"), "truth.csv: line .*: status is 'lost'"),
+                                    ("truth.csv", lambda text: text.replace(b"10001", b"10000"), "bird 10000 is in scan 0 twice")):
+            folder = self.broken(f"spoilt{len(spoilt)}")
             file, done = folder / "sequences/00" / name, folder / "sequences/00/done.json"
             content = file.read_bytes() if file.exists() else b""
-            file.write_bytes(content[:change] if change < 0 else content + bytes(change))
+            file.write_bytes(change(content) if callable(change) else content[:change] if change < 0 else content + bytes(change))
             done.write_text(json.dumps({**json.loads(done.read_text()), "sha256": _sequence._digest(done.parent)}), encoding="utf-8")
             spoilt.append((folder, words))
         (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")

@@ -25,6 +25,7 @@ from ._geojson import read_runways
 from ._regions import APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway
 from ._inputs import read_manifest, read_scenario
 from ._sequence import DONE, _short, content_of
+from ._simulation import STATUSES
 from ._tables import read_table
 
 VOLUMES = ("strip", "glide path")
@@ -139,10 +140,17 @@ def read_truth(file) -> Dict[int, List[Dict[str, Any]]]:
             rain = float(row["rain_mm_h"] or 0)
             weather = [f"visibility {float(row['visibility_m']):g} m"] if row["visibility_m"] else []
             weather += [f"rain {rain:g} mm/h"] if rain > 0.0 else []
-            found[int(row["scan"])].append({
-                "bird": int(row["bird"]), "species": row["species"], "in": row["status"] not in ("absent", "outside"),
-                "time": float(row["time_s"]), "place": [float(row[name]) for name in ("x_m", "y_m", "z_m")],
-                "range": float(row["range_m"]), "weather": ", ".join(weather) or "clear"})
+            time, *place, distance = (float(row[name]) for name in ("time_s", "x_m", "y_m", "z_m", "range_m"))
+            if not np.isfinite([time, *place, distance]).all():
+                raise ValueError("expected finite numbers")
+            if row["status"] not in STATUSES:
+                raise ValueError(f"status is {row['status']!r}, expected one of {', '.join(STATUSES)}")
+            birds, bird = found[int(row["scan"])], int(row["bird"])
+            if any(one["bird"] == bird for one in birds):
+                raise ValueError(f"bird {bird} is in scan {row['scan']} twice")
+            birds.append({
+                "bird": bird, "species": row["species"], "in": row["status"] not in ("absent", "outside"),
+                "time": time, "place": place, "range": distance, "weather": ", ".join(weather) or "clear"})
     return found
 
 

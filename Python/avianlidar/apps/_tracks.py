@@ -2,6 +2,7 @@
 """A report card of tracks in labelled sequences: the command `avianlidar track`."""
 from __future__ import annotations
 
+import hashlib
 import itertools
 import os
 import pathlib
@@ -121,7 +122,7 @@ class BirdTracks:
                     found = self._follow(of, number, chain, runways,
                                          lambda scans: step("scans followed", done + scans, total))
                     file.parent.mkdir(parents=True, exist_ok=True)
-                    write_whole(file, as_json({"identity": identity, **found}))
+                    write_whole(file, as_json({"identity": identity, "sha256": _sum(found), **found}))
                 done += of.content[number]["scans"]
             ranks.wait()
             card: Dict[str, Any] = {}
@@ -163,10 +164,18 @@ def _file(out: pathlib.Path, of: Input, number: str) -> pathlib.Path:
     return out / FOLLOWED / of.name / f"{number}.json"
 
 
+def _sum(found: Dict[str, Any]) -> str:
+    """Checksum of results."""
+    return hashlib.sha256(as_json(found)).hexdigest()
+
+
 def _is_of(file: pathlib.Path, identity: str) -> bool:
-    """Whether a file holds the results of these inputs and settings."""
+    """Whether a file holds the results of these inputs and settings, as they were written."""
     try:
         known = load_json(file)
     except Error:  # also for a missing file
         return False
-    return isinstance(known, dict) and known.get("identity") == identity and "birds" in known
+    if not isinstance(known, dict):
+        return False
+    found = {name: value for name, value in known.items() if name not in ("identity", "sha256")}
+    return (known.get("identity"), known.get("sha256")) == (identity, _sum(found))
