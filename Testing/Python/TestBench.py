@@ -198,6 +198,12 @@ class Files(unittest.TestCase):
         shutil.rmtree(damaged, ignore_errors=True)
         shutil.copytree(self.home, damaged)
         (damaged / "sequences" / "00" / "done.json").write_text("{}", encoding="utf-8")
+        lost = OUTPUT / "lost" / "set"
+        shutil.rmtree(lost, ignore_errors=True)
+        shutil.copytree(self.home, lost)
+        manifest = json.loads((lost / "manifest.json").read_text())
+        manifest["sequences"]["00"] = {"sha256": "of a set that `avianlidar sequence` has made"}
+        (lost / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
         for number, (key, value) in enumerate((("bird_class", "x"), ("weather", 5), ("sensor", 5), (None, 5))):
             other = OUTPUT / f"manifest{number}"
             other.mkdir(exist_ok=True)
@@ -208,7 +214,7 @@ class Files(unittest.TestCase):
                 write_bench([other], [OUTPUT / "right"], OUTPUT / "out-wrong")
         nan = np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tobytes()
         for words, spoil, folder, options in (
-                ("its files differ from the sha256", None, damaged, {}),
+                ("its files differ from the sha256", None, damaged, {}), ("00/done.json: cannot be read", None, lost, {}),
                 ("holds no manifest.json", None, OUTPUT / "right", {}),
                 ("has no sequence 07", None, self.home, {"numbers": ["07"]}),
                 ("no scan from number 6 on", None, self.home, {"first": 6}),

@@ -64,8 +64,9 @@ class Set:
         if {*numbers} - {*parts}:
             raise Error(f"{self.folder / 'manifest.json'}: has no sequence {min({*numbers} - {*parts})}, "
                         f"expected some of {', '.join(parts)}")
-        for home in (self.folder / "sequences" / number for number in self.numbers):
-            if (home / DONE).exists():  # sets of other programs have none
+        for number in self.numbers:
+            home = self.folder / "sequences" / number
+            if (home / DONE).exists() or "sha256" in manifest["sequences"][number]:  # not in sets of other programs
                 content_of(home)
         self.name = self.folder.resolve().name
         with naming(f"{self.folder / 'manifest.json'}: scenario"):

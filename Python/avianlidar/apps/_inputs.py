@@ -167,7 +167,7 @@ def read_manifest(folder, others: str = "") -> Dict[str, Any]:
         raise Error(f"{folder}: holds no manifest.json, expected {made}{others}")
     manifest = load_json(file)
     parts = manifest.get("sequences") if isinstance(manifest, dict) else None
-    if not isinstance(parts, dict) or not parts:
+    if not isinstance(parts, dict) or not parts or not all(isinstance(part, dict) for part in parts.values()):
         raise Error(f"{file}: names no sequences, expected the manifest of {made}")
     if not isinstance(manifest.get("scenario"), dict):
         raise Error(f"{file}: holds no scenario, expected the manifest of {made}")
