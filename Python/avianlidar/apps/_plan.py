@@ -77,9 +77,12 @@ class Plan:
         self.air = tuple(plan.get("weather", ()))
         self.settings: Dict[str, Any] = {"number_of_threads": threads, **in_weather(plan.get("coverage", {}), self.air)}
         if self.air:
-            self.settings.update(self.air_of(**{name: self.settings[name] for name in AIR if name in self.settings}))
-        self.year = [Air(tuple(part["weather"]), float(part["share"]), self.air_of(part["weather"]))
-                     for part in plan.get("year", ()) if part["share"] > 0.0]
+            with naming(f"{self.file}: weather"):
+                given = {name: self.settings[name] for name in AIR if name in self.settings}
+                self.settings.update(self.air_of(**given))
+        with naming(f"{self.file}: year"):
+            self.year = [Air(tuple(part["weather"]), float(part["share"]), self.air_of(part["weather"]))
+                         for part in plan.get("year", ()) if part["share"] > 0.0]
         if self.asked and self.asked[0] < self.asked[1]:
             self.settings.setdefault("height_limits", sorted(self.heights))
         if member == "sensor":  # other members use these of the first plan
