@@ -118,7 +118,7 @@ class Year(unittest.TestCase):
                                ({"weather": ["fog:500"]}, "weather: is given beside visibility"),
                                ({"year": half}, "year: shares sum to 0.5"),
                                ({"year": [*half, {"weather": ["rain:501"], "share": 0.5}]}, "RainRate is 501"),
-                               ({"weather": ["rain:1e30"]}, "json: weather: vtkAvianLidarCoverage: RainRate is 1e+30"),
+                               ({"weather": ["rain:1e30"], "coverage": {}, "sensor": {"preset": "Airport16"}}, "json: weather: vtkAvianLidarCoverage: RainRate is 1e+30"),
                                ({"year": YEAR, "metar": "year.txt"}, "metar: is given beside 'year'"),
                                ({"metar": "none.txt"}, "none.txt: cannot be read"),
                                ({"metar": "empty.txt"}, "empty.txt: holds no METAR report")):
