@@ -213,7 +213,8 @@ EGLL 010220Z NIL=
         for time in ("320100Z", "000100Z", "012500Z", "010060Z"):
             self.assertRegex(hours(f"EGLL 010000Z 24005KT CAVOK\nEGLL {time} 24005KT 0100 FG\n"),
                              f"1 METAR reports of EGLL, 1 hours; left out: 1, the first in line 2, 'EGLL {time} .*' .expected a day, an hour")
-        for dates, number in (({"": 1, " ": 1}, 48), ({"202001": 2}, 24), ({"2020-01-": 2}, 24), ({"202001": 2, "202002": 2}, 48)):
+        for dates, number in (({"": 1, " ": 1}, 48), ({"202001": 2}, 24), ({"2020-01-": 2}, 24), ({"202001": 2, "202002": 2}, 48),
+                              ({"20250630 ": 1, "20250630\t": 1}, 48)):  # of a download
             day = "".join(f"{month}{'01' if month.strip() else ''} EGLL 01{hour:02d}00Z 24005KT CAVOK\n" for month, times in dates.items()
                           for _ in range(times) for hour in range(24))
             self.assertIn(f" METAR reports of EGLL, {number} hours", hours(day), dates)

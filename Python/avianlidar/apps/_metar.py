@@ -88,8 +88,9 @@ def report_of(line: str) -> Hour:
             elif "DZ" in kinds:
                 rain = max(rain, DRIZZLE)
             others += [NOT_MODELLED[kind] for kind in kinds if kind in NOT_MODELLED]
-    date = DATE.search(found.string[:found.start()])
-    return Hour(found[1], found[2], visibility, rain, tuple(others), "".join(date.groups()) if date else "")
+    dates = ("".join(one.groups()) for one in DATE.finditer(found.string[:found.start()]))
+    date = next((one for one in dates if one.endswith(found[2][:2])), "")  # others are not of the report
+    return Hour(found[1], found[2], visibility, rain, tuple(others), date)
 
 
 def _visibility(words: List[str]) -> Optional[float]:
