@@ -358,7 +358,7 @@ void ForEachLine(std::string_view text, const Use& use)
 }
 
 /// Removes the next line that has words from the text. Returns its words up to a comment (#).
-/// Throws Error if no such line follows, or if the line has too few words.
+/// Throws Error if the line has too few words, or if no such line follows and `least` is not 0.
 std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
 {
   const char* const blanks = " \t";
@@ -366,7 +366,11 @@ std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
   words.reserve(8); // of most lines
   while (words.empty())
   {
-    failIf(text.empty(), "is cut short: lines are missing at its end");
+    if (text.empty())
+    {
+      failIf(least > 0, "is cut short: lines are missing at its end");
+      return words;
+    }
     const auto* const end = std::find_if(
       text.begin(), text.end(), [](char byte) { return byte == '\n' || byte == '\r'; });
     const std::string_view line = text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -585,7 +589,7 @@ void CheckOff(const std::string& text)
 void CheckNff(const std::string& text)
 {
   std::string_view rows = text;
-  while (rows.find_first_not_of(" \t\r\n") != std::string_view::npos)
+  while (!rows.empty())
   {
     const std::vector<std::string_view> words = TakeRow(rows, 0);
     const bool isPolygon = words.size() == 2 && (words[0] == "p" || words[0] == "pp");

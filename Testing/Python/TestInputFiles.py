@@ -123,6 +123,7 @@ MESHES = [
     ("index.off", "# by hand\nOFF 3 1 0\n" + ply("3 0 1\n").split("end_header\n")[1], "is cut short or damaged: a face of 3 vertices has 2"),
     ("lines.off", "OFF\n3\n1\n0\n" + ply("3 0 1 2\n").split("end_header\n")[1], True),
     ("short.nff", "p 3\n0 0 0\n1 0 0\n", "is cut short"),
+    ("comment.nff", "p 3\n0 0 0\n1 0 0\n0 1 0\n# the end\n", True),
     ("text.obj", "v 1 2 abc\n" + TRIANGLE, 'line 1 is "v 1 2 abc", expected a vertex with three coordinates'),
     ("commas.obj", TRIANGLE.replace("v 0 0 0", "v 0,5 +1e-400 .5 \\\n").replace("v 1 0 0", "v 1,5 0 0#"), None),
     ("broken.vtp", "<VTKFile type='PolyData'", "VTK cannot read it"),
