@@ -7,6 +7,7 @@ import os
 import pathlib
 import shutil
 import unittest
+import unittest.mock
 import warnings
 
 import numpy as np
@@ -184,6 +185,15 @@ class Files(unittest.TestCase):
         self.assertEqual([(len(scored.values["all", ""]), scored.value(("all", ""), "iou").value) for scored, in by_set], [(1, 1), (1, 1)])
         with self.assertRaisesRegex(al.Error, "right: holds no predictions for second"):
             write_bench([OUTPUT / "second", self.home], [OUTPUT / "right"], OUTPUT / "out")
+
+    def test_leaves_no_new_folder_after_an_error(self):
+        """The disk is full at the picture, after two tables."""
+        out = OUTPUT / "full"
+        shutil.rmtree(out, ignore_errors=True)
+        with unittest.mock.patch.object(_bench.pictures, "draw", side_effect=OSError(28, "No space left on device")), \
+                self.assertRaises(OSError):
+            write_bench([self.home], [OUTPUT / "right"], out)
+        self.assertFalse(out.exists())
 
     def test_bad_input(self):
         wrong = OUTPUT / "wrong"

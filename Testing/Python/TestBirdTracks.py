@@ -248,7 +248,8 @@ class Files(unittest.TestCase):
                                     ("subsets/000000.subset", 1, "subset: has"), ("velodyne/000099.bin", 16, "velodyne: expected the files"),
                                     ("times.txt", -10, "times.txt: expected"), ("poses.txt", -40, "poses.txt: expected"),
                                     ("truth.csv", lambda text: text.replace(b"seen", b"lost"), "truth.csv: line .*: status is 'lost'"),
-                                    ("truth.csv", lambda text: text.replace(b"10001", b"10000"), "bird 10000 is in scan 0 twice")):
+                                    ("truth.csv", lambda text: text.replace(b"10001", b"10000"), "bird 10000 is in scan 0 twice"),
+                                    ("truth.csv", lambda text: text + b"\xff", "truth.csv: is not text in UTF-8")):
             folder = self.broken(f"spoilt{len(spoilt)}")
             file, done = folder / "sequences/00" / name, folder / "sequences/00/done.json"
             content = file.read_bytes() if file.exists() else b""
