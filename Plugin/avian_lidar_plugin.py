@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Common functions of the macros. This module is in the plugin's library: `import avian_lidar_plugin` works wherever
-the plugin is loaded, also in a copy of a macro."""
+"""Common functions of the macros. This module is in the plugin's library. `import avian_lidar_plugin` works wherever the
+plugin is loaded, also in a copy of a macro, after `from paraview import servermanager`, which lets Python find modules
+of plugins."""
 
 import importlib.util
 import itertools

@@ -12,10 +12,10 @@ In ParaView: select surfaces, or nothing, and click the button in the toolbar. I
 
 import math
 
+from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, POSITION, free_name, frame, hide_scans, lidar_place, name_of, neighbour, open_example, run, say,
     show, show_grey, show_sensor, start, tree_of)
-from paraview import servermanager, simple
 
 TITLE = "airport scan"
 WIDE = 50e3  # m, extent from which on surfaces may be in millimetres

@@ -10,10 +10,10 @@ The macro hides earlier scans. After an error there are no new objects, and Outp
 In ParaView: click the button in the toolbar. In a script: scan(view).
 """
 
+from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, airport_and_tree, frame, free_name, hide_scans, lidar_place, neighbour, run, show, show_grey,
     show_sensor, start, update_first_step)
-from paraview import simple
 
 REVOLUTIONS = 10
 AIR = 8.9e-5  # attenuation of haze, 1/m

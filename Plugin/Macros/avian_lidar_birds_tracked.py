@@ -10,8 +10,8 @@ Messages gives the reason.
 In ParaView: choose the macro in the menu Macros. In a script: track(view).
 """
 
+from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import free_name, neighbour, run, show, start
-from paraview import simple
 
 BIRDS = "avian_lidar_birds_over_the_airport"
 REVOLUTIONS = 20

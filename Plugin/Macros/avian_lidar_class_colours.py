@@ -7,8 +7,8 @@ semantic-kitti.yaml of the sequences. Boxes of moving objects are drawn as lines
 In ParaView: select the points, and choose the macro in the menu Macros. In a script: colour(source, view).
 """
 
+from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import data, run, show
-from paraview import simple
 
 ARRAY = "semantic_label"
 READER = "AvianLidarSequenceReader"

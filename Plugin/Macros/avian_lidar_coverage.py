@@ -12,10 +12,10 @@ objects, and Output Messages gives the reason.
 In ParaView: click the button in the toolbar. In a script: cover(view).
 """
 
+from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     airport_and_tree, colour_by, frame, free_name, hide_scans, lidar_place, neighbour, run, show, show_grey,
     show_sensor, start)
-from paraview import simple
 
 STATUS = "avian_lidar_status_colours"
 SPECIES = "herring gull"

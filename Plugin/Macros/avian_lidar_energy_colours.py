@@ -9,8 +9,8 @@ the reason. ParaView's window runs the macro at the first Apply of an echo filte
 In ParaView: select the echoes, and click the button in the toolbar. In a script: colour(source, view).
 """
 
+from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import colour_by, run, write
-from paraview import servermanager, simple
 
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"

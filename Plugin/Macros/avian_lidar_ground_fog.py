@@ -10,9 +10,9 @@ hides earlier scans. After an error there are no new objects, and Output Message
 In ParaView: choose the macro in the menu Macros. In a script: cover(view).
 """
 
+from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, airport_and_tree, free_name, hide_scans, lidar_place, neighbour, run, show, start)
-from paraview import simple
 
 AIRPORT = "avian_lidar_airport_scan"
 # Visibility, height of the dense part, and height over which the density decreases to 1/e above, m.

@@ -10,8 +10,8 @@ are no new objects, and Output Messages gives the reason.
 In ParaView: choose the macro in the menu Macros. In a script: show_beam(echoes, beam_id, view).
 """
 
+from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import colour_by, free_name, plugin_folder, run, say, show, start
-from paraview import servermanager, simple
 
 TITLE = "show beam"
 ARRAY, SHARE = "beam_id", "energy_share"

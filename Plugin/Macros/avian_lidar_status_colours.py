@@ -10,8 +10,8 @@ prints the reason.
 In ParaView: select the output, and click the button in the toolbar. In a script: colour(source, view).
 """
 
+from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import ENERGY_COLOURS, neighbour, run, write
-from paraview import servermanager, simple
 
 PRESET = "Avian lidar status"
 COVERAGE_PRESET = "Avian lidar coverage status"

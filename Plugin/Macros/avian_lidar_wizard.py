@@ -10,10 +10,10 @@ a script: make(scene, sensor, species, number, weather, view).
 
 import os
 
+from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, airport_and_tree, data, frame, free_name, hide_scans, lidar_place, neighbour, plugin_folder, run,
     start, tree_of, update_first_step)
-from paraview import servermanager, simple
 
 AIRPORT, BIRDS, FOG = "avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_ground_fog"
 REVOLUTIONS = 10

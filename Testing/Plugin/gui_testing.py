@@ -5,12 +5,14 @@ import contextlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
 import subprocess
 import tempfile
 import time
+import xml.etree.ElementTree as ElementTree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE_DIR = os.environ["AVIANLIDAR_SOURCE_DIR"]
@@ -107,3 +109,23 @@ def run_script(paraview, name, size, arguments, timeout=TIMEOUT, **environment):
     assert not found["error"], found["error"]
     assert "critical:" not in text_of(log_name), text_of(log_name)  # of Qt; errors of the plugin are looked at by the script
     return found
+
+
+def play(paraview, events, arguments=()):
+    """Starts ParaView without anyone's settings and plays events of ParaView's own player, which needs no Python.
+    @return the state after the events, and the errors and warnings that ParaView has printed"""
+    script = ElementTree.Element("pqevents")
+    script.extend(events)
+    for widget, command, value in (("menubar/menu_File", "activate", "actionFileSaveServerState"),
+                                   ("FileSaveServerStateDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/state.pvsm")):
+        ElementTree.SubElement(script, "pqevent", object=f"pqClientMainWindow/{widget}", command=command, arguments=value)
+    with tempfile.TemporaryDirectory() as home, display(1280, 1024) as variables:
+        variables.pop("PV_MACRO_PATH", None)
+        variables.update(HOME=home, QT_QPA_PLATFORM="xcb")
+        file_name = os.path.join(home, "events.xml")
+        ElementTree.ElementTree(script).write(file_name)
+        command = [paraview, "--dr", *LOAD, f"--test-directory={home}", f"--test-script={file_name}", "--exit", *arguments]
+        done = subprocess.run(command, env=variables, timeout=TIMEOUT, text=True, errors="replace",
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        assert done.returncode == 0, done.stdout
+        return ElementTree.parse(os.path.join(home, "state.pvsm")), re.findall(r"^.*(?:ERR|WARN)\|.*(?:\n(?!.*\|).*)*", done.stdout, re.M)

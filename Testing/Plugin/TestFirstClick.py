@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The first click of a user: a bare ParaView with the plugin, without a state, in which nothing has run Python before the click.
+
+Run by the system's Python: TestFirstClick.py paraview. Each test starts ParaView, which plays clicks by its own player of events
+and saves the pipeline as a state. The player needs no Python."""
+
+import sys
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from gui_testing import play
+
+WINDOW = "pqClientMainWindow"
+AIRPORT = {"Airport Hongqiao", "Collision tree"}
+BIRDS = {"Birds", "Gulls", "Crows", "Starlings", "Echoes of gulls", "Echoes of crows", "Echoes of starlings"}
+# Names in the pipeline after the first click on each macro.
+MACROS = {
+    "airport_scan": AIRPORT | {"Airport 16", "Scan"},
+    "birds_over_the_airport": AIRPORT | BIRDS | {"Search 905", "Scan with birds"},
+    "birds_tracked": AIRPORT | BIRDS | {"Search 905", "Scan with birds", "Clutter filter", "Clutter", "What is left", "Tracker", "Tracks"},
+    "coverage": AIRPORT | {"Search 905", "Coverage map", "Coverage at 30 m", "Probable", "Every other scan"},
+    "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog"},
+}
+# What Output Messages say after the first click on a macro that needs a selection.
+WORDS = {"show_beam": "select an echo first"}
+
+
+def click(widget, arguments=""):
+    return ElementTree.Element("pqevent", object=f"{WINDOW}/{widget}", command="activate", arguments=arguments)
+
+
+def macro(name):
+    return click("menubar/menu_Macros", "avian_lidar_" + name)
+
+
+def names(state):
+    """The names in the pipeline of a saved state."""
+    (sources,) = (group for group in state.iter("ProxyCollection") if group.get("name") == "sources")
+    return {source.get("name") for source in sources}
+
+
+class FirstClick(unittest.TestCase):
+    def test_macros(self):
+        for name, expected in MACROS.items():
+            with self.subTest(name):
+                state, messages = play(PARAVIEW, [macro(name)])
+                self.assertEqual((messages, names(state)), ([], expected))
+
+    def test_a_macro_without_a_selection(self):
+        for name, words in WORDS.items():
+            with self.subTest(name):
+                (message,) = play(PARAVIEW, [macro(name)])[1]
+                self.assertIn(words, message)
+                self.assertNotIn("Traceback", message)
+
+
+if __name__ == "__main__":
+    PARAVIEW = sys.argv[1]
+    unittest.main(argv=sys.argv[:1])
