@@ -91,6 +91,12 @@ int vtkAvianLidarBirdSource::RequestData(
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarBirdSource::GetKnownSpecies()
+{
+  return vtkAvianLidarBirds::NamesOfSpecies(this->SpeciesFileName);
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarBirdSource::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -43,6 +43,9 @@ public:
   /// also the name of a built-in species, the species of the table is used. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
+  /// Names that Species may have, one in each line: of the built-in species and of SpeciesFileName.
+  std::string GetKnownSpecies();
+
   /// Phase of the wings, wingbeats, any finite number: 0 level and rising, 0.25 up, 0.75 down. Not
   /// used if Gliding is on. Default 0.
   vtkAvianLidarPropertyMacro(WingPhase, double, 0.0);

@@ -538,6 +538,12 @@ double vtkAvianLidarCoverage::StrikeHeightDensity(double height)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkAvianLidarCoverage::GetKnownSpecies()
+{
+  return vtkAvianLidarBirds::NamesOfSpecies(this->SpeciesFileName);
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarCoverage::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

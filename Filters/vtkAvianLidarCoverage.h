@@ -89,6 +89,9 @@ public:
   /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
+  /// Names that Species may have, one in each line: of the built-in species and of SpeciesFileName.
+  std::string GetKnownSpecies();
+
   /// Whether the bird glides instead of flapping. Default: off.
   vtkAvianLidarSwitchMacro(Gliding, false);
 

@@ -27,6 +27,7 @@
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -42,6 +43,9 @@ using avianlidar::Vec3;
 
 /// Memory of a bird in the outputs, without its poses, bytes (measured).
 constexpr double BytesOfBird = 16000.0;
+
+/// Distance from the scene's origin, m. If all birds are farther away, the warning names Origin.
+constexpr double FarAway = 1e5;
 
 using KnownSpecies = std::vector<avianlidar::BirdSpecies>;
 
@@ -295,14 +299,8 @@ public:
       this->Times->SetValue(this->Next, pose.time);
       this->Lines->InsertCellPoint(this->Next++);
     }
-    const auto [place, isNew] =
-      this->Index.try_emplace(flight.species, static_cast<int>(this->Names.size()));
-    if (isNew)
-    {
-      this->Names.push_back(this->Known[flight.species].name);
-    }
     this->ObjectIds->InsertNextValue(objectId);
-    this->SpeciesIds->InsertNextValue(place->second);
+    this->SpeciesIds->InsertNextValue(this->IdOf(flight.species));
   }
 
   void Fill(vtkPolyData* output)
@@ -312,18 +310,28 @@ public:
     output->GetPointData()->AddArray(this->Times);
     output->GetCellData()->AddArray(this->ObjectIds);
     output->GetCellData()->AddArray(this->SpeciesIds);
-    Arrays::SetFieldStrings(output->GetFieldData(), Arrays::SpeciesNames, this->Names);
+    std::vector<std::string> names(this->Known.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+      names[this->IdOf(i)] = this->Known[i].name;
+    }
+    Arrays::SetFieldStrings(output->GetFieldData(), Arrays::SpeciesNames, names);
   }
 
 private:
+  /// Built-in species have the same ids with every table of own species, which are first in Known.
+  int IdOf(std::size_t species) const
+  {
+    return static_cast<int>((species + this->BuiltIn) % this->Known.size());
+  }
+
   const KnownSpecies& Known;
   vtkSmartPointer<vtkPoints> Points;
   vtkSmartPointer<vtkDoubleArray> Times;
   vtkNew<vtkCellArray> Lines;
   vtkSmartPointer<vtkIntArray> ObjectIds = Arrays::Make<vtkIntArray>(Arrays::ObjectId);
   vtkSmartPointer<vtkIntArray> SpeciesIds = Arrays::Make<vtkIntArray>(Arrays::SpeciesId);
-  std::map<std::size_t, int> Index;
-  std::vector<std::string> Names;
+  const std::size_t BuiltIn = vtkAvianLidarBirds::KnownSpecies({}).size();
   vtkIdType Next = 0;
 };
 }
@@ -393,6 +401,23 @@ private:
     this->Flights =
       avianlidar::readFlights(vtkAvianLidarBirds::TextOf("FileName", this->Self->FileName),
         this->Self->FileName, this->Known, { origin[0], origin[1], origin[2] }, this->Self->Seed);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Flight& flight : this->Flights)
+    {
+      for (const Pose& pose : flight.poses)
+      {
+        nearest = std::min(nearest, std::sqrt(glm::dot(pose.position, pose.position)));
+      }
+    }
+    if (!this->Flights.empty() && nearest > FarAway)
+    {
+      vtkWarningWithObjectMacro(
+        this->Self, << "FileName " << vtkAvianLidarText(this->Self->FileName)
+                    << ": all birds are at least " << std::llround(nearest / 1e3)
+                    << " km from the scene's origin. Longitude and latitude need "
+                    << "Origin, now latitude " << origin[0] << ", longitude " << origin[1]
+                    << ". x and y are metres from the origin.");
+    }
   }
 
   void Take(vtkPolyData* input)
@@ -481,6 +506,12 @@ int vtkAvianLidarTracks::RequestData(
       }
       trails.Fill(vtkPolyData::GetData(outputVector, 1));
     });
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarTracks::GetKnownSpecies()
+{
+  return vtkAvianLidarBirds::NamesOfSpecies(this->SpeciesFileName);
 }
 
 //------------------------------------------------------------------------------

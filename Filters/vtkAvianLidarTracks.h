@@ -81,6 +81,9 @@ public:
   /// Table of the user's species, as for vtkAvianLidarBirdSource. Default: empty.
   vtkAvianLidarFilePathMacro(SpeciesFileName);
 
+  /// Names that Species may have, one in each line: of the built-in species and of SpeciesFileName.
+  std::string GetKnownSpecies();
+
   /// Number of birds, 0 to 100,000. Not used with PATTERN_FILE and PATTERN_LINES. Default 10.
   vtkAvianLidarPropertyMacro(NumberOfBirds, int, 10);
 

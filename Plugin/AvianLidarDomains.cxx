@@ -4,17 +4,24 @@
 #include "vtkAvianLidarMaterial.h"
 #include "vtkClientServerInterpreter.h"
 #include "vtkClientServerInterpreterInitializer.h"
+#include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMDoubleRangeDomain.h"
 #include "vtkSMInputArrayDomain.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMStringListDomain.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace
 {
@@ -131,6 +138,67 @@ public:
 
 vtkStandardNewMacro(vtkSMAvianLidarBeamsDomain);
 
+// Species that the object knows, from an information property with a name in each line. The list
+// always contains the present value, because the panel would replace a value that is missing.
+class vtkSMAvianLidarSpeciesDomain : public vtkSMStringListDomain
+{
+public:
+  static vtkSMAvianLidarSpeciesDomain* New();
+  vtkTypeMacro(vtkSMAvianLidarSpeciesDomain, vtkSMStringListDomain);
+
+  void Update(vtkSMProperty*) override
+  {
+    std::vector<std::string> names;
+    const auto add = [&names](const std::string& name)
+    {
+      if (std::find(names.begin(), names.end(), name) == names.end())
+      {
+        names.push_back(name);
+      }
+    };
+    const auto addLines = [&add](const vtkSMPropertyHelper& helper)
+    {
+      for (unsigned int i = 0; i < helper.GetNumberOfElements(); ++i)
+      {
+        std::istringstream lines(helper.GetAsString(i));
+        for (std::string name; std::getline(lines, name);)
+        {
+          add(name);
+        }
+      }
+    };
+    if (this->HasEmpty)
+    {
+      add("");
+    }
+    if (vtkSMProperty* known = this->GetRequiredProperty("KnownSpecies"))
+    {
+      addLines(vtkSMPropertyHelper(known));
+    }
+    addLines(vtkSMPropertyHelper(this->GetProperty()));
+    addLines(vtkSMUncheckedPropertyHelper(this->GetProperty()));
+    this->SetStrings(names);
+  }
+
+protected:
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override
+  {
+    element->GetScalarAttribute("empty", &this->HasEmpty);
+    // A domain cannot require its own property.
+    property->AddObserver(vtkCommand::ModifiedEvent, this, &vtkSMAvianLidarSpeciesDomain::Follow);
+    property->AddObserver(
+      vtkCommand::UncheckedPropertyModifiedEvent, this, &vtkSMAvianLidarSpeciesDomain::Follow);
+    return this->Superclass::ReadXMLAttributes(property, element);
+  }
+
+private:
+  void Follow() { this->Update(nullptr); }
+
+  int HasEmpty = 0; // whether an empty text is allowed
+};
+
+vtkStandardNewMacro(vtkSMAvianLidarSpeciesDomain);
+
 template <class Domain>
 vtkObjectBase* New(void*)
 {
@@ -148,4 +216,6 @@ void AvianLidarAddDomains()
     "vtkSMAvianLidarMaterialDomain", New<vtkSMAvianLidarMaterialDomain>);
   interpreter->AddNewInstanceFunction(
     "vtkSMAvianLidarScaledDomain", New<vtkSMAvianLidarScaledDomain>);
+  interpreter->AddNewInstanceFunction(
+    "vtkSMAvianLidarSpeciesDomain", New<vtkSMAvianLidarSpeciesDomain>);
 }

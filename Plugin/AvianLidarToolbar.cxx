@@ -40,6 +40,7 @@
 #include <QJsonDocument>
 #include <QList>
 #include <QMainWindow>
+#include <QMap>
 #include <QMenu>
 #include <QResource>
 #include <QTimer>
@@ -55,12 +56,23 @@ namespace
 {
 constexpr char ScanFilter[] = "AvianLidarEchoFilter";
 constexpr char MaterialFilter[] = "AvianLidarMaterial";
-constexpr char ImageFilter[] = "AvianLidarRangeImage";
 constexpr char MacrosMenu[] = "menu_Macros";
-constexpr char SequenceReader[] = "AvianLidarSequenceReader";
-constexpr char ColourMacro[] = "avian_lidar_energy_colours";
 constexpr char WizardMacro[] = "avian_lidar_wizard";
-constexpr char ClassMacro[] = "avian_lidar_class_colours";
+
+/// Macro that colours the outputs of a proxy, when they are first applied, by an array.
+struct Colouring
+{
+  const char* proxy;
+  const char* array;
+  const char* macro;
+};
+
+constexpr Colouring Colourings[] = {
+  { ScanFilter, "energy", "avian_lidar_energy_colours" },
+  { "AvianLidarRangeImage", "energy", "avian_lidar_energy_colours" },
+  { "AvianLidarSequenceReader", "semantic_label", "avian_lidar_class_colours" },
+  { "AvianLidarTracks", "species_id", "avian_lidar_species_colours" },
+};
 
 //------------------------------------------------------------------------------
 // Full path of a macro, in a folder beside the plugin's library.
@@ -121,6 +133,23 @@ void Name(QAction* action, const QString& text)
     QObject::connect(action, &QAction::changed, action, [action, text] { action->setText(text); });
     action->setText(text);
   }
+}
+
+//------------------------------------------------------------------------------
+// Whether an output of a source has the array at its points or cells.
+bool HasArray(pqPipelineSource* source, const QString& array)
+{
+  const QByteArray name = array.toUtf8();
+  for (pqOutputPort* port : source->getOutputPorts())
+  {
+    vtkPVDataInformation* data = port->getDataInformation();
+    if (data->GetArrayInformation(name, vtkDataObject::POINT) ||
+      data->GetArrayInformation(name, vtkDataObject::CELL))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 //------------------------------------------------------------------------------
@@ -187,11 +216,13 @@ public:
 private:
   void AddMacros(QMenu* menu);
   void AddFilters(pqProxyGroupMenuManager* manager);
-  void EnableFilter();
+  void EnableActions();
+  void EnableFilter(pqOutputPort* port);
   static void Colour(pqProxy* applied);
 
   pqProxyGroupMenuManager* Filters = nullptr;
   QAction* Filter = nullptr;
+  QMap<QAction*, QString> Colours; // actions that need an array
 };
 
 //------------------------------------------------------------------------------
@@ -209,11 +240,14 @@ Toolbar::Toolbar(QMainWindow* window)
   connect(pqApplicationCore::instance()->getObjectBuilder(), &pqObjectBuilder::sourceCreated, this,
     NameSensor);
   auto& active = pqActiveObjects::instance();
-  connect(&active, &pqActiveObjects::portChanged, this, [this] { this->EnableFilter(); });
-  connect(&active, &pqActiveObjects::dataUpdated, this, [this] { this->EnableFilter(); });
-  connect(window->findChild<pqPropertiesPanel*>(),
-    QOverload<pqProxy*>::of(&pqPropertiesPanel::applied), this, &Toolbar::Colour,
-    Qt::QueuedConnection);
+  connect(&active, &pqActiveObjects::portChanged, this, [this] { this->EnableActions(); });
+  connect(&active, &pqActiveObjects::dataUpdated, this, [this] { this->EnableActions(); });
+  auto* panel = window->findChild<pqPropertiesPanel*>();
+  const auto applied = QOverload<pqProxy*>::of(&pqPropertiesPanel::applied);
+  connect(panel, applied, this, &Toolbar::Colour, Qt::QueuedConnection);
+  // The output changes before the source counts as applied.
+  connect(
+    panel, applied, this, [this] { this->EnableActions(); }, Qt::QueuedConnection);
 }
 
 //------------------------------------------------------------------------------
@@ -249,6 +283,11 @@ void Toolbar::AddMacros(QMenu* menu)
     }
     menu->addAction(action);
     all.append(action);
+    const QString array = macro["array"].toString();
+    if (!array.isEmpty())
+    {
+      this->Colours.insert(action, array);
+    }
   }
 #if !__has_include("pqProxyAction.h")
   // The quick launch of ParaView 5.13 ends the program at an action that makes no proxy.
@@ -282,25 +321,37 @@ void Toolbar::AddFilters(pqProxyGroupMenuManager* manager)
       this->addAction(action); // after the buttons that need no selection
     }
   }
-  this->EnableFilter();
+  this->EnableActions();
 }
 
 //------------------------------------------------------------------------------
-// Enables the filter if the active output fits. ParaView enables filters of its own toolbars, and
-// filters of other toolbars only when a menu opens.
-void Toolbar::EnableFilter()
+// Enables the actions that fit the active output. Without a port there may be no session.
+void Toolbar::EnableActions()
 {
-  if (!this->Filter)
-  {
-    return;
-  }
-  this->Filter->setEnabled(false);
-  // Without a port there may be no session. A prototype needs a session.
   pqOutputPort* port = pqActiveObjects::instance().activePort();
-  if (!port || port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
+  if (port && port->getSource()->modifiedState() == pqProxy::UNINITIALIZED)
   {
-    return;
+    port = nullptr;
   }
+  for (auto colour = this->Colours.begin(); colour != this->Colours.end(); ++colour)
+  {
+    colour.key()->setEnabled(port && HasArray(port->getSource(), colour.value()));
+  }
+  if (this->Filter)
+  {
+    this->Filter->setEnabled(false);
+    if (port)
+    {
+      this->EnableFilter(port);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Enables the filter if the output fits. ParaView enables filters of its own toolbars, and filters
+// of other toolbars only when a menu opens.
+void Toolbar::EnableFilter(pqOutputPort* port)
+{
   vtkSMProxy* prototype = PrototypeOf(this->Filters, this->Filter);
   if (auto* input =
         prototype ? vtkSMInputProperty::SafeDownCast(prototype->GetProperty("Beams")) : nullptr)
@@ -321,19 +372,17 @@ void Toolbar::Colour(pqProxy* applied)
   {
     ShowMaterial(source);
   }
-  const bool ofClasses = name == SequenceReader;
-  if ((name != ScanFilter && name != ImageFilter && !ofClasses) ||
-    !source->property("AvianLidar").isNull())
+  for (const Colouring& colouring : Colourings)
   {
-    return;
-  }
-  source->updatePipeline(); // because ParaView does not update an image that is not shown
-  vtkPVDataInformation* data = source->getOutputPort(0)->getDataInformation();
-  if (data->GetArrayInformation(ofClasses ? "semantic_label" : "energy", vtkDataObject::POINT) &&
-    pqActiveObjects::instance().activeSource() == source)
-  {
-    source->setProperty("AvianLidar", true);
-    Run(PathOf(ofClasses ? ClassMacro : ColourMacro));
+    if (name == colouring.proxy && source->property("AvianLidar").isNull())
+    {
+      source->updatePipeline(); // because ParaView does not update an image that is not shown
+      if (HasArray(source, colouring.array) && pqActiveObjects::instance().activeSource() == source)
+      {
+        source->setProperty("AvianLidar", true);
+        Run(PathOf(colouring.macro));
+      }
+    }
   }
 }
 }

@@ -14,15 +14,21 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 PLUGIN = "AvianLidarPlugin"
 EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
-ENERGY_COLOURS = "avian_lidar_energy_colours"
+ENERGY_COLOURS, SPECIES_COLOURS = "avian_lidar_energy_colours", "avian_lidar_species_colours"
 POSITION = "lidar_position"
+TREE = "AvianLidarCollisionTree"
 # Parts of a scan.
 SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes of many sources
-PARTS = ("AvianLidarCollisionTree", "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
+PARTS = (TREE, "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # Filters that show a part of a result.
 SOME = ("Threshold", "Cut", "Contour")
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
+# Views that macros put beside another view.
+REASONS, SHARES = "Reasons", "Shares of the beam"
+# Place of the lidar if the scene does not give a position: metres above the lowest point, share of the width or depth.
+HEIGHT = 3
+DISTANCE = 0.1
 SENSOR_SIZE = 12  # size of the sensor's point, pixels
 # Diffuse reflectances kd drawn as black and as white. Concrete is then a middle grey, and echoes are easy to see.
 GREY_RANGE = (-0.05, 0.6)
@@ -92,7 +98,26 @@ def start(view=None):
     plugin_folder(on_server=True)
     # As in scripts that ParaView writes: the first rendering does not move the camera.
     simple._DisableFirstRenderCameraReset()
-    return view or simple.GetActiveViewOrCreate("RenderView")
+    view = view or simple.GetActiveViewOrCreate("RenderView")
+    if view in side_views():
+        view = next((one for one in simple.GetRenderViews() if one not in side_views()), view)
+        simple.SetActiveView(view)
+    return view
+
+
+def side_views():
+    """The views that macros have put beside another view."""
+    return [view for view in map(simple.FindView, (REASONS, SHARES)) if view is not None]
+
+
+def close_view(view):
+    """Closes a view. The view beside it gets its place."""
+    layout = simple.GetLayout(view)
+    if layout:
+        cell = layout.GetViewLocation(view.SMProxy)
+        layout.RemoveView(cell)
+        layout.Collapse(cell)
+    simple.Delete(view)
 
 
 def name_of(source):
@@ -123,12 +148,27 @@ def is_part(source):
     return source.SMProxy.GetXMLName() in PARTS or source.SMProxy.GetVTKClassName() in SENSORS or of_result(source)
 
 
-def hide_scans(view):
-    """Hides the parts and results of earlier scans."""
-    for source in simple.GetSources().values():
-        if is_part(source):
+def hide_scans(*views):
+    """Hides the parts and results of earlier scans in these views, and closes the views beside them."""
+    for other in side_views():
+        if other not in views:
+            close_view(other)
+    for source in filter(is_part, simple.GetSources().values()):
+        for view in views:
             for port in range(source.SMProxy.GetNumberOfOutputPorts()):
                 simple.Hide(source[port], view)
+
+
+def upstream(source):
+    """A source and all sources that it uses, the nearest first."""
+    found = [source]
+    for one in found:
+        for name in one.ListProperties():
+            inputs = one.GetProperty(name)
+            if isinstance(inputs, servermanager.InputProperty):
+                used = [getattr(port, "Proxy", port) for port in inputs]  # the source of a port
+                found += [other for other in used if other is not None and other not in found]
+    return found
 
 
 def apply(source):
@@ -152,9 +192,6 @@ def open_example():
 def tree_of(surfaces):
     """Applies the surfaces, and gives them a collision tree."""
     surfaces.UpdatePipeline()
-    if surfaces.SMProxy.GetXMLName() == "AvianLidarCollisionTree":
-        apply(surfaces)
-        return surfaces
     name = surfaces.SMProxy.GetXMLLabel()
     data = surfaces.GetDataInformation().DataInformation
     if not data.DataSetTypeIsA("vtkPolyData"):
@@ -173,20 +210,60 @@ def is_example(source):
             os.path.basename(source.FileName) == os.path.basename(EXAMPLE))
 
 
-def airport_and_tree():
-    """The airport and its collision tree, from the pipeline if possible."""
-    for tree in of_kind("AvianLidarCollisionTree"):
-        if is_example(tree.Input):
-            tree.UpdatePipeline()
-            return tree.Input, tree
-    scene = next(filter(is_example, of_kind("AvianLidarSceneReader")), None) or open_example()
-    return scene, tree_of(scene)
+def surfaces_and_tree(selected):
+    """The surfaces to scan and their collision tree, from the pipeline if possible. If a part or a result of a scan is
+    selected, these are the surfaces of the scan. If nothing is selected, they are the airport that comes with the
+    plugin."""
+    if selected is None:
+        selected = next(filter(is_example, of_kind("AvianLidarSceneReader")), None) or open_example()
+    trees = of_kind(TREE)[::-1]  # the newest first
+    tree = next((one for one in upstream(selected) if one in trees), None)
+    if tree is None:
+        tree = next((one for one in trees if one.Input == selected or is_part(selected)), None) or tree_of(selected)
+    tree.UpdatePipeline()
+    if tree == selected:
+        apply(tree)
+    return tree.Input, tree
+
+
+def place_beside(tree):
+    """A place for the sensor beside the surfaces, neither inside nor above them."""
+    west, east, south, north, bottom, top = tree.GetDataInformation().GetBounds()
+    height = min(HEIGHT, (top - bottom) / 2) or HEIGHT
+    return [(west + east) / 2, south - DISTANCE * max(east - west, north - south), bottom + height]
 
 
 def lidar_place(tree):
-    """The position of the sensor in the scene, m, or None."""
+    """The position of the sensor, m: from the scene or, without a position there, beside the surfaces."""
     position = tree.GetFieldDataInformation().GetArray(POSITION)
-    return position and [position.GetRange(i)[0] for i in range(3)]
+    return [position.GetRange(i)[0] for i in range(3)] if position else place_beside(tree)
+
+
+def ground_below(place):
+    """Height of the ground below a sensor, m. The sensor stands HEIGHT above the ground."""
+    return place[2] - HEIGHT
+
+
+def how_to_move(beams):
+    return f"select {name_of(beams)}, set Position (or tick Show Point and drag the handle), and click Apply"
+
+
+def say_place(title, tree, beams):
+    """Warns if the scene does not give the position of the sensor."""
+    if not tree.GetFieldDataInformation().GetArray(POSITION):
+        where = "({:g}, {:g}, {:g}) m".format(*beams.Position)
+        say(title, f"the surfaces have no {POSITION}: the sensor stands beside the surfaces, at {where}. To move the "
+            f"sensor, {how_to_move(beams)}", failed=False)
+
+
+def output_with(source, array):
+    """The output that has an array at its points: the given output or, without the array, another one of the source."""
+    proxy = servermanager._getPyProxy(source.SMProxy)
+    others = (servermanager.OutputPort(proxy, port) for port in range(source.SMProxy.GetNumberOfOutputPorts()))
+    for output in itertools.chain([source], others):
+        if output.GetPointDataInformation().GetArray(array) is not None:
+            return output
+    raise ValueError(f"{name_of(source)} has no point array {array}")
 
 
 def update_first_step(echoes):
@@ -208,15 +285,26 @@ def show(source, view, colour=None, **properties):
     return display
 
 
-def colour_by(display, kind, array, preset, limits):
+def colour_by(display, kind, array, preset, limits, logarithmic=False):
     """Colours a display by an array over a fixed range. @return the table of colours"""
     simple.ColorBy(display, (kind, array))
     table = simple.GetColorTransferFunction(array)
     # Before the range is set: otherwise the next update would undo the range.
     table.AutomaticRescaleRangeMode = "Never"
+    table.UseLogScale = 0
     table.ApplyPreset(preset, True)
     table.RescaleTransferFunction(*limits)
+    table.UseLogScale = int(logarithmic)
     return table
+
+
+def legend(table, view, title):
+    """The legend of a table of colours, with one format for all numbers."""
+    bar = simple.GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = title, ""
+    bar.AutomaticLabelFormat = 0
+    bar.LabelFormat = bar.RangeLabelFormat = "%.3g"
+    return bar
 
 
 def show_grey(tree, view):

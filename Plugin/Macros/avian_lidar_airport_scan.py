@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: scans the selected surfaces with the lidar Airport 16 and shows the echoes, coloured by energy.
 
-With nothing selected, the macro opens the airport that comes with the plugin. The macro makes a collision tree, a
+With nothing selected, the macro opens the airport that comes with the plugin. With a part or a result of a scan
+selected, it scans the surfaces of that scan again. The macro makes a collision tree (unless the surfaces have one), a
 sensor and an echo filter, as the menus do. The sensor stands at the position that the scene gives (field data
 `lidar_position`). Without this position, the sensor stands south of the surfaces, at a distance of a tenth of their
 width or depth. Its height is then 3 m above their lowest point, or half their height if they are lower than 6 m. The
@@ -14,27 +15,17 @@ import math
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
-    ENERGY_COLOURS, POSITION, free_name, frame, hide_scans, lidar_place, name_of, neighbour, open_example, run, say,
-    show, show_grey, show_sensor, start, tree_of)
+    ENERGY_COLOURS, frame, free_name, hide_scans, how_to_move, lidar_place, neighbour, run, say, say_place, show,
+    show_grey, show_sensor, start, surfaces_and_tree)
 
 TITLE = "airport scan"
 WIDE = 50e3  # m, extent from which on surfaces may be in millimetres
-# Place of the lidar if the scene does not give a position: metres above the lowest point, share of the width or depth.
-HEIGHT = 3
-DISTANCE = 0.1
 ECHO_SIZE = 5  # size of an echo's point, pixels
 # Elevation of the camera, deg. From higher up, the rows of echoes on a wall hide each other. The view contains the
 # echoes with at least the share STRONG of the largest energy, and looks at the echoes with at least the share
 # STRONGEST.
 CAMERA_ELEVATION = 20
 STRONG, STRONGEST = 0.25, 0.9
-
-
-def place_beside(tree):
-    """A place for the sensor beside the surfaces, neither inside nor above them."""
-    west, east, south, north, bottom, top = tree.GetDataInformation().GetBounds()
-    height = min(HEIGHT, (top - bottom) / 2) or HEIGHT
-    return [(west + east) / 2, south - DISTANCE * max(east - west, north - south), bottom + height]
 
 
 def bounds_of_strong(echoes, share):
@@ -83,18 +74,13 @@ def scan(surfaces=None, view=None):
     """Scans the surfaces, or the airport. @return (collision tree, sensor, echo filter)"""
     colour = neighbour(ENERGY_COLOURS, globals().get("__file__")).colour
     view = start(view)
-    surfaces = surfaces or open_example()
-    tree = tree_of(surfaces)
-    known = lidar_place(tree)
-    place = known or place_beside(tree)
-    beams = simple.AvianLidarAirport16(registrationName=free_name("Airport 16", surfaces), Position=place)
+    surfaces, tree = surfaces_and_tree(surfaces)
+    beams = simple.AvianLidarAirport16(registrationName=free_name("Airport 16", surfaces), Position=lidar_place(tree))
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan", surfaces), Beams=beams, Surfaces=tree)
     echoes.UpdatePipeline()
     hide_scans(view)
     show_scan(surfaces, tree, beams, echoes, view, colour)
     simple.SetActiveSource(echoes)
-    where = "({:g}, {:g}, {:g}) m".format(*place)
-    move = f"select {name_of(beams)}, set Position (or tick Show Point and drag the handle), and click Apply"
     if echoes.GetDataInformation().GetNumberOfPoints() == 0:
         bounds = surfaces.GetDataInformation().GetBounds()
         if max(bounds[1] - bounds[0], bounds[3] - bounds[2]) > WIDE:
@@ -102,11 +88,11 @@ def scan(surfaces=None, view=None):
                 "deep. If the unit is the millimetre, apply Transform with the scale 0.001, select the result and "
                 "click again")
         else:
-            say(TITLE, f"no echoes: the sensor at {where} sees nothing. To move the sensor, {move}. "
+            where = "({:g}, {:g}, {:g}) m".format(*beams.Position)
+            say(TITLE, f"no echoes: the sensor at {where} sees nothing. To move the sensor, {how_to_move(beams)}. "
                 "Then select the echoes and click Colour by Energy")
-    elif not known:
-        say(TITLE, f"the surfaces have no {POSITION}: the sensor stands beside the surfaces, at {where}. "
-            f"To move the sensor, {move}", failed=False)
+    else:
+        say_place(TITLE, tree, beams)
     return tree, beams, echoes
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: birds over the airport, tracked from scan to scan, to play.
+"""ParaView macro: birds over an airport, tracked from scan to scan, to play.
 
 The macro makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns clutter, and
 an Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are white. Each confirmed track has its
@@ -7,7 +7,7 @@ own colour. Thin lines show the paths of the birds. The macro executes all scans
 the first five scans the filter learns, and all points are clutter. After an error there are no new objects, and Output
 Messages gives the reason.
 
-In ParaView: choose the macro in the menu Macros. In a script: track(view).
+In ParaView: select surfaces, or nothing, and choose the macro in the menu Macros. In a script: track(view, surfaces).
 """
 
 from paraview import simple  # first: lets Python find avian_lidar_plugin
@@ -19,12 +19,12 @@ CLUTTER_COLOUR, POINT_COLOUR = (0.55, 0.55, 0.6), (1.0, 1.0, 1.0)
 CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # sizes of points and widths of lines, pixels
 
 
-def track(view=None):
-    """Scans the airport with birds and tracks the birds. @return (paths of the birds, echo filter, clutter filter,
+def track(view=None, surfaces=None):
+    """Scans the surfaces, or the airport, with birds and tracks the birds. @return (paths of the birds, echo filter, clutter filter,
     tracker)"""
     birds = neighbour(BIRDS, globals().get("__file__"))
     view = start(view)
-    ways, beams, echoes, of_birds = birds.scan(view, REVOLUTIONS, TRAIL_WIDTH)
+    ways, beams, echoes, of_birds = birds.scan(view, surfaces, REVOLUTIONS, TRAIL_WIDTH)
     clutter = simple.AvianLidarClutterFilter(registrationName=free_name("Clutter filter"), Input=echoes)
     tracker = simple.AvianLidarTracker(registrationName=free_name("Tracker"), Input=clutter)
     confirmed = simple.Threshold(registrationName=free_name("Tracks"), Input=tracker, Scalars=["CELLS", "confirmed"],
@@ -51,4 +51,4 @@ def track(view=None):
 
 
 if __name__ in ("__main__", "__vtkconsole__"):
-    run("birds tracked", track)
+    run("birds tracked", track, None, simple.GetActiveSource())

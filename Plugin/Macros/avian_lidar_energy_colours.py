@@ -3,17 +3,23 @@
 
 A range image gets its own view, in which cells without an echo are transparent. The range of the colours is the dynamic
 range of the receiver, from the field data of the echoes. The range is fixed, so that a colour always means the same
-energy. If limits in the field data, the array `energy` or the preset are missing, the macro changes nothing and prints
-the reason. ParaView's window runs the macro at the first Apply of an echo filter or a range image.
+energy. The scale is logarithmic if the upper limit is more than 100 times the lower limit, as for photon receivers.
+With a linear scale, all echoes of birds would then be blue. If the active output has no energies but another output of
+the filter has, the macro colours the other output. If limits in the field data, the array `energy` or the preset are
+missing, the macro changes nothing and Output Messages gives the reason. ParaView's window runs the macro at the first
+Apply of an echo filter or a range image.
 
 In ParaView: select the echoes, and click the button in the toolbar. In a script: colour(source, view).
 """
 
+import math
+
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import colour_by, run, write
+from avian_lidar_plugin import colour_by, legend, output_with, run
 
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"
+DECADES = 100.0  # ratio of the limits above which the scale is logarithmic
 LIMITS = ("lower_energy_limit", "upper_energy_limit")
 # Width of a drawn range image divided by its height. With equal scales, an image of 360 by 6 degrees would have 60.
 ASPECT = 4
@@ -30,6 +36,11 @@ def energy_limits(source):
             raise ValueError(f"the field data have no {name}: are these echoes of an avian lidar?")
         limits.append(array.GetRange(0)[0])
     return tuple(limits)
+
+
+def decades(low, high):
+    """The powers of ten between the limits. The legend's own labels on a logarithmic scale overlap."""
+    return [10.0 ** power for power in range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)]
 
 
 def is_image(source):
@@ -85,22 +96,11 @@ def show_image(source, view=None):
     return display, view
 
 
-def legend(table, view, title):
-    """The legend of a table of colours, with one format for all numbers."""
-    bar = simple.GetScalarBar(table, view)
-    bar.Title = title
-    bar.ComponentTitle = ""
-    bar.AutomaticLabelFormat = 0
-    bar.LabelFormat = bar.RangeLabelFormat = "%.3g"
-    return bar
-
-
 def colour(source, view=None):
     """Colours an output by energy with the preset over the receiver's limits. @return (Qlow, Qhigh), J"""
     if source is None:
         raise ValueError("select the echoes first")
-    if source.GetPointDataInformation().GetArray(ARRAY) is None:
-        raise ValueError(f"there is no point array {ARRAY}")
+    source = output_with(source, ARRAY)
     low, high = energy_limits(source)
     if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(PRESET):
         raise ValueError(f"there is no colour preset {PRESET}: load the plugin, or import AvianLidarHSB.json")
@@ -109,10 +109,13 @@ def colour(source, view=None):
     else:
         view = view or simple.GetActiveViewOrCreate("RenderView")
         display = simple.Show(source, view)
-    table = colour_by(display, "POINTS", ARRAY, PRESET, (low, high))
+    logarithmic = 0 < low * DECADES < high
+    table = colour_by(display, "POINTS", ARRAY, PRESET, (low, high), logarithmic)
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
     table.NanOpacity = 0  # cells without an echo
     bar = legend(table, view, "energy (J)")
+    bar.UseCustomLabels = int(logarithmic)
+    bar.CustomLabels = decades(low, high) if logarithmic else []
     if is_image(source):
         bar.Orientation, bar.WindowLocation = "Horizontal", "Lower Center"
     display.SetScalarBarVisibility(view, True)
@@ -120,4 +123,4 @@ def colour(source, view=None):
 
 
 if __name__ in ("__main__", "__vtkconsole__"):
-    run("colours", colour, simple.GetActiveSource(), report=write)
+    run("colours", colour, simple.GetActiveSource())

@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView macro: the airport in ground fog, and the echoes of a lidar.
+"""ParaView macro: an airport in ground fog, and the echoes of a lidar.
 
-The macro makes a sensor Search 905 at the position that the scene gives, and a medium (fog of 400 m visibility up to a
+The macro takes the selected surfaces or, with nothing selected, the airport that comes with the plugin. It makes a
+sensor Search 905 at the position that the scene gives, or else beside the surfaces, and a medium (fog of 400 m visibility up to a
 height of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo Filter. The fog is
 translucent, the airport is grey, and echoes are coloured by energy. You can then change Kind, Meteorological Visibility
-or the shape of the medium. If the pipeline contains the airport and its collision tree, the macro uses them. The macro
-hides earlier scans. After an error there are no new objects, and Output Messages gives the reason.
+or the shape of the medium. If the surfaces have a collision tree, or if a part or a result of a scan is selected, the
+macro uses the existing tree. The macro hides earlier scans. After an error there are no new objects, and Output Messages gives the reason.
 
-In ParaView: choose the macro in the menu Macros. In a script: cover(view).
+In ParaView: choose the macro in the menu Macros. In a script: cover(view, surfaces).
 """
 
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
-    ENERGY_COLOURS, airport_and_tree, free_name, hide_scans, lidar_place, neighbour, run, show, start)
+    ENERGY_COLOURS, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place, show, start,
+    surfaces_and_tree)
 
+TITLE = "ground fog"
 AIRPORT = "avian_lidar_airport_scan"
 # Visibility, height of the dense part, and height over which the density decreases to 1/e above, m.
 VISIBILITY, TOP, SOFTNESS = 400.0, 5.0, 3.0
@@ -29,14 +32,15 @@ def show_fog(fog, view):
     show(fog, view, FOG_COLOUR, Ambient=1.0, Diffuse=0.0, Opacity=FOG_OPACITY)
 
 
-def cover(view=None):
-    """Scans the airport in ground fog. @return (sensor, medium, group, scan)"""
+def cover(view=None, surfaces=None):
+    """Scans the surfaces, or the airport, in ground fog. @return (sensor, medium, group, scan)"""
     airport, colours = (neighbour(name, globals().get("__file__")) for name in (AIRPORT, ENERGY_COLOURS))
     view = start(view)
-    scene, tree = airport_and_tree()
-    beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=lidar_place(tree))
+    scene, tree = surfaces_and_tree(surfaces)
+    place = lidar_place(tree)
+    beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=place)
     simple.SetActiveSource(None)
-    fog = fog_above(0.0)
+    fog = fog_above(ground_below(place))
     together = simple.GroupDatasets(registrationName=free_name("Airport in fog"), Input=[tree, fog])
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan in fog"), Beams=beams, Surfaces=together)
     echoes.UpdatePipeline()
@@ -44,8 +48,9 @@ def cover(view=None):
     airport.show_scan(scene, tree, beams, echoes, view, colours.colour)
     show_fog(fog, view)
     simple.SetActiveSource(fog)
+    say_place(TITLE, tree, beams)
     return beams, fog, together, echoes
 
 
 if __name__ in ("__main__", "__vtkconsole__"):
-    run("ground fog", cover)
+    run(TITLE, cover, None, simple.GetActiveSource())

@@ -11,7 +11,7 @@ In ParaView: choose the macro in the menu Macros. In a script: show_beam(echoes,
 """
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import colour_by, free_name, plugin_folder, run, say, show, start
+from avian_lidar_plugin import SHARES, colour_by, free_name, plugin_folder, run, say, show, start, upstream
 
 TITLE = "show beam"
 ARRAY, SHARE = "beam_id", "energy_share"
@@ -22,18 +22,12 @@ AIR = ("AttenuationCoefficient", "MeteorologicalVisibility", "AirBackscatter", "
 CONE_COLOUR, CONE_OPACITY = (1.0, 0.7, 0.2), 0.25
 # Shift of the drawn parts towards the lidar, off the surfaces of the scene: metres, and share of the range.
 NEARER, NEARER_SHARE = 0.01, 0.002
-TABLE = "Shares of the beam"
 HEIGHT = 0.75  # share of the height of the view above the table
 
 
 def scan_of(source):
     """The echo filter that the source is or uses upstream, or None."""
-    while source is not None and source.SMProxy.GetXMLName() != SCAN:
-        names = [name for name in ("Input", "Echoes", "Simulated") if source.SMProxy.GetProperty(name)]
-        source = getattr(source, names[0]) if names else None
-        source = source if source is None or hasattr(source, "SMProxy") else source[0]  # first of several inputs
-        source = getattr(source, "Proxy", source)  # source of a port
-    return source
+    return next((one for one in upstream(source) if one.SMProxy.GetXMLName() == SCAN), None)
 
 
 def selections():
@@ -99,10 +93,10 @@ def show_parts(beam, view):
 
 def show_table(beam, view):
     """Shows the shares in a spreadsheet below the view."""
-    sheet = simple.FindView(TABLE)
+    sheet = simple.FindView(SHARES)
     if sheet is None:
         sheet = simple.CreateView("SpreadSheetView")
-        simple.RenameView(TABLE, sheet)
+        simple.RenameView(SHARES, sheet)
         layout = simple.GetLayout(view)
         if layout is not None:
             cell = layout.SplitViewVertical(view, HEIGHT)

@@ -3,34 +3,21 @@
 
 Beams are coloured by status: echo, no surface, below the lower limit, saturated, outside the gate. Places of a coverage
 are coloured by other status values: seen, or the reason why a bird is missed. A range image needs a beam report as
-Beams. A slice of a coverage is also possible. If the active output has no array `status` but the filter's Beam Report
-has, the macro colours the report. Without an array `status`, or without the preset, the macro changes nothing and
-prints the reason.
+Beams. A slice of a coverage is also possible. If the active output has no array `status` but another output of the
+filter has, such as the Beam Report, the macro colours the other output. Without an array `status`, or without the
+preset, the macro changes nothing and Output Messages gives the reason.
 
 In ParaView: select the output, and click the button in the toolbar. In a script: colour(source, view).
 """
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import ENERGY_COLOURS, neighbour, run, write
+from avian_lidar_plugin import ENERGY_COLOURS, legend, neighbour, output_with, run
 
 PRESET = "Avian lidar status"
 COVERAGE_PRESET = "Avian lidar coverage status"
 ARRAY = "status"
 # Array that only a coverage has.
 OF_COVERAGE = "track_probability"
-
-
-def with_status(source):
-    """The output with the array: the given output, else the second output of its filter."""
-    ports = [source]
-    if source.SMProxy.GetNumberOfOutputPorts() > 1:
-        proxy = source.SMProxy
-        ports.append(servermanager.OutputPort(servermanager._getPyProxy(proxy), 1))
-    for port in ports:
-        if port.GetPointDataInformation().GetArray(ARRAY) is not None:
-            return port
-    raise ValueError(f"there is no point array {ARRAY}: select a beam report, or a range image with a beam report as "
-                     "Beams")
 
 
 def of_coverage(source):
@@ -41,7 +28,7 @@ def colour(source, view=None):
     """Colours an output by status. @return the display of the output"""
     if source is None:
         raise ValueError("select the beam report first")
-    source = with_status(source)
+    source = output_with(source, ARRAY)
     places = of_coverage(source)
     preset = COVERAGE_PRESET if places else PRESET
     if not servermanager.vtkSMTransferFunctionPresets.GetInstance().HasPreset(preset):
@@ -63,10 +50,10 @@ def colour(source, view=None):
     table.AutomaticRescaleRangeMode = "Never"
     table.ApplyPreset(preset, False)
     table.InterpretValuesAsCategories = 1
-    images.legend(table, view, ARRAY)
+    legend(table, view, ARRAY)
     display.SetScalarBarVisibility(view, True)
     return display
 
 
 if __name__ in ("__main__", "__vtkconsole__"):
-    run("colours", colour, simple.GetActiveSource(), report=write)
+    run("colours", colour, simple.GetActiveSource())

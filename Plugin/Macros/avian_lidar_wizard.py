@@ -12,12 +12,11 @@ import os
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
-    ENERGY_COLOURS, airport_and_tree, data, frame, free_name, hide_scans, lidar_place, neighbour, plugin_folder, run,
-    start, tree_of, update_first_step)
+    ENERGY_COLOURS, data, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, plugin_folder, run, start,
+    surfaces_and_tree, tree_of, update_first_step)
 
 AIRPORT, BIRDS, FOG = "avian_lidar_airport_scan", "avian_lidar_birds_over_the_airport", "avian_lidar_ground_fog"
 REVOLUTIONS = 10
-BIRD_COLOUR = (0.9, 0.1, 0.5)
 RADIUS, HEIGHTS = 250.0, [4.0, 20.0]  # region of the birds, m
 
 
@@ -41,7 +40,7 @@ def check(sensor, weather):
 def open_scene(scene):
     """The scene and its collision tree."""
     if scene is None:
-        return airport_and_tree()
+        return surfaces_and_tree(None)
     surfaces = simple.OpenDataFile(scene)
     if surfaces is None:
         raise ValueError(f"ParaView does not read {scene}, expected a scene (.lidarscene.json) or surfaces")
@@ -61,23 +60,21 @@ def build(macros, view, scene, sensor, species, number, weather, air):
     """Makes the pipeline, and shows it in the view."""
     airport, birds, fogs, colours = macros
     surfaces, tree = open_scene(scene)
-    place = lidar_place(tree) or airport.place_beside(tree)
+    place = lidar_place(tree)
     beams = getattr(simple, sensor)(registrationName=free_name(name_of(sensor)), Position=place,
                                     NumberOfRevolutions=REVOLUTIONS)
     beams.UpdatePipelineInformation()
     solid, fog = tree, None
     if weather == "ground fog":
         simple.SetActiveSource(None)
-        fog = fogs.fog_above(tree.GetDataInformation().GetBounds()[4])
+        fog = fogs.fog_above(ground_below(place))
         solid = simple.GroupDatasets(registrationName=free_name("Scene in fog"), Input=[tree, fog])
     tracks, inputs = [], {}
     if number > 0:
         flight = {"Pattern": "Crossings", "Species": species, "NumberOfBirds": number, "Radius": RADIUS,
                   "Heights": HEIGHTS}
-        kinds = {species.capitalize(): (BIRD_COLOUR, flight)}
+        kinds = {species.capitalize(): flight}
         tracks = birds.flights(kinds, place, REVOLUTIONS / beams.RotationRate)
-        for each in tracks if scene else ():
-            each.Center = [*place[:2], place[2] - airport.HEIGHT]  # the macro's heights are above the lidar's foot
         inputs["Movers"] = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan"), Beams=beams, Surfaces=solid,
                                          NumberOfReflections=1, **inputs, **air)
@@ -87,9 +84,9 @@ def build(macros, view, scene, sensor, species, number, weather, air):
     if number > 0:
         simple.Hide(inputs["Movers"], view)
         birds.show_birds(kinds, tracks, echoes, view)
-        x, y, z = place
+        x, y, ground = *place[:2], ground_below(place)
         reach = (birds.WEST, birds.EAST, birds.SIDE) if scene is None else (RADIUS, RADIUS, RADIUS)
-        about = (x - reach[0], x + reach[1], y - reach[2], y + reach[2], z - airport.HEIGHT, z + HEIGHTS[1])
+        about = (x - reach[0], x + reach[1], y - reach[2], y + reach[2], ground, ground + HEIGHTS[1])
         frame(view, 0.0, birds.CAMERA_ELEVATION, about)
     if fog is not None:
         simple.Hide(solid, view)

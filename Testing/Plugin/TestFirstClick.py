@@ -11,6 +11,7 @@ import xml.etree.ElementTree as ElementTree
 from gui_testing import play
 
 WINDOW = "pqClientMainWindow"
+APPLY = "propertiesDock/propertiesPanel/Accept"
 AIRPORT = {"Airport Hongqiao", "Collision tree"}
 BIRDS = {"Birds", "Gulls", "Crows", "Starlings", "Echoes of gulls", "Echoes of crows", "Echoes of starlings"}
 # Names in the pipeline after the first click on each macro.
@@ -21,6 +22,9 @@ MACROS = {
     "coverage": AIRPORT | {"Search 905", "Coverage map", "Coverage at 30 m", "Probable", "Every other scan"},
     "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog"},
 }
+# Buttons of the toolbar, and those that need no selection.
+ALWAYS = ("airport_scan", "birds_over_the_airport", "coverage")
+BUTTONS = (*ALWAYS, "energy_colours", "status_colours", "filter")
 # What Output Messages say after the first click on a macro that needs a selection.
 WORDS = {"show_beam": "select an echo first"}
 
@@ -31,6 +35,17 @@ def click(widget, arguments=""):
 
 def macro(name):
     return click("menubar/menu_Macros", "avian_lidar_" + name)
+
+
+def button(name):
+    """The path of a button of the toolbar."""
+    return f"AvianLidarToolbar/1QToolButton{BUTTONS.index(name)}"
+
+
+def enabled(*names):
+    """Checks that these buttons are enabled, and the others not."""
+    return [ElementTree.Element("pqcheck", object=f"{WINDOW}/{button(name)}", property="enabled",
+                                arguments=str(name in names or name in ALWAYS).lower()) for name in BUTTONS]
 
 
 def names(state):
@@ -45,6 +60,24 @@ class FirstClick(unittest.TestCase):
             with self.subTest(name):
                 state, messages = play(PARAVIEW, [macro(name)])
                 self.assertEqual((messages, names(state)), ([], expected))
+
+    def test_buttons_in_turn(self):
+        """Each button of the toolbar, whatever the click before has made. Buttons that do not fit the selection are disabled."""
+        events = enabled()
+        for name in (*ALWAYS, "airport_scan"):
+            events.append(click(button(name)))
+            events += enabled("energy_colours", "status_colours")
+            events += [click(button("energy_colours")), click(button("status_colours"))]
+        state, messages = play(PARAVIEW, events)
+        self.assertEqual(messages, [])
+        self.assertEqual({name for name in names(state) if name.startswith(("Airport Hongqiao", "Collision tree"))}, AIRPORT)
+
+    def test_the_filter_of_a_sensor(self):
+        """The button of the filter is enabled as soon as a sensor is applied, and asks for surfaces."""
+        events = [click("menubar/menuSources/Avian Lidar", "AvianLidarAirport16"), *enabled(), click(APPLY), *enabled("filter"),
+                  click(button("filter")), click("SelectInputDialog/buttonBox/1QPushButton1")]
+        state, messages = play(PARAVIEW, events)
+        self.assertEqual((messages, names(state)), ([], {"AvianLidarAirport161"}))
 
     def test_a_macro_without_a_selection(self):
         for name, words in WORDS.items():

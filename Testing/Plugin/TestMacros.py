@@ -5,6 +5,7 @@ something does not fit, when nothing is made. The coverage's pictures are compar
 Run by pvpython: TestMacros.py [Macros] [MoreMacros]. With --documentation pictures go to Documentation/images. New baselines: copy
 TestCoverageImage*.png from the folder for temporary files to Testing/Data/Baseline and look at them."""
 
+import colorsys
 import contextlib
 import functools
 import io
@@ -62,6 +63,13 @@ def find(*names):
 
 def points_of(*names):
     return [source.GetDataInformation().GetNumberOfPoints() for source in find(*names)]
+
+
+def colour_of(table, value):
+    """The colour of a value in a table of colours."""
+    colour = [0.0, 0.0, 0.0]
+    table.SMProxy.GetClientSideObject().GetColor(value, colour)
+    return colour
 
 
 def document(name, view, size):
@@ -130,20 +138,45 @@ class Macros(Case):
         assert_same(fetch(scan), expected)
 
     def test_selected_surfaces(self):
-        """Each scan has names of its own and hides the one before; what was shown otherwise stays. A tree that is there is used."""
+        """Each scan has names of its own and hides the one before; what was shown otherwise stays. There is one tree of the wall,
+        which the macro also finds from a result."""
         wall, own = simple.Box(registrationName="wall", XLength=90, Center=[0, 50, 0]), simple.Box()
         for source in (wall, own):
             simple.Show(source, self.view)
         for _ in range(2):
             run(AIRPORT, wall)
-        for part in ("Collision tree", "Airport 16", "Scan"):
+        for part in ("Airport 16", "Scan"):
             first, second = find(part, part + " of wall")
             self.assertEqual((shown(first, self.view), shown(second, self.view)), (False, True), part)
         self.assertTrue(shown(own, self.view) and not shown(wall, self.view))
         tree = find("Collision tree")[0]
         self.assertEqual((tree.Input, find("wall")), (wall, [wall]))
-        run(AIRPORT, tree)
-        self.assertEqual(simple.GetActiveSource().Surfaces, tree)
+        for selected in (tree, find("Scan")[0], find("Airport 16")[0]):  # a sensor uses nothing: the newest tree
+            run(AIRPORT, selected)
+            self.assertEqual(simple.GetActiveSource().Surfaces, tree)
+        self.assertEqual(sum("tree" in name for name in self.names()), 1)
+
+    def test_own_airport(self):
+        """Every macro takes the selected surfaces, at their height above the sea, and from then on a result of these."""
+        wall = simple.Box(registrationName="wall", XLength=90, ZLength=20, Center=[0, 50, 110])
+        for path in (FOG, BIRDS, COVERAGE):
+            text = run(path, wall if path == FOG else simple.GetActiveSource())
+            self.assertRegex(text, "the sensor stands beside the surfaces")
+        (tree,), (fog, gulls, level) = find("Collision tree"), find("Ground fog", "Gulls", "Coverage at 30 m")
+        self.assertEqual(tree.Input, wall)
+        for name in ("Scan with birds", "Coverage map"):
+            self.assertEqual(find(name)[0].Surfaces, tree)
+        self.assertEqual((fog.Bottom, gulls.Center[2], level.SliceType.Origin[2]), (100, 100, 130))
+
+    def test_a_map_of_reasons_goes_with_its_airport(self):
+        """The map's second view is closed by the next scan, also if it is the active view."""
+        layout = simple.CreateLayout("Airports")
+        simple.AssignViewToLayout(self.view, layout)
+        run(COVERAGE)
+        simple.SetActiveView(simple.FindView("Reasons"))
+        run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))
+        self.assertEqual((simple.GetRenderViews(), simple.GetActiveView()), ([self.view], self.view))
+        self.assertEqual((simple.FindView("Reasons"), layout.GetViewLocation(self.view.SMProxy)), (None, 0))
 
     def test_place_beside_surfaces(self):
         for surfaces, place in ((simple.Box(XLength=200, YLength=100, ZLength=50, Center=[1000, 2000, 25]), [1000, 1930, 3]),
@@ -155,7 +188,7 @@ class Macros(Case):
     def test_surfaces_without_echoes(self):
         """The camera sees them and the sensor."""
         macro = load_macro(AIRPORT)
-        macro.place_beside = lambda tree: [0, -500, 400]
+        macro.lidar_place = lambda tree: [0, -500, 400]
         self.assertIn("(0, -500, 400) m sees nothing", said(lambda: macro.scan(simple.Sphere(Radius=1), self.view)))
         self.assertEqual(points_of("Scan"), [0])
         self.assertLess(abs(self.view.CameraFocalPoint[0]), 1)
@@ -213,8 +246,25 @@ class Macros(Case):
                 animation.GoToNext()
         self.assertNotEqual(*seen)
         self.check_shown(find(*parts, "Collision tree"), True)
-        for tracks in find("Gulls", "Crows", "Starlings"):
+        legend = simple.GetColorTransferFunction("species_id")
+        self.assertEqual(list(legend.Annotations)[1::2], ["starling", "crow", "herring gull"])
+        colours = dict(zip(legend.Annotations[1::2], numpy.reshape(legend.IndexedColors, (-1, 3)).tolist()))
+        for tracks, echoes_of in zip(find("Gulls", "Crows", "Starlings"), find(*parts)):
             self.assertTrue(shown(tracks, self.view, 1) and not shown(tracks, self.view) and tracks.Lines is None)
+            trails = simple.GetDisplayProperties(simple.OutputPort(tracks, 1), self.view)
+            self.assertEqual(list(trails.ColorArrayName), ["CELLS", "species_id"])
+            points = simple.GetDisplayProperties(echoes_of, self.view)
+            self.assertEqual(list(points.AmbientColor), colours[tracks.Species[0]])
+        bar = simple.GetScalarBar(legend, self.view)
+        self.assertEqual((bar.Title, bar.Visibility), ("species", 1))
+        # On the scale of a photon receiver, birds are not all blue.
+        table = simple.GetColorTransferFunction("energy")
+        self.assertEqual(table.UseLogScale, 1)
+        simple.Render(self.view)
+        found = fetch(echoes)
+        energies = found["energy"][found["object_id"] >= 10000]
+        hues = [colorsys.rgb_to_hsv(*colour_of(table, energy))[0] for energy in energies]
+        self.assertLess(numpy.median(hues), 0.55)  # blue is 0.67
 
     def test_ground_fog(self):
         self.assertEqual(run(FOG), "")

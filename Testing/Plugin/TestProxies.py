@@ -5,7 +5,9 @@ A writer's class is that of its core, a proxy within the one of Save Data."""
 import inspect
 import math
 import os
+import pathlib
 import re
+import tempfile
 import unittest
 
 import avianlidar
@@ -28,11 +30,11 @@ READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSen
 # Of a class, and no property: for programs, or the same in another unit.
 NOT_SHOWN = {"Controller", "Frequency", "Text", "NumberOfChannelElevations", "ChannelElevation", "HeightLimit"}
 # Properties without a pair of Set and Get: buttons, lists, time steps, a preset's tables.
-NO_PAIR = {"Advise", "Reload", "TimestepValues", "TablesOfPreset", "ErrorsAsData", "EnergyArray"}
+NO_PAIR = {"Advise", "KnownSpecies", "Reload", "TimestepValues", "TablesOfPreset", "ErrorsAsData", "EnergyArray"}
 OTHER_NAMES = {"MeteorologicalVisibility": "Visibility", "ObjectName": "NameOfObject"}  # of the class, where a proxy cannot have the same
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {"ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"), "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit")}
-FREE_TEXTS = ("GivenFileName", "ObjectName", "BlockNamePattern", "Species", "Name", "SensorAddress")
+FREE_TEXTS = ("GivenFileName", "ObjectName", "BlockNamePattern", "Name", "SensorAddress")
 
 
 def made(name):
@@ -286,6 +288,26 @@ class TestProxies(unittest.TestCase):
         for text in (documentation.GetDescription(), documentation.GetShortHelp(), documentation.GetLongHelp()):
             self.assertGreater(len(text_of(text)), 20)
         self.assertEqual(smproxy.GetXMLLabel().replace(" ", ""), name)
+
+    def test_species_are_a_list(self):
+        """The built-in species and, after an execution, the species of the user's table. A value that is not known stays."""
+        table = pathlib.Path(SOURCE_DIR, "Filters", "Birds", "species.csv").read_text(encoding="utf-8").splitlines()
+        built_in = [line.split(",")[0] for line in table if not line.startswith("#")][1:]
+        with tempfile.TemporaryDirectory() as folder:
+            own = pathlib.Path(folder, "own.csv")
+            own.write_text("\n".join(table).replace("pigeon", "barn owl"), encoding="utf-8")
+            for name, empty in (("AvianLidarBirdSource", []), ("AvianLidarTracks", [""]), ("AvianLidarCoverage", [""])):
+                simple.SetActiveSource(None)
+                source = getattr(simple, name)()
+                (domain,) = domains_of(source.SMProxy.GetProperty("Species"))
+                strings = lambda: [domain.GetString(i) for i in range(domain.GetNumberOfStrings())]
+                source.UpdatePropertyInformation()
+                self.assertEqual(strings(), empty + built_in)
+                source.Species = "albatross"
+                self.assertEqual(strings(), [*empty, *built_in, "albatross"])
+                source.Species, source.SpeciesFileName = "barn owl", str(own)
+                source.UpdatePropertyInformation()
+                self.assertEqual(strings(), [*empty, *built_in, "barn owl"])
 
     def test_menus_and_help(self):
         for name, proxy in self.proxies.items():

@@ -103,6 +103,9 @@ def panels():
                 yield from until(lambda: find("ProxyPanel", parent=panel()), "the panel of " + name)
                 proxy.UpdatePipeline()
                 yield from pages(panel(), name + "".join(map(str, variant.values())))
+            if proxy.GetProperty("Species"):
+                species = find("Species", parent=panel()).findChild(QtWidgets.QComboBox)
+                assert species.findText("crow") >= 0 and species.currentText() == proxy.Species[0], name
             simple.Delete(proxy)
     simple.SetActiveSource(pipeline.echoes)
     dialog = yield from dialog_of("actionFileSaveData", "FileSaveDialog")

@@ -2,6 +2,7 @@
 """Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors that name what is
 wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestBadInput's."""
 import itertools
+import re
 
 import numpy as np
 import vtk
@@ -146,14 +147,28 @@ class Tracks(InFolder):
                                       np.concatenate([field(block, "pose_position") for block in blocks]))
         np.testing.assert_array_equal(vtk_to_numpy(trails.GetPointData().GetArray("time")), [0, 4, 1, 3])
         self.assertEqual(list(vtk_to_numpy(trails.GetCellData().GetArray("object_id"))), [10000, 10001])
-        self.assertEqual(list(vtk_to_numpy(trails.GetCellData().GetArray("species_id"))), [0, 1])
-        self.assertEqual(text(trails, "species_names"), ["herring gull", "crow"])
+        names = text(trails, "species_names")
+        self.assertEqual([names[i] for i in vtk_to_numpy(trails.GetCellData().GetArray("species_id"))], ["herring gull", "crow"])
         self.assertEqual([text(block, "object_names") for block in blocks], [["herring gull 17"], ["crow b"]])
 
     def test_longitudes_and_latitudes(self):
         file = self.file(GEODETIC + "1,crow,0,121.3,31.2,25\n1,crow,1,121.3,31.2001,25\n")
         block = movers(tracks(Pattern=pattern("File"), FileName=file, Origin=(31.2, 121.3, 5)))[0]
         np.testing.assert_allclose(field(block, "pose_position"), [(0, 0, 20), (0, 11.09, 20)], atol=0.01)
+
+    def test_birds_of_a_file_that_are_far_away(self):
+        """A forgotten origin, and projected coordinates, give one warning with the distance."""
+        equator = 6371.0 * np.radians(np.hypot(31.2, 121.3))  # km, no more than a bound here
+        for rows, far in ((GEODETIC + "1,crow,0,121.3,31.2,25\n1,crow,1,121.3,31.2001,25\n", True),
+                          (HEADER + "1,crow,0,345000,3453000,9\n1,crow,1,345010,3453000,9\n", True),
+                          (HEADER + "1,crow,0,50000,60000,9\n1,crow,1,50010,60000,9\n", False)):
+            source = tracks(Pattern=pattern("File"), FileName=self.file(rows))
+            heard = Messages(source)
+            self.assertEqual(len(movers(source)), 1)
+            self.assertEqual(len(heard.all()), far, heard.all())
+            if far:
+                distance = float(re.search(r"all birds are at least (\d+) km from the scene's origin", heard.warnings[0])[1])
+                self.assertTrue(3000 < distance < equator, distance)
 
     def test_lines(self):
         blocks = movers(self.from_lines(polyline(TWO_LINES, TIMES), Species="pigeon"))

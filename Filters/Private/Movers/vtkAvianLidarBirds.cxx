@@ -14,6 +14,7 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
+#include <cstddef>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -47,6 +48,26 @@ std::vector<avianlidar::BirdSpecies> vtkAvianLidarBirds::KnownSpecies(const std:
     avianlidar::readSpecies(vtkAvianLidarBuiltInText("species.csv"), "species.csv");
   all.insert(all.end(), builtIn.begin(), builtIn.end());
   return all;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBirds::NamesOfSpecies(const std::string& file)
+{
+  std::vector<avianlidar::BirdSpecies> all = KnownSpecies({});
+  try
+  {
+    const auto known = KnownSpecies(file);
+    all.insert(all.end(), known.begin(), known.end() - static_cast<std::ptrdiff_t>(all.size()));
+  }
+  catch (const std::runtime_error&)
+  {
+  }
+  std::string names;
+  for (const avianlidar::BirdSpecies& species : all)
+  {
+    names += species.name + "\n";
+  }
+  return names;
 }
 
 //------------------------------------------------------------------------------

@@ -24,6 +24,10 @@ std::string TextOf(const char* property, const std::string& file);
 /// The species of the user's table, if there is a file, then the built-in species.
 std::vector<avianlidar::BirdSpecies> KnownSpecies(const std::string& file);
 
+/// Names of the built-in species, then of the species of the user's table, one in each line.
+/// A table that cannot be read has no names here, because the execution reports the error.
+std::string NamesOfSpecies(const std::string& file);
+
 /// Index of the species that the property Species names.
 std::size_t FindSpecies(const std::vector<avianlidar::BirdSpecies>& known, const std::string& name);
 
