@@ -68,11 +68,13 @@ public:
   ///@}
 
   /// File of tracks for PATTERN_FILE (CSV), with the header "id,species,time,x,y,z" (s, m) or
-  /// "id,species,time,longitude,latitude,height" (s, deg, m above WGS84). Default: empty.
+  /// "id,species,time,longitude,latitude,height" (s, deg, m above the level of Origin). Default:
+  /// empty.
   vtkAvianLidarFilePathMacro(FileName);
 
   /// Origin of the scene for a file with longitude and latitude: latitude in [-90, 90] and
-  /// longitude in [-360, 360], deg, height above the ellipsoid, m. Default (0, 0, 0).
+  /// longitude in [-360, 360], deg, height above the ellipsoid or the sea, as in the file, m.
+  /// Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Origin, 3, 0.0, 0.0, 0.0);
 
   /// Name of a species. Default: empty (starling for flocks, herring gull otherwise).

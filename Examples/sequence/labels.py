@@ -35,11 +35,12 @@ def points(folder):
 def main(arguments=None):
     """Makes the sequence and the picture. @return the number of points by class"""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenario", default=str(HERE / "hongqiao.scenario.json"), help="default: hongqiao.scenario.json")
     parser.add_argument("--scans", type=int, default=20, help="number of scans, default 20")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="folder of the results")
     options = parser.parse_args(arguments)
     folder = options.out / "sequences"
-    if avianlidar(["sequence", str(HERE / "hongqiao.scenario.json"), "-o", str(folder), "--scans", str(options.scans)]):
+    if avianlidar(["sequence", options.scenario, "-o", str(folder), "--scans", str(options.scans)]):
         sys.exit(1)
     places, labels = points(folder)
     figure = Figure(figsize=(8, 6), layout="constrained")

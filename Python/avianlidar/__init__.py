@@ -28,9 +28,10 @@ from ._scene import Scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
 from ._version import __version__
 from .apps._design_page import Designs
+from .apps._flights import read_tracks
 from .apps._sequence import Sequence
 from .apps._tracks import BirdTracks
 
 __all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence",
            "hue_colors", "load_cloud", "load_scene", "materials", "mesh", "mover", "places_of", "plot_map",
-           "plot_range_image", "save", "vtkAvianLidar"]
+           "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]

@@ -14,13 +14,16 @@ import warnings
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.path import Path
+from osgeo import gdal
 
 import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
 from avianlidar.apps import _pictures, _sites, _sites_page
-from avianlidar.apps._json import load_json
+from avianlidar.apps._features import properties_of
+from avianlidar.apps._json import load_json, packaged
+from avianlidar.apps._osm import read_extract
 from avianlidar.apps._plan import Plan
 from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._sites import Sites
@@ -441,7 +444,7 @@ class Plans(unittest.TestCase):
         line = next(f for f in features if f["properties"].get("kind") == "runway")
         square = next(f for f in features if f["properties"].get("height"))
         for number, wrong in enumerate((
-                None, {**line, "properties": {"kind": "runway", "width": "9"}}, {**square, "geometry": {"type": "Polygon", "coordinates": [[]]}},
+                None, {**line, "properties": {"kind": "runway", "displaced_end": "far"}}, {**square, "geometry": {"type": "Polygon", "coordinates": [[]]}},
                 {**line, "geometry": {"type": "LineString", "coordinates": [[121.0, 31.0], [121.0, 31.0]]}})):
             file = self.write(runway_features=[*features, wrong])
             with self.subTest(number):
@@ -463,6 +466,35 @@ class Plans(unittest.TestCase):
             self.assertEqual([(one.name, one.width) for one in found], [("09/27", 45.0)] * len(wanted))
         file.write_text('{"features": [{"properties": {"kind": "runway"}, "geometry": {"type": "MultiLineString", "coordinates": []}}]}')
         self.assertRaisesRegex(al.Error, "features.0.: the coordinates of a MultiLineString", siting.read_runways, file, origin)
+
+    def test_runways_that_gdal_writes(self):
+        """GDAL's own GeoJSON of OpenStreetMap has most tags in one text. Names and widths are those that `avianlidar airport` takes."""
+        ways = ({"name": "Main, \"old\"", "ref": "09/27", "width": "45"}, {"ref": "18L/36R", "width": "30 m"}, {"ref": "18R/36L", "width": "148 ft"},
+                {"ref": "05/23"}, {"ref": "13/31", "width": "wide"}, {"ref": "01/19", "surface": "water"}, {"ref": "02/20", "runway": "closed"})
+        nodes = "".join(f'<node id="{2 * k + end + 1}" lat="{53.6 + 0.01 * end}" lon="{13.3 + 0.01 * k}"/>' for k in range(len(ways)) for end in range(2))
+        text = "".join(f'<way id="{k + 1}"><nd ref="{2 * k + 1}"/><nd ref="{2 * k + 2}"/><tag k="aeroway" v="runway"/>' + "".join(
+            f'<tag k="{key}" v="{value.replace(chr(34), "&quot;")}"/>' for key, value in way.items()) + "</way>" for k, way in enumerate(ways))
+        (self.folder / "a.osm").write_text(f'<osm version="0.6">{nodes}{text}</osm>')
+        gdal.VectorTranslate(str(self.folder / "a.geojson"), str(self.folder / "a.osm"), format="GeoJSON", layers=["lines"])
+        self.assertIn("other_tags", (self.folder / "a.geojson").read_text())
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            found = siting.read_runways(self.folder / "a.geojson", (53.6, 13.3, 0.0))
+        self.assertEqual([(one.name, round(one.width, 2)) for one in found],
+                         [('Main, "old"', 45.0), ("18L/36R", 30.0), ("18R/36L", 45.11), ("05/23", 45.0), ("13/31", 45.0)])
+        self.assertEqual([str(one.message).partition("a.geojson: ")[2] for one in heard],
+                         ["13/31: width is 'wide', expected metres above 0; the runway counts as 45 m wide"])
+        extract = read_extract(self.folder / "a.osm", packaged("airport.json"))
+        rows = [properties_of(one, packaged("airport.json")) for one in extract.features]
+        self.assertEqual([(one.name, round(one.width, 3)) for one in found], [(row.get("name") or row["ref"], row["width"]) for row in rows])
+        # Tags in an object, as of Overpass' JSON, and as the hstore of QGIS; numbers and null beside them
+        shape = {"type": "LineString", "coordinates": [[13.3, 53.6], [13.3, 53.61]]}
+        for tags in ({"tags": {"aeroway": "runway", "ref": "18/36", "width": "45 m"}}, {"aeroway": "RUNWAY", "ref": "18/36", "width": 45, "name": None},
+                     {"other_tags": '"aeroway"=>"runway","ref"=>"18/36","width"=>"45"'}, {"kind": "runway", "ref": "18/36", "width": "45.0"},
+                     {"other_tags": '{"aeroway": "runway", "ref": "18/36"}'}):
+            (self.folder / "b.geojson").write_text(json.dumps({"features": [{"properties": tags, "geometry": shape}]}))
+            one, = siting.read_runways(self.folder / "b.geojson", (53.6, 13.3, 0.0))
+            self.assertEqual((one.name, one.width), ("18/36", 45.0))
 
     def test_points_of_a_spreadsheet(self):
         file = self.write(siting={"points": "points.csv"})

@@ -12,8 +12,8 @@ from osgeo import osr
 
 from .._pipeline import Error
 from ._extract import COAST, CUT, sea, without_parts
-from ._features import Feature, properties_of
-from ._gdal import box_of, degrees, form_of, geometry, moved, valid
+from ._features import Feature, form_of, properties_of
+from ._gdal import box_of, degrees, geometry, moved, valid
 from ._ground import height_at, posts_of, read_heights
 from ._json import packaged
 from ._maps import coordinate_system

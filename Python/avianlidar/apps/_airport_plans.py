@@ -18,8 +18,8 @@ from .._cloud import field_values
 from .._scene import Scene
 from ._airport_map import AirportMap
 from ._candidates import Surfaces, candidates, ground_of, lattice, pierced
-from ._features import Feature, height_name
-from ._gdal import form_of, geometry, moved
+from ._features import Feature, form_of, height_name
+from ._gdal import geometry, moved
 from ._geojson import read_outlines, to_geodetic
 from ._json import naming
 from ._regions import Runway, ends_of, runway_outline

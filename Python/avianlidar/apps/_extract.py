@@ -12,8 +12,8 @@ from typing import Any, Counter, Dict, List, Optional, Set, Tuple
 import numpy as np
 from osgeo import ogr
 
-from ._features import HEIGHTS, Feature, Table, height_name, length_of, levels_of, properties_of
-from ._gdal import corners_of, form_of, geometry, is_closed, parts_of, solid, union, valid
+from ._features import HEIGHTS, Feature, Table, form_of, height_name, length_of, levels_of, properties_of
+from ._gdal import corners_of, geometry, is_closed, parts_of, solid, union, valid
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"

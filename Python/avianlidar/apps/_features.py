@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import collections
 import dataclasses
+import json
 import re
-from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
 
 import numpy as np
 
-from ._gdal import form_of
 from ._json import packaged
 
 TALLEST, HIGHEST = 1000.0, 200.0  # greatest plausible height, m, and number of storeys
@@ -32,6 +32,31 @@ MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
 NO_HEIGHT, NO_LEVEL = re.compile(r"\s*(?:-1(?:\.0*)?)?\s*"), re.compile(r"\s*0*\s*")
 NO_MIN_HEIGHT = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
+TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # format of tags in GDAL's OSM driver
+
+
+def tags_of(properties: Mapping[str, Any]) -> Dict[str, str]:
+    """Tags as texts, also those that GDAL and other programs put together into one property."""
+    tags: Dict[str, str] = {}
+    for name, value in properties.items():
+        if name in ("other_tags", "all_tags", "tags", "names") and str(value).startswith("{"):
+            value = json.loads(value) if isinstance(value, str) else value
+        if name == "names" and isinstance(value, dict):
+            tags["name"] = str(value.get("primary") or "")
+        elif isinstance(value, dict):
+            tags.update((key, str(word)) for key, word in value.items())
+        elif name in ("other_tags", "all_tags", "tags"):
+            tags.update((re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word))
+                        for key, word in TAG.findall(str(value)))
+        elif value is not None and value != "":
+            tags[name] = str(value)
+    return tags
+
+
+def form_of(shape) -> str:
+    """Which of point, line and area a geometry is; "" for others."""
+    name = shape.GetGeometryName().replace("MULTI", "") if shape is not None else ""
+    return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
 
 
 def number_of(text: str, most: float = np.inf) -> float:
@@ -165,6 +190,14 @@ def _height(tags: Dict[str, str], rule: Dict[str, Any], floor: float) -> Tuple[f
     return rule["height"], strange or "assumed"
 
 
+def width_of(tags: Dict[str, str], kind: str, known: Dict[str, Any]) -> Tuple[float, str]:
+    """Width of a line or point, m, and the source of the number."""
+    value, source = _first(tags, WIDTHS, lambda text: length_of(text, known["widest"]))
+    if value is not None:
+        return value, source
+    return known["kinds"][kind]["width"], _not_understood(tags, WIDTHS, NO_HEIGHT) or source
+
+
 def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
     """The properties that the scene file reads for a feature, and the source of each number."""
     rule, tags = known["kinds"][feature.kind], feature.tags
@@ -193,9 +226,7 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
         if under is not None and 0.0 <= under < height:
             properties.update(min_height=round(float(under), 3) or None, min_height_from=why)
     if "width" in rule and form_of(feature.shape) != "area":
-        value, source = _first(tags, WIDTHS, lambda text: length_of(text, known["widest"]))
-        if value is None:
-            value, source = rule["width"], _not_understood(tags, WIDTHS, NO_HEIGHT) or source
+        value, source = width_of(tags, feature.kind, known)
         properties.update(width=round(float(value), 3), width_from=source)
     if feature.kind in ("runway", "taxiway", "apron", "road", "parking"):
         said = tags.get("surface", "")

@@ -11,6 +11,7 @@ import numpy as np
 from osgeo import gdal, ogr, osr
 
 from .._pipeline import Error
+from ._features import form_of
 
 for module in (gdal, ogr, osr):
     module.UseExceptions()
@@ -86,12 +87,6 @@ def plain(shape, to_degrees):
     shape.CloseRings()
     is_one = shape.GetGeometryName().startswith("MULTI") and shape.GetGeometryCount() == 1
     return shape.GetGeometryRef(0).Clone() if is_one else shape
-
-
-def form_of(shape) -> str:
-    """Which of point, line and area a geometry is; "" for others."""
-    name = shape.GetGeometryName().replace("MULTI", "") if shape is not None else ""
-    return {"POINT": "point", "LINESTRING": "line", "POLYGON": "area"}.get(name, "")
 
 
 def parts_of(shape) -> List[Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pathlib
 import re
+import warnings
 from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
@@ -12,8 +13,9 @@ import numpy as np
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import Cloud
 from .._coverage import places_of
-from .._pipeline import Error, update
+from .._pipeline import Error, callers_level, update
 from .._properties import set_properties
+from ._features import Table, length_of, tags_of, width_of
 from ._json import load_json, naming, packaged
 from ._regions import Runway
 
@@ -27,10 +29,16 @@ def _transformed(points, origin: Sequence[float], source: str, target: str) -> n
     return Cloud(transform.GetOutputDataObject(0)).points.copy()
 
 
+def placed(points, origin: Sequence[float]) -> np.ndarray:
+    """East, north and up, m. @param points n x 3, longitude and latitude (deg) and height (m) @param origin latitude,
+    longitude (deg), height (m)"""
+    return _transformed(points, origin, "geodetic", "enu")
+
+
 def to_enu(longitudes_latitudes, origin: Sequence[float]) -> np.ndarray:
     """East and north, m. @param longitudes_latitudes n x 2, deg @param origin latitude, longitude (deg), height (m)"""
     degrees = np.asarray(longitudes_latitudes, dtype=float)
-    return _transformed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin, "geodetic", "enu")[:, :2]
+    return placed(np.column_stack([degrees, np.full(len(degrees), origin[2])]), origin)[:, :2]
 
 
 def to_geodetic(points, origin: Sequence[float]) -> np.ndarray:
@@ -85,30 +93,37 @@ def _lines(shape: Dict[str, Any], origin: Sequence[float]) -> List[np.ndarray]:
 
 
 def read_runways(file, origin: Sequence[float]) -> List[Runway]:
-    """The runways of a GeoJSON file: lines whose property `kind` or `aeroway` is "runway", with `name` or `ref`, and
-    `width` (m, default 45). @param origin of the scene: latitude, longitude (deg), height (m)"""
-    path = pathlib.Path(file)
+    """The runways of a GeoJSON file: lines whose property or tag `kind` or `aeroway` is "runway", with `name` or `ref`
+    and `width`, in service, on land. @param origin of the scene: latitude, longitude (deg), height (m)"""
+    path, known = pathlib.Path(file), packaged("airport.json")
+    out_of_use = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
     found: List[Runway] = []
+    strange: List[str] = []
     for number, feature in enumerate(features_of(path)):
-        properties, shape = feature["properties"], feature["geometry"]
-        is_runway = "runway" in (properties.get("kind"), properties.get("aeroway"))
-        if not is_runway or shape.get("type") not in ("LineString", "MultiLineString"):
-            continue
-        width = properties.get("width", 45.0)
         with naming(f"{path}: features[{number}]"):
+            tags, shape = tags_of(feature["properties"]), feature["geometry"]
+            is_runway = "runway" in (tags.get("kind"), tags.get("aeroway", "").lower())
+            if not is_runway or shape.get("type") not in ("LineString", "MultiLineString") or out_of_use.find(tags):
+                continue
+            width, source = width_of(tags, "runway", known)
             for (x0, y0), (x1, y1) in (ends.tolist() for ends in _lines(shape, origin)):
-                name = str(properties.get("name") or properties.get("ref") or f"runway {len(found) + 1}")
-                length = np.hypot(x1 - x0, y1 - y0)
-                if not isinstance(width, (int, float)) or not width > 0 or not length > 1.0:
-                    raise ValueError(f"{name}: expected a line of some length and a width above 0 m, "
-                                     f"got the width {width!r}")
-                first, last = (properties.get(name, 0.0) for name in ("displaced_start", "displaced_end"))
-                if not all(isinstance(away, (int, float)) and 0.0 <= away < length for away in (first, last)):
-                    raise ValueError(f"{name}: displaced thresholds are {first!r} and {last!r}, "
+                name = tags.get("name") or tags.get("ref") or f"runway {len(found) + 1}"
+                length = float(np.hypot(x1 - x0, y1 - y0))
+                if not length > 1.0:
+                    raise ValueError(f"{name}: is {length:g} m long, expected a line of some length")
+                said = [tags.get(end, "0") for end in ("displaced_start", "displaced_end")]
+                away = [0.0 if re.fullmatch(r"0*\.?0*", text) else length_of(text, length) for text in said]
+                if None in away or length in away:
+                    raise ValueError(f"{name}: displaced thresholds are {said[0]!r} and {said[1]!r}, "
                                      "expected metres, less than the runway's length")
-                found.append(Runway(name, (x0, y0), (x1, y1), float(width), (float(first), float(last))))
+                strange += [f"{name}: {source.partition(': ')[2]}"] if ": " in source else []
+                found.append(Runway(name, (x0, y0), (x1, y1), width, (away[0] or 0.0, away[1] or 0.0)))
     if not found:
-        raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway")
+        raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway; "
+                    "`avianlidar airport` makes such a file from any extract of a map")
+    if strange:
+        warnings.warn(f"{path}: {'; '.join(strange)}, expected metres above 0; the runway counts as "
+                      f"{known['kinds']['runway']['width']:g} m wide", RuntimeWarning, stacklevel=callers_level())
     return found
 
 

@@ -12,8 +12,8 @@ from osgeo import ogr, osr
 
 from .._files import read_regular
 from .._pipeline import Error
-from ._features import NUMBER, TALLEST, Feature, number_of
-from ._gdal import degrees, form_of, geometry, plain
+from ._features import NUMBER, TALLEST, Feature, form_of, number_of
+from ._gdal import degrees, geometry, plain
 from ._osm import CONTROLS
 from ._tables import csv_rows
 

@@ -17,7 +17,7 @@ from osgeo import gdal, osr
 
 from .._pipeline import Error
 from ._extract import Extract
-from ._features import Feature
+from ._features import Feature, tags_of
 from ._gdal import degrees, expect_file, open_file, plain, quiet
 from ._json import naming
 
@@ -26,7 +26,6 @@ LARGEST = 256 << 20  # greatest size of an extract, bytes
 # control characters, and marks of text direction, which would disorder a line
 CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 CRS = re.compile(rb'"crs"\s*:\s*\{[^{}]*"properties"\s*:\s*\{\s*"name"\s*:\s*("(?:[^"\\]|\\.)*")')
-TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # format of tags in GDAL's OSM driver
 
 
 def _needs_order(file: pathlib.Path) -> bool:
@@ -122,22 +121,9 @@ def _expect_map(file: pathlib.Path) -> None:
 
 
 def _tags(feature, names: List[str]) -> Dict[str, str]:
-    tags: Dict[str, str] = {}
-    for number, name in enumerate(names):
-        if not feature.IsFieldSetAndNotNull(number):
-            continue
-        value = feature.GetFieldAsString(number)
-        if name in ("other_tags", "all_tags", "tags"):
-            if value.startswith("{"):
-                tags.update((key, str(word)) for key, word in json.loads(value).items())
-            else:
-                tags.update((re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word))
-                            for key, word in TAG.findall(value))
-        elif name == "names" and value.startswith("{"):
-            tags["name"] = str(json.loads(value).get("primary") or "")
-        elif value:
-            tags[name] = value
-    return {name: value if value.isprintable() else CONTROLS.sub("", value) for name, value in tags.items()}
+    said = tags_of({name: feature.GetFieldAsString(number) for number, name in enumerate(names)
+                    if feature.IsFieldSetAndNotNull(number)})
+    return {name: value if value.isprintable() else CONTROLS.sub("", value) for name, value in said.items()}
 
 
 def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:

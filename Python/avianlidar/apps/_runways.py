@@ -14,8 +14,8 @@ from scipy.sparse.csgraph import connected_components
 
 from .._pipeline import Error
 from ._extract import Extract
-from ._features import Feature
-from ._gdal import box_of, degrees, form_of, geometry, moved, parts_of
+from ._features import Feature, form_of
+from ._gdal import box_of, degrees, geometry, moved, parts_of
 from ._maps import coordinate_system
 
 NEAR_AERODROME = 3000.0  # greatest distance of a runway from its aerodrome, m

@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 import os
+import warnings
 from typing import Any, Dict, Iterator, List, Tuple, Union
 
 import numpy as np
@@ -15,15 +16,17 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import Cloud, add_array, field_values, leaves_of
-from .._pipeline import Error, Updates, update
+from .._pipeline import Error, Updates, callers_level, update
 from .._properties import set_properties
 from .._scan import Scan
 from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
 from .._weather import in_weather
+from ._flights import FAR, SETTINGS, Flights, least_distance, read_flights
 from ._json import naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of
 from ._inputs import checked, read_scenario
+from ._logs import as_time, seconds_of
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
 STATUSES = ("absent", "outside", "hidden", "air", "too weak", "missed", "seen")
@@ -31,7 +34,7 @@ TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", 
          "elevation_deg", "effective_area_m2", "beams", "expected_energy_J", "expected_photoelectrons",
          "expected_probability", "points", "clutter_distance_m", "clutter_share",
          "first_time_s", "first_x_m", "first_y_m", "first_z_m", "last_time_s", "last_x_m", "last_y_m", "last_z_m",
-         "visibility_m", "rain_mm_h", "clear_probability")
+         "visibility_m", "rain_mm_h", "clear_probability", "track")
 AIR = -2  # object_id of echoes of the air
 WEAK = 0.1  # probability of detection below which a bird counts as too weak
 LONGEST = 1e9  # greatest time of a route and greatest start time of an object, s
@@ -114,7 +117,9 @@ class Simulation:
             self.clear = self.bare = self._in_media(crowns, others)
         if crowns:
             self.bare = self._in_media([], others)
-        self._moving(0)  # errors of birds and objects are raised before the work
+        self.tracks: Dict[int, str] = {}  # ids in files of the birds of the current sequence
+        self.flights = self._read_flights()
+        self._moving(0, said=True)  # errors of birds and objects are raised before the work
         # Clutter without the effects that differ from scan to scan.
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False
@@ -141,31 +146,101 @@ class Simulation:
         """The scans of a sequence."""
         return range(number * self.length, min((number + 1) * self.length, self.scans))
 
-    def _moving(self, number: int) -> Tuple[vtkMultiBlockDataSet, Dict[int, str]]:
-        """The moving birds and other objects in a sequence, and the species of the birds by id."""
+    def _read_flights(self) -> Dict[int, Flights]:
+        """The tracks of files, by the place of their group in the scenario. Warnings name files whose birds are not
+        under way during the scans or are far away."""
+        found: Dict[int, Flights] = {}
+        for place, group in enumerate(self.scenario.get("birds", ())):
+            if group["pattern"] == "File":
+                with naming(f"{self.file}: birds[{place}]"):
+                    given = {name: group[name] for name in (*SETTINGS, "species", "species_file_name") if name in group}
+                    if not given.get("file_name"):
+                        raise Error("file_name is missing, expected a file of tracks")
+                    found[place] = read_flights(given.pop("file_name"), scene=self.scene, **given)
+        dated, end = [one for one in found.values() if one.since_1970], self.scans / self.sensor.rotation_rate
+        if "start_time" in self.scenario and not dated and all(len(one.times) for one in found.values()):
+            raise Error(f"{self.file}: start_time: is given, but no file of birds has times since 1970")
+        with naming(f"{self.file}: start_time"):
+            if any(len(one.times) for one in dated):
+                self.scenario.setdefault("start_time", as_time(min(one.times.min(initial=np.inf) for one in dated)))
+                start = seconds_of(self.scenario["start_time"])
+                for one in dated:
+                    one.times -= start
+        for place, one in found.items():
+            if one.warning:
+                self._warn(one.warning)
+            away = one.nearest(self.sensor.position, 0.0, end)
+            if len(one.times) == 0:
+                self._warn(f"{one.file}: holds no track of two or more positions")
+            elif len(away) == 0:
+                self._warn(f"{one.file}: no track is under way in the {end:.0f} s of the scans: {self.period(one)}; "
+                           f"choose {'start_time or ' * one.since_1970}number_of_scans")
+            elif away.min() > FAR:
+                origin = self.scenario["birds"][place].get("origin") or self.scene.geodetic_origin
+                self._warn_of_far(one.file, away, one.mistake(self.sensor.position, origin))
+            else:
+                self._warn_of_far(one.file, away)
+        return found
+
+    def period(self, flights: Flights) -> str:
+        """Words on the time in which tracks of a file are under way."""
+        if not len(flights.times):
+            return "no time"
+        times = flights.times.min(), flights.times.max()
+        if not flights.since_1970:
+            return f"from {times[0]:.1f} to {times[1]:.1f} s after the first scan"
+        start = seconds_of(self.scenario["start_time"])
+        return f"from {as_time(start + times[0])} to {as_time(start + times[1])}; first scan at {as_time(start)}"
+
+    def _warn_of_far(self, what: str, away, why: str = "") -> None:
+        """Warns of birds that never come within the range gate. @param away their least distances, m"""
+        far = away[away > self.sensor.range_gate]
+        if len(far):
+            least, most = (f"{x:.0f} m" if x < 9999.5 else f"{x / 1000:,.0f} km" for x in (far.min(), far.max()))
+            self._warn(f"{what}: {len(far)} of {len(away)} birds never come within the lidar's range gate of "
+                       f"{self.sensor.range_gate:g} m: {'it passes' if len(far) == 1 else 'they pass'} the lidar at "
+                       f"{least}{f' to {most}' if least != most else ''}{why and '; '}{why}")
+
+    @staticmethod
+    def _warn(text: str) -> None:
+        warnings.warn(text, RuntimeWarning, stacklevel=callers_level())
+
+    def _moving(self, number: int, said: bool = False) -> Tuple[vtkMultiBlockDataSet, Dict[int, str]]:
+        """The moving birds and other objects in a sequence, and the species of the birds by id. @param said warn of
+        birds that patterns place far away"""
         scans, rate = self.span(number), self.sensor.rotation_rate
         time = scans.start / rate, scans.stop / rate
-        birds, species = self._flights(number, time)
+        birds, species = self._flights(number, time, said)
         blocks = vtkMultiBlockDataSet()
         for k, block in enumerate(birds + self._objects(*time)):
             blocks.SetBlock(k, block)
         return blocks, species
 
-    def _flights(self, number: int, time: Tuple[float, float]) -> Tuple[List[vtkPolyData], Dict[int, str]]:
+    def _flights(self, number: int, time: Tuple[float, float], said: bool) -> Tuple[List[vtkPolyData], Dict[int, str]]:
         """Birds of a sequence, and their species by id."""
         blocks: List[vtkPolyData] = []
         species: Dict[int, str] = {}
+        self.tracks = {}
         for place, group in enumerate(self.scenario.get("birds", ())):
             tracks = _wrapped.vtkAvianLidarTracks()
+            if place in self.flights:
+                lines, ids = self.flights[place].lines(*time)
+                self.tracks.update(enumerate(ids, FIRST_BIRD + len(blocks)))
+                tracks.SetInputData(lines)
+                group = {**{name: value for name, value in group.items() if name not in SETTINGS}, "pattern": "Lines"}
             seed = hashlib.sha256(json.dumps((self.seed, number, place)).encode()).digest()[:4]
             ours = {"time_range": time, "first_object_id": FIRST_BIRD + len(blocks),
                     "seed": int.from_bytes(seed, "little", signed=True), **group}
             with naming(f"{self.file}: birds[{place}]"):
                 set_properties(tracks, "vtkAvianLidarTracks", **ours)
                 update(tracks)
-            for block in leaves_of(tracks.GetOutput()):
+            found = list(leaves_of(tracks.GetOutput()))
+            for block in found:
                 species[FIRST_BIRD + len(blocks)] = field_values(block)["species"][0]
                 blocks.append(block)
+            if said and place not in self.flights:
+                self._warn_of_far(f"{self.file}: birds[{place}]", np.array(
+                    [least_distance(field_values(block)["pose_position"], self.sensor.position) for block in found]))
             if len(blocks) > LAST_ID - FIRST_BIRD:
                 raise Error(f"{self.file}: birds: {len(blocks)} and more, "
                             f"expected at most {LAST_ID - FIRST_BIRD}: labels hold no more")
@@ -251,7 +326,7 @@ class Simulation:
                    "rain_mm_h": f"{self.scan.rain_rate:g}"}
         rows: Dict[int, Dict[str, Any]] = {
             bird: {**dict.fromkeys(TRUTH, ""), "scan": k, "bird": bird, "species": name, "status": "absent", "beams": 0,
-                   "points": 0, **weather} for bird, name in species.items()}
+                   "points": 0, **weather, "track": self.tracks.get(bird, "")} for bird, name in species.items()}
         report = Cloud(self.scan.algorithm.GetOutput(2))
         if report.number_of_points == 0:
             return list(rows.values())

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables (CSV) of positions, as radars, loggers and Movebank write them: columns by their meaning, times, tracks."""
+from __future__ import annotations
+
+import csv
+import datetime
+import io
+import re
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
+
+import numpy as np
+
+from .._files import read_regular
+from .._pipeline import Error
+
+# Words of a column's name that change nothing, and units with their size in m or s
+FILLERS = {"gps", "gnss", "location", "position", "pos", "fix", "coordinate", "coord", "decimal", "utc", "gmt"}
+UNITS = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "km": 1000.0, "ft": 0.3048, "feet": 0.3048,
+         "foot": 0.3048, "s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "millis": 1e-3,
+         "milliseconds": 1e-3, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "dd": 1.0}
+# The names of columns without their units. If several columns fit, the first list with a column counts.
+NAMES: Dict[str, Sequence[Set[str]]] = {
+    "time": ({"timestamp", "time stamp", "datetime", "date time"},
+             {"epoch", "epoch time", "unixtime", "unix time", "unix timestamp"}, {"time", "t"}),
+    "date": ({"date"},),
+    "longitude": ({"longitude", "long", "lon", "lng"},), "latitude": ({"latitude", "lat"},),
+    "x": ({"x", "east"},), "y": ({"y", "north"},), "z": ({"z", "up"},),
+    "id": ({"track id", "trackid", "track", "track number", "track no", "track nr", "track num", "target id", "target"},
+           {"individual local identifier", "individual id", "individual", "animal id", "animal", "bird id", "bird"},
+           {"tag local identifier", "tag id", "tag", "device id", "device", "device info serial", "logger id"},
+           {"id", "identifier", "object id", "name"}),
+    "species": ({"species", "species name"}, {"individual taxon canonical name", "taxon canonical name", "taxon",
+                                              "taxon name", "scientific name", "common name"})}
+HEIGHTS = {"height", "altitude", "alt", "elevation", "ele", "elev"}
+LEVELS = {"sea": r"above (?:mean )?(?:sea(?: level)?|a?msl)|a?msl|asl|orthometric",
+          "ground": r"above ground(?: level)?|agl",
+          "ellipsoid": r"above (?:wgs ?84 )?ellipsoid|ellipsoid(?:al)?|hae|wgs ?84"}
+OUTLIERS = {f"{who} marked outlier": True for who in ("manually", "import", "algorithm")} | {"visible": False}
+ISO = re.compile(r"(\d{4})[-/](\d\d)[-/](\d\d)[T ]+(\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?)\s*"
+                 r"(Z|UTC|GMT|([+-])(\d\d):?(\d\d)?)?", re.IGNORECASE)
+ISO_EXPECTED = "2026-05-04T10:22:33Z, with or without a zone, or seconds"
+SINCE_1970, LATEST = 1e8, 8e9  # s: greater times count from 1970, and lie before the year 2223
+
+
+class Column(NamedTuple):
+    name: str
+    number: int
+    unit: float  # in m or s
+    rank: int  # place in the lists of NAMES
+    level: str = ""  # of LEVELS, or empty
+
+
+def _meaning(name: str, number: int) -> Tuple[str, Optional[Column]]:
+    """What a column holds: a key of NAMES, "height", an outlier's mark, or nothing."""
+    words = [word.lower() for word in re.findall(r"[^\W_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))]
+    unit = next((UNITS[word] for word in words[1:] if word in UNITS), 1.0)
+    said = " ".join(word for i, word in enumerate(words) if word not in FILLERS and (i == 0 or word not in UNITS))
+    for what, lists in NAMES.items():
+        for rank, names in enumerate(lists):
+            if said.removesuffix(" wgs84") in names:
+                return what, Column(name, number, unit, rank)
+    if said in OUTLIERS:
+        return said, Column(name, number, unit, 0)
+    levels = {level: re.sub(rf"\b(?:{words})\b", "", said) for level, words in LEVELS.items()}
+    level = next((level for level, rest in levels.items() if rest != said), "")
+    rest = levels.get(level, said).split()
+    if not set(rest) - HEIGHTS and (rest or level):
+        return "height", Column(name, number, unit, 0, level)
+    return "", None
+
+
+class Columns:
+    """The columns of a table by their meaning."""
+
+    def __init__(self, names: Sequence[str], given: Dict[str, str]):
+        self.names, self.given = names, given
+        self.found: Dict[str, List[Column]] = {}
+        for number, name in enumerate(names):
+            what, column = _meaning(name, number)
+            if column and what not in given:
+                self.found.setdefault(what, []).append(column)
+        for what, name in given.items():
+            if name not in names:
+                raise Error(f"has no column {name!r} ({what}), but {', '.join(names)}")
+            column = _meaning(name, names.index(name))[1]
+            self.found[what] = [column or Column(name, names.index(name), 1.0, 0)]
+
+    def find(self, what: str, level: Optional[str] = None) -> Optional[Column]:
+        """The column of a meaning. @param level of the height; None: not a height"""
+        fits = [one for one in self.found.get(what, ()) if level is None or one.level == level]
+        best = [one for one in fits if one.rank == min(other.rank for other in fits)]
+        metres = [one for one in best if one.unit == 1.0]
+        best = metres if len(metres) == 1 else best
+        if len(best) > 1:
+            raise Error(f"the columns {best[0].name!r} and {best[1].name!r} may both be the {what}: "
+                        f"choose one by columns, as in {{\"{what}\": \"{best[0].name}\"}}")
+        return best[0] if best else None
+
+    def need(self, what: str) -> Column:
+        column = self.find(what)
+        if column is None:
+            expected = f"a name such as {', '.join(sorted(NAMES[what][0]))}" if what not in ("x", "y") else (
+                "latitude and longitude in degrees, or x and y in metres east and north of the scene's origin")
+            raise Error(f"has no column for the {what if what not in ('x', 'y') else 'position'}, but "
+                        f"{', '.join(self.names)}; expected {expected}, or the column's name in columns")
+        return column
+
+
+def seconds_of(text: Any) -> float:
+    """Seconds since 1970 of a time in ISO 8601, in UTC without a zone, or of a number of seconds since 1970."""
+    if isinstance(text, (int, float)):
+        return float(text)
+    try:
+        return float(_iso([text])[0][0])
+    except ValueError:
+        raise ValueError(f"is {text!r}, expected {ISO_EXPECTED} since 1970") from None
+
+
+def _iso(texts: Sequence[str]) -> Tuple[np.ndarray, bool]:
+    """Seconds since 1970, and whether a text has no zone. ValueError holds the first wrong text."""
+    plain, shifts, is_local = [], [], False
+    for text in texts:
+        found = ISO.fullmatch(text)
+        if not found:
+            raise ValueError(text)
+        year, month, day, clock, own, sign, hours, minutes = found.groups()
+        plain.append(f"{year}-{month}-{day}T{clock.replace(',', '.')}")
+        shifts.append(0 if sign is None else int(f"{sign}1") * (int(hours) * 3600 + int(minutes or 0) * 60))
+        is_local |= own is None
+    try:
+        times = np.array(plain, "datetime64[us]")
+    except ValueError:
+        if len(plain) == 1:
+            raise ValueError(texts[0]) from None
+        for text in texts:  # names the wrong one
+            _iso([text])
+        raise
+    return times.astype(np.int64) * 1e-6 - np.array(shifts), is_local
+
+
+def as_time(seconds: float) -> str:
+    """A time since 1970 in ISO 8601."""
+    moment = datetime.datetime(1970, 1, 1) + datetime.timedelta(seconds=seconds)
+    return moment.isoformat(timespec="milliseconds" if moment.microsecond else "seconds") + "Z"
+
+
+class Log:
+    """Reads a table of tracks."""
+
+    def __init__(self, file: str):
+        import pandas
+        self.pandas, self.file = pandas, file
+        raw = read_regular(file)
+        if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+            raise Error(f"{file}: is in UTF-16, expected UTF-8: save the table again as CSV in UTF-8")
+        raw = re.sub(rb"(?m)^[ \t]*#[^\n]*$", b"", raw.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n"))
+        chosen = re.match(rb'\s*"?sep=(.)"?[ \t]*\n', raw)  # of spreadsheets
+        self.raw = raw[chosen.end():] if chosen else raw
+        self.skipped = raw[:chosen.end()].count(b"\n") if chosen else 0
+        try:
+            head = self.raw.lstrip().partition(b"\n")[0].decode()
+        except UnicodeDecodeError:
+            raise Error(f"{file}: is not text in UTF-8: save the table again as CSV in UTF-8") from None
+        self.separator = chosen[1].decode() if chosen else max(",;\t|", key=head.count)
+        cells = csv.reader([head], delimiter=self.separator, skipinitialspace=True)
+        self.names = [name.strip() for name in next(cells, [])]
+        if len(self.names) < 3:
+            raise Error(f"{file}: its first line is {head[:80]!r}, expected the names of columns, such as "
+                        "track_id,timestamp,latitude,longitude,altitude")
+        self.left: Dict[str, int] = {}  # number of rows or tracks left out, by reason
+        self.notes: List[str] = []
+
+    def line(self, row: int) -> int:
+        """The number of a row's line in the file."""
+        lines = (number for number, text in enumerate(self.raw.split(b"\n"), 1) if text.strip())
+        return next(number for k, number in enumerate(lines) if k == row + 1) + self.skipped
+
+    def read(self, chosen: Dict[str, Column], texts: Set[str]) -> Any:
+        """A frame of the chosen columns, by meaning; those of `texts` hold text."""
+        of = {f"{column.number}": what for what, column in chosen.items()}
+        try:
+            frame = self.pandas.read_csv(
+                io.BytesIO(self.raw), sep=self.separator, header=0, names=[f"{i}" for i in range(len(self.names))],
+                usecols=[*of], index_col=False, skipinitialspace=True, low_memory=False, na_values=["-", "--"],
+                dtype={number: str for number, what in of.items() if what in texts})
+        except ValueError as error:  # also pandas' ParserError, and text that is not UTF-8
+            raise Error(f"{self.file}: is not a table that can be read ({str(error).strip()})") from None
+        return frame.rename(columns=of)
+
+    def numbers(self, frame, what: str, unit: float, expected: str) -> np.ndarray:
+        """The numbers of a column; NaN for empty cells."""
+        column = frame[what]
+        if column.dtype == object:
+            text = column.str.strip() if hasattr(column, "str") else column
+            text = text.str.replace(",", ".", regex=False) if self.separator != "," else text
+            numbers = self.pandas.to_numeric(text, errors="coerce")
+            wrong = np.flatnonzero(numbers.isna() & column.notna() & (text != ""))
+            if len(wrong):
+                raise Error(f"{self.file}: line {self.line(frame.index[wrong[0]])}: {what} is "
+                            f"{str(column.iloc[wrong[0]])[:40]!r}, expected {expected}")
+            column = numbers
+        found = column.to_numpy(dtype=float)
+        return np.where(np.isfinite(found), found, np.nan) * unit
+
+    def leave(self, frame, keep, reason: str):
+        """The rows to keep. Those left out are counted."""
+        self.left[reason] = self.left.get(reason, 0) + int(len(frame) - np.count_nonzero(keep))
+        return frame[keep]
+
+    def rows(self, chosen: Dict[str, Column], across: Tuple[str, str]) -> Any:
+        """The rows with a position, a time and an id. @param across names of the horizontal coordinates"""
+        frame = self.read(chosen, {"time", "id", "species", "date", *OUTLIERS})
+        for what, sign in OUTLIERS.items():
+            if what in frame:
+                says_yes = frame[what].str.strip().str.lower().isin(["true", "t", "1", "1.0", "yes"])
+                frame = self.leave(frame, frame[what].isna() | (says_yes != sign), "rows marked as outliers")
+        for what in (*across, "height"):
+            expected = "degrees, as in 121.3363" if what in ("longitude", "latitude") else "a number in metres"
+            frame = frame.assign(**{what: self.numbers(frame, what, chosen[what].unit, expected)})
+        frame = self.leave(frame, frame[[*across, "height"]].notna().all(axis=1), "rows without a position")
+        if across[0] == "longitude":
+            frame = self.leave(frame, (frame[[*across]] != 0.0).any(axis=1), "rows at 0, 0 degrees")
+            self.check_degrees(frame, chosen)
+        frame = self.leave(frame, frame["time"].notna(), "rows without a time")
+        return self.leave(frame, frame["id"].notna(), "rows without an id") if "id" in frame else frame
+
+    def check_degrees(self, frame, chosen: Dict[str, Column]) -> None:
+        """Raises an error for a longitude or latitude out of its range."""
+        for what, most in (("latitude", 90.0), ("longitude", 360.0)):
+            wrong = np.flatnonzero(frame[what].abs() > most)
+            if len(wrong):
+                may_be = what == "latitude" and (frame[["longitude", what]].abs().max() <= (90.0, 360.0)).all()
+                raise Error(f"{self.file}: line {self.line(frame.index[wrong[0]])}: {what} ({chosen[what].name}) is "
+                            f"{frame[what].iloc[wrong[0]]:g}, expected degrees within {-most:g} and {most:g}"
+                            f"{'; latitude and longitude may be exchanged' if may_be else ''}")
+
+    def tracks(self, frame, times: np.ndarray, across: Tuple[str, str]) -> Tuple[np.ndarray, np.ndarray, List[str]]:
+        """The order of rows by tracks and times, the beginning of each track in this order with the number of all rows,
+        and the tracks' ids. Tracks of one position are left out."""
+        codes, ids = np.zeros(len(frame), int), ["1"]
+        if "id" in frame:
+            codes, ids = self.pandas.factorize(frame["id"].str.strip())
+        order = np.lexsort((times, codes))
+        same = np.append(False, (np.diff(codes[order]) == 0) & (np.diff(times[order]) == 0.0))[:len(order)]
+        if "id" not in frame and same.any():
+            one, other = order[np.flatnonzero(same)[0] - 1:][:2]
+            if (frame[[*across]].iloc[one] != frame[[*across]].iloc[other]).any():
+                raise Error(f"{self.file}: line {self.line(frame.index[other])}: a bird is at two places at one time, "
+                            "expected a column with the ids of the tracks, such as track_id, or its name in columns")
+        self.left["rows of a time that their track already has"] = int(same.sum())
+        order = order[~same]
+        size = np.bincount(codes[order], minlength=len(ids))
+        self.left["tracks of one position"] = int((size == 1).sum())
+        order = order[size[codes[order]] > 1]
+        starts = np.flatnonzero(np.diff(codes[order], prepend=-1))
+        return order, np.append(starts, len(order)), [str(ids[code]) for code in codes[order[starts]]]
+
+    def times(self, frame, unit: float) -> Tuple[np.ndarray, bool]:
+        """Times, s, and whether they count from 1970."""
+        texts = frame["time"].str.strip()
+        numbers = self.pandas.to_numeric(texts.str.replace(",", ".", regex=False), errors="coerce")
+        if numbers.notna().all():
+            found = numbers.to_numpy(float) * unit
+            size = np.abs(found).max(initial=0.0)
+            for least, name, part in ((1e17, "nano", 1e-9), (1e14, "micro", 1e-6), (1e11, "milli", 1e-3)):
+                if size > least:
+                    found, size = found * part, size * part
+                    self.notes.append(f"times are {name}seconds since 1970")
+                    break
+            if size > LATEST:
+                worst = int(np.abs(found).argmax())
+                raise Error(f"{self.file}: line {self.line(frame.index[worst])}: time is {texts.iloc[worst]!r}, "
+                            f"expected {ISO_EXPECTED} since 1970 or since the first scan")
+            return found, bool(size > SINCE_1970)
+        if "date" in frame and texts.str.fullmatch(r"\d\d?:\d\d(?::\d\d.*)?").all():
+            texts = frame["date"].str.strip() + " " + texts.str.replace(r"^(\d):", r"0\1:", regex=True)
+        codes, values = self.pandas.factorize(texts)
+        try:
+            found, is_local = _iso(list(values))
+        except ValueError as error:
+            row = int(np.flatnonzero(codes == list(values).index(str(error)))[0])
+            raise Error(f"{self.file}: line {self.line(frame.index[row])}: time is {str(error)[:40]!r}, "
+                        f"expected {ISO_EXPECTED}") from None
+        if is_local:
+            self.notes.append("times without a zone are UTC")
+        return found[codes], True

@@ -1,0 +1,393 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables of tracks as radars, GPS loggers and Movebank write them: the same birds from each, heights above the sea, the ground and the
+ellipsoid, what is left out, what is wrong; scenarios that scan these birds, and warn of birds that are far away."""
+import contextlib
+import json
+import os
+import pathlib
+import unittest
+import warnings
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+import TestSequence
+import avianlidar as al
+from avianlidar._pipeline import update
+from avianlidar.apps._flights import read_flights
+from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
+from exampletools import emptied
+from helpertools import rows_of, run
+
+ORIGIN = (47.45, 8.55, 420.0)
+PLACES = [(47.4512, 8.5523, 445.0), (47.4513, 8.5525, 446.5), (47.4515, 8.5526, 448.0)]  # latitude, longitude, m above the sea
+CLOCK = [37353, 37354.5, 37357]  # s of 4 May 2021
+DAY = 1620086400  # s from 1970 to 4 May 2021
+SCENE = {**TestSequence.SCENE, "origin": dict(zip(("latitude", "longitude", "height"), ORIGIN)), "lidar": {"position": [0, 0, 3]}}
+SCENARIO = {"scene": "small.lidarscene.json", "number_of_scans": 6, "scans_per_sequence": 3, "scan": {"rays_per_beam": 30},
+            "sensor": {"preset": "Search905", "azimuth_step": 0.75}, "objects": []}
+
+
+def closed_form(places, origin=ORIGIN):
+    """East, north and up (m) of latitudes, longitudes (deg) and heights (m): by way of geocentric coordinates of WGS84."""
+    def geocentric(latitude, longitude, height):
+        f, n = 1 / 298.257223563, np.radians(latitude)
+        e2, of = f * (2 - f), np.radians(longitude)
+        r = 6378137.0 / np.sqrt(1 - e2 * np.sin(n) ** 2)
+        return np.array([(r + height) * np.cos(n) * np.cos(of), (r + height) * np.cos(n) * np.sin(of), (r * (1 - e2) + height) * np.sin(n)])
+    n, of = np.radians(origin[:2])
+    east, up = np.array([-np.sin(of), np.cos(of), 0]), np.array([np.cos(n) * np.cos(of), np.cos(n) * np.sin(of), np.sin(n)])
+    return np.array([np.array([east, np.cross(up, east), up]) @ (geocentric(*place) - geocentric(*origin)) for place in places])
+
+
+def clock(second, separator="T"):
+    return f"2021-05-04{separator}{int(second // 3600):02d}:{int(second // 60 % 60):02d}:{second % 60:06.3f}"
+
+
+def table(header, row, separator="\n"):
+    """A header, and a row from latitude, longitude, height and second for each place."""
+    return separator.join([header, *(row(*place, second) for place, second in zip(PLACES, CLOCK)), ""])
+
+
+WRITTEN = {
+    "Movebank's download": table(
+        "event-id,visible,timestamp,location-long,location-lat,gps:dop,ground-speed,height-above-ellipsoid,height-above-msl,sensor-type,"
+        "individual-taxon-canonical-name,tag-local-identifier,individual-local-identifier,study-name",
+        lambda lat, lon, h, s: f'1,true,{clock(s, " ")},{lon},{lat},1.2,9.1,{h + 47},{h},"gps","Larus argentatus","T 7","Emma #3","Gulls, 2021"'),
+    "Movebank in R": table("location.long,location.lat,timestamp,height.above.msl,tag.local.identifier,individual.local.identifier",
+                           lambda lat, lon, h, s: f'{lon},{lat},{clock(s, " ")},{h},T 7,Emma #3'),
+    "Movebank's service": table("individual_local_identifier,timestamp,location_lat,location_long,height_above_msl,visible",
+                                lambda lat, lon, h, s: f"Emma #3,{clock(s, ' ')},{lat},{lon},{h},TRUE"),
+    "UvA-BiTS": table("device_info_serial,date_time,latitude,longitude,altitude,altitude_agl", lambda lat, lon, h, s: f"Emma #3,{clock(s, ' ')},{lat},{lon},{h},25"),
+    "Ornitela": table("device_id,UTC_datetime,UTC_date,UTC_time,datatype,satcount,Latitude,Longitude,MSL_altitude_m",
+                      lambda lat, lon, h, s: f"Emma #3,{clock(s, ' ')},2021-05-04,{clock(s)[11:]},GPS,8,{lat},{lon},{h}"),
+    "GPX as CSV": table("lat,lon,ele,time", lambda lat, lon, h, s: f"{lat},{lon},{h},{clock(s)}Z"),
+    "a logger with date and time": table("Date,Time,Latitude,Longitude,Altitude(m),Speed", lambda lat, lon, h, s: f"2021/05/04,{clock(s)[11:]},{lat},{lon},{h},3"),
+    "a radar, ms, feet": table("TrackID,TimestampMs,Latitude (deg),Longitude (deg),Altitude AMSL (ft),RCS [dBm2]",
+                               lambda lat, lon, h, s: f"Emma #3,{round((DAY + s) * 1000)},{lat},{lon},{h / 0.3048:.6f},-21"),
+    "a radar with its own x and y": table("track_id,timestamp,x,y,latitude,longitude,altitude",
+                                          lambda lat, lon, h, s: f"Emma #3,{DAY + s},511.0,-93.1,{lat},{lon},{h}"),
+    "a European spreadsheet": "\ufeffsep=;\r\n" + table("Track;Zeit;Breite;Länge;Höhe", lambda lat, lon, h, s: ";".join(
+        ["Emma #3", clock(s) + "+00:00", *(f"{x}".replace(".", ",") for x in (lat, lon, h))]), "\r\n"),
+    "another zone, tabs, comments": "# MERLIN\n\n" + table("track number\ttime\tlat\tlng\talt_msl\n# begins", lambda lat, lon, h, s:
+                                                           f"Emma #3\t{clock(s + 7200)}+02:00\t{lat}\t{lon}\t{h}"),
+    "kilometres": table("id,epoch,position_lat,lon_wgs84,height_km", lambda lat, lon, h, s: f"Emma #3,{DAY + s},{lat},{lon},{h / 1000}"),
+    "quotes": table('"trackId","dateTime","decimalLatitude","decimalLongitude","heightAboveMSL"',
+                    lambda lat, lon, h, s: f'"Emma #3","{clock(s).replace(".", ",")} UTC","{lat}","{lon}","{h}"'),
+}
+GERMAN = {"time": "Zeit", "latitude": "Breite", "longitude": "Länge", "height": "Höhe"}
+
+
+class Tables(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.home = emptied("radar-birds", "tables")
+
+    def read(self, text, **settings):
+        file = self.home / "own.csv"
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return read_flights(file, **{"origin": ORIGIN, **settings})
+
+    def test_the_same_birds_from_all_programs(self):
+        for name, text in WRITTEN.items():
+            with self.subTest(name):
+                found = self.read(text, columns=GERMAN if "Zeit" in text else None)
+                np.testing.assert_allclose(found.points, closed_form(PLACES), atol=2e-4)
+                np.testing.assert_allclose(found.times, np.add(CLOCK, DAY), atol=2e-3)
+                self.assertTrue(found.since_1970)
+                self.assertEqual((found.ids, found.species), (["Emma #3" if "Emma" in text else "1"], ["herring gull"]))
+                self.assertEqual(found.warning, "")
+
+    def test_said(self):
+        """Which columns were taken, and how."""
+        self.assertIn("1 tracks with 3 positions: time is timestamp, longitude is location.long, latitude is location.lat, height is "
+                      "height.above.msl, id is individual.local.identifier; heights are above the sea; times without a zone are UTC",
+                      self.read(WRITTEN["Movebank in R"]).words)
+        self.assertIn("times are milliseconds since 1970", self.read(WRITTEN["a radar, ms, feet"].replace("TimestampMs", "timestamp")).words)
+        self.assertNotIn("zone", self.read(WRITTEN["GPX as CSV"]).words)
+
+    def test_metres_of_the_scene(self):
+        """The format of vtkAvianLidarTracks, with times from the first scan, and the same flights."""
+        text = "id,species,time,x,y,z\n17,herring gull,0,0,0,20\nb,crow,1,0,0,30\n17,herring gull,4,0,50,20\nb,crow,3,26,0,30\n"
+        found = self.read(text, origin=None)
+        self.assertEqual((found.ids, found.species, found.since_1970), (["17", "b"], ["herring gull", "crow"], False))
+        tracks, from_file = vtkAvianLidarTracks(), vtkAvianLidarTracks()
+        tracks.SetPatternToLines()
+        tracks.SetInputData(found.lines(-np.inf, np.inf)[0])
+        from_file.SetPatternToFile()
+        from_file.SetFileName(str(self.home / "own.csv"))
+        for one in (tracks, from_file):
+            update(one)
+        for k in range(2):
+            for name in ("pose_time", "pose_position", "pose_orientation", "flap_phase"):
+                ours, theirs = (vtk_to_numpy(one.GetOutputDataObject(0).GetBlock(k).GetFieldData().GetArray(name)) for one in (tracks, from_file))
+                np.testing.assert_array_equal(ours, theirs)
+
+    def test_lines_for_other_programs(self):
+        """As ParaView reads them: times begin with the table, or with the given time."""
+        file = self.home / "lines.csv"
+        file.write_text(WRITTEN["a radar with its own x and y"])
+        lines = al.read_tracks(file, origin=ORIGIN, start_time="2021-05-04T10:22:30Z")
+        np.testing.assert_allclose(vtk_to_numpy(lines.GetPointData().GetArray("time")), [3, 4.5, 7], atol=1e-6)
+        al.save(al.read_tracks(file, origin=ORIGIN, species="crow"), self.home / "lines.vtp")
+        reader, tracks = vtkXMLPolyDataReader(), vtkAvianLidarTracks()
+        reader.SetFileName(str(self.home / "lines.vtp"))
+        tracks.SetInputConnection(reader.GetOutputPort())
+        tracks.SetPatternToLines()
+        update(tracks)
+        fields = tracks.GetOutputDataObject(0).GetBlock(0).GetFieldData()
+        np.testing.assert_allclose(vtk_to_numpy(fields.GetArray("pose_time")), [0, 1.5, 4], atol=1e-6)
+        np.testing.assert_allclose(vtk_to_numpy(fields.GetArray("pose_position")), closed_form(PLACES), atol=2e-4)
+        self.assertEqual(fields.GetAbstractArray("species").GetValue(0), "crow")
+
+    def test_levels_of_heights(self):
+        head, row = "time,lat,lon,{}\n", "{},47.4512,8.5523,{}\n"
+        up = closed_form([(*PLACES[0][:2], ORIGIN[2])])[0][2]  # of a place at the origin's height
+
+        def z(name, height, **settings):
+            return self.read(head.format(name) + row.format(0, height) + row.format(1, height), **settings).points[0, 2]
+        for name in ("altitude", "height", "alt_msl", "height-above-msl", "Altitude ASL [m]", "z"):
+            self.assertAlmostEqual(z(name, 445) - up, 25.0, places=3)
+        for name in ("altitude", "height_above_ellipsoid", "alt hae", "altitude_wgs84"):
+            self.assertAlmostEqual(z(name, 492, geoid_undulation=47.0, height_reference="ellipsoid") - up, 25.0, places=3)
+        for name in ("height", "altitude_agl", "AGL", "height above ground level (m)"):
+            self.assertEqual(z(name, 25, height_reference="ground"), 25.0)
+        self.assertEqual(z("altitude_agl", 25), 25.0)
+        both = "ground_elevation,height_agl,altitude,height_above_ellipsoid"
+        for level, wanted in (("", 25.0), ("sea", 25.0), ("ellipsoid", 20.0)):
+            self.assertAlmostEqual(z(both, "400,30,445,487", height_reference=level, geoid_undulation=47.0) - up, wanted, places=3)
+        self.assertEqual(z(both, "400,30,445,487", height_reference="ground"), 30.0)
+        self.assertAlmostEqual(z("altitude_m,altitude_ft", "445,1") - up, 25.0, places=3)
+        self.assertRaisesRegex(al.Error, r"own.csv: heights \(height-above-ellipsoid\) are above the ellipsoid.* expected geoid_undulation",
+                               z, "height-above-ellipsoid", 492)
+        self.assertRaisesRegex(al.Error, "own.csv: height_reference is 'sea', but the column 'alt_hae' is above the ellipsoid by its name",
+                               z, "alt_hae", 492, height_reference="sea")
+        local = "time,x,y,{}\n0,5,6,450\n1,6,6,450\n"
+        for name, settings, wanted in (("z", {}, 450), ("altitude", {}, 450), ("altitude_msl", {}, 30), ("altitude", {"height_reference": "sea"}, 30),
+                                       ("hae", {"geoid_undulation": 47.0}, -17)):
+            np.testing.assert_allclose(self.read(local.format(name), **settings).points[0], (5, 6, wanted))
+
+    def test_above_the_ground_of_a_slope(self):
+        """Ground that rises by one metre in ten, below a roof; level beyond."""
+        corners = [(x, y, 0.1 * x) for x in (0, 1000) for y in (0, 1000)] + [(x, y, 150.0) for x in (100, 300) for y in (100, 300)]
+        scene = al.Scene((np.array(corners, float), np.array([(0, 2, 1), (1, 2, 3), (4, 6, 5), (5, 6, 7)])))
+        found = self.read("time,x,y,height_agl\n0,200,210,30\n5,400,210,30\n9,-50,210,30\n", scene=scene)
+        lines, _ = found.lines(0.0, 10.0)
+        np.testing.assert_allclose(vtk_to_numpy(lines.GetPoints().GetData()), [(200, 210, 50), (400, 210, 70), (-50, 210, 30)], atol=1e-9)
+        self.assertAlmostEqual(found.nearest((200, 210, 0), 0.0, 0.5)[0], 50.0)  # the bird rises, and flies away
+        self.assertAlmostEqual(found.nearest((300, 210, 0), 0.0, 0.5)[0], 60 * 200 / np.hypot(200, 20), places=9)
+
+    def test_what_is_left_out_is_counted(self):
+        row = "{},{},{},{},{},{}\n"
+        text = "track_id,time,latitude,longitude,altitude,visible\n" + "".join(row.format(*cells) for cells in (
+            (1, 0, 47.451, 8.552, 440, "true"), (2, 0, 47.452, 8.552, 440, "true"), (1, 2, 47.453, 8.552, 440, "true"), (2, 1, 0, 0, 0, "true"),
+            (2, 5, 47.451, 8.553, "", "true"), (2, 4, 47.451, 8.553, 440, "true"), (2, 4, 47.4511, 8.553, 440, "true"), (3, 1, 47.451, 8.553, 440, "true"),
+            (1, 1, 47.4515, 8.552, 440, "true"), (1, 6, 47.5, 9.5, 440, "FALSE"), ("", 6, 47.5, 9.5, 440, "true"), (1, "NA", 47.5, 9.5, 440, "true"),
+            (1, 7, "NaN", 9.5, 440, "true")))
+        found = self.read(text)
+        self.assertEqual((found.ids, found.times.tolist(), found.begins.tolist()), (["1", "2"], [0, 1, 2, 0, 4], [0, 3, 5]))
+        self.assertRegex(found.warning, r"own.csv: left out: rows marked as outliers \(1\), rows without a position \(2\), rows at 0, 0 degrees \(1\), "
+                         r"rows without a time \(1\), rows without an id \(1\), rows of a time that their track already has \(1\), tracks of one position \(1\)$")
+        marked = "timestamp,lat,lon,height,manually-marked-outlier\n" + "".join(f"{k},47.45,8.55,440,{'true' if k == 1 else ''}\n" for k in range(3))
+        self.assertEqual(self.read(marked).times.tolist(), [0, 2])
+
+    def test_species(self):
+        text = "bird_id,species,time,x,y,z\n" + "".join(f"{k},{name},{t},0,{t},5\n" for k, name in enumerate(
+            ("Crow", "Branta canadensis", "", "canada goose", "Larus fuscus")) for t in (0, 1))
+        found = self.read(text, species="pigeon")
+        self.assertEqual(found.species, ["crow", "Canada goose", "pigeon", "Canada goose", "pigeon"])
+        self.assertIn("tracks of unknown species fly as pigeon: Larus fuscus (1)", found.words)
+        self.assertRaisesRegex(al.Error, "own.csv: the species 'Larus fuscus' are not known: expected starling", self.read, text)
+        (self.home / "species.csv").write_text("species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]\n"
+                                               "Larus fuscus,0.8,0.54,1.3,0.19,no,12\n")
+        self.assertEqual(self.read(text, species_file_name=str(self.home / "species.csv")).species[-2:], ["Canada goose", "Larus fuscus"])
+
+    def test_columns_that_are_named(self):
+        text = "Zeit,Breite,lat,lon,z,height\n0,47.4512,1,8.5523,1,445\n1,47.4513,1,8.5525,2,446.5\n"
+        found = self.read(text, columns={"time": "Zeit", "latitude": "Breite", "height": "height"})
+        np.testing.assert_allclose(found.points, closed_form(PLACES[:2]), atol=1e-3)
+        self.assertRaisesRegex(al.Error, r"own.csv: has no column 'Uhr' \(time\), but Zeit, Breite", self.read, text, columns={"time": "Uhr"})
+
+    def test_bad_tables_are_named(self):
+        good, wrong = WRITTEN["GPX as CSV"], {
+            "": "expected the names of columns", "lat lon ele time\n": "expected the names of columns", "lat,lon,ele\n1,2,3\n": "has no column for the time, but lat, lon, ele; expected",
+            "a,time,z\n1,2,3\n": "has no column for the position, but a, time, z; expected latitude and longitude in", "lat,time,ele\n1,2,3\n": "has no column for the longitude",
+            "lat,lon,time\n1,2,3\n": "has no column for the height", "lat,latitude,lon,ele,time\n": "columns 'lat' and 'latitude' may both be the latitude: choose one by columns",
+            "track_id,Track ID,lat,lon,ele,time\n": "columns 'track_id' and 'Track ID' may both be the id",
+            "lat,lon,ele,time,timestamp,datetime\n": "columns 'timestamp' and 'datetime' may both be the time"}
+        wrong = {text: words for text, words in wrong.items()}
+        wrong.update({good.replace("8.5525", "8°33"): "line 3: longitude is '8°33', expected degrees", good.replace("446.5", "high"): "line 3: height is 'high'",
+                      good.replace("47.4513", "5255000"): r"line 3: latitude \(lat\) is 5.255e\+06, expected degrees within -90 and 90$",
+                      good.replace("47.", "97."): r"line 2: latitude .* 97.4512, .*; latitude and longitude may be exchanged",
+                      good.replace("-05-04T", "/04/05 4.").replace("2021", "5"): "line 2: time is '5/04/05 4.10:22:33.000Z', expected 2026-05-04T10:22:33Z, with",
+                      good.replace("T10:22:34", "T10:61:34"): "line 3: time is '2021-05-04T10:61:34.500Z', expected",
+                      "time,lat,lon,ele\n20210504102233,1,2,3\n20210504102234,1,2,3\n": "line 3: time is '20210504102234', expected",
+                      "time,lat,lon,ele\n\n# x\n1,1,2,3\n1,1,3,3\n": "line 5: a bird is at two places at one time, expected a column with the ids",
+                      good + '"': "not a table that can be read", good.replace("lat,", "lat,\u00fc").encode("latin-1"): "not text in UTF-8",
+                      good.encode("utf-16"): "is in UTF-16, expected UTF-8"})
+        for text, words in wrong.items():
+            with self.subTest(words), self.assertRaisesRegex(al.Error, f"own.csv: .*{words}"):
+                self.read(text)
+        with self.assertRaisesRegex(al.Error, "own.csv: has longitudes and latitudes, but the scene has no origin"):
+            self.read(good, origin=None)
+        with self.assertRaisesRegex(al.Error, "nowhere.csv: cannot be read"):
+            read_flights(self.home / "nowhere.csv")
+
+    def test_part_of_a_track(self):
+        """Poses in a part are those of the whole flight, also in a turn."""
+        t = np.arange(0.0, 60.0, 1.3)
+        found = self.read("id,time,x,y,z\n" + "".join(f"a,{s:.3f},{90 * np.cos(s / 9):.4f},{90 * np.sin(s / 9):.4f},{20 + s / 9:.4f}\n" for s in t) + "b,70,0,0,1\nb,80,0,0,1\n")
+        poses = []
+        for begin, end in ((0.0, 60.0), (20.0, 26.0)):
+            lines, ids = found.lines(begin, end)
+            self.assertEqual(ids, ["a"])
+            tracks = vtkAvianLidarTracks()
+            tracks.SetPatternToLines()
+            tracks.SetInputData(lines)
+            update(tracks)
+            fields = tracks.GetOutputDataObject(0).GetBlock(0).GetFieldData()
+            times, turned = (vtk_to_numpy(fields.GetArray(name)).copy() for name in ("pose_time", "pose_orientation"))
+            self.assertTrue(times[0] <= begin and times[-1] >= min(end, 59.8))
+            near = (times >= 20.0 - 1.3) & (times <= 26.0 + 1.3)
+            poses.append(turned[near])
+        self.assertLess(len(times), 15)
+        np.testing.assert_allclose(*poses, atol=1e-12)
+
+
+class Scenarios(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.home = emptied("radar-birds", "scenarios")
+
+    def scenario(self, rows, around=SCENE, head="track_id,timestamp,latitude,longitude,altitude", group=None, **changes):
+        """A scenario with a table of tracks."""
+        (self.home / "radar.csv").write_text("\n".join([head, *(",".join(map(str, row)) for row in rows), ""]), encoding="utf-8")
+        birds = [{"pattern": "File", "file_name": "radar.csv", **(group or {})}]
+        return TestSequence.scenario_file(self.home, around, **{**SCENARIO, "birds": birds, **changes})
+
+    @staticmethod
+    @contextlib.contextmanager
+    def said():
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            texts = []
+            yield texts
+            texts += [str(one.message) for one in heard]
+
+    def track(self, name, east, north, height=440.0, begin=0.0, seconds=12.0, swap=False):
+        """A bird that flies north at 10 m/s, as rows; the degrees follow from the radii of curvature."""
+        sine = np.sin(np.radians(ORIGIN[0]))
+        across = 6378137.0 / np.sqrt(1 - 0.00669437999 * sine ** 2)
+        along = across * (1 - 0.00669437999) / (1 - 0.00669437999 * sine ** 2)
+        for t in np.arange(begin, begin + seconds + 0.1, 2.0):
+            degrees = [round(float(x), 7) for x in (ORIGIN[0] + np.degrees((north + 10 * (t - begin)) / along),
+                                                    ORIGIN[1] + np.degrees(east / across) / np.cos(np.radians(ORIGIN[0])))]
+            yield (name, clock(36000 + t) + "Z", *(reversed(degrees) if swap else degrees), height)
+
+    def test_labelled_scans(self):
+        """The scene lends its origin. Truth and labels have birds where the table has them, and the table's ids."""
+        rows = sorted([*self.track("A7", 100, 150), *self.track("B2", -120, 160, begin=7.0, seconds=4.0)], key=lambda row: row[1])
+        out = self.home / "out"
+        with self.said() as heard:
+            sequence = al.Sequence(self.scenario(rows, group={"species": "Canada goose"}), threads=1)
+            sequence.write(out)
+        self.assertEqual(heard, [])
+        truth = [row for file in sorted(out.glob("sequences/*/truth.csv")) for row in rows_of(file)]
+        first, second = (rows_of(out / f"sequences/0{k}/truth.csv") for k in range(2))
+        self.assertEqual({row["track"] for row in first}, {"A7"})  # B2 is under way only in the second sequence
+        self.assertEqual({(row["track"], row["bird"]) for row in second}, {("A7", "10000"), ("B2", "10001")})
+        self.assertEqual({row["species"] for row in truth}, {"Canada goose"})
+        seen = [row for row in truth if row["status"] == "seen"]
+        self.assertGreater(len(seen), 5)
+        for row in (row for row in truth if row["x_m"]):
+            east, north, begin = (100, 150, 0) if row["track"] == "A7" else (-120, 160, 7)
+            wanted = (east, north + 10 * (float(row["time_s"]) - begin), 20)
+            np.testing.assert_allclose([float(row[f"{axis}_m"]) for axis in "xyz"], wanted, atol=0.1)
+        for row in seen:
+            scan = int(row["scan"])
+            file = out / f"sequences/{scan // 3:02d}/velodyne/{scan % 3:06d}.bin"
+            points = np.fromfile(file, "<f4").reshape(-1, 4)
+            labels = np.fromfile(file.parents[1] / "labels" / f"{file.stem}.label", "<u4")
+            of_bird = points[labels == (99 | (int(row["bird"]) + 1) << 16)]
+            self.assertLess(np.abs(np.linalg.norm(of_bird[:, :3], axis=1) - float(row["range_m"])).min(), 4.0)
+        manifest = json.loads((out / "manifest.json").read_text())
+        self.assertEqual(manifest["scenario"]["start_time"], "2021-05-04T10:00:00Z")
+        with self.said():
+            al.Sequence(out / "manifest.json", threads=1).write(out)  # the same inputs
+
+    def test_origin(self):
+        """One of the group wins over that of the scene. Without both there is an error."""
+        rows = [*self.track("A7", 100, 150)]
+        own = (ORIGIN[0] - 0.0009, ORIGIN[1], 430.0)  # 100 m further south, 10 m higher
+        place = al.Sequence(self.scenario(rows, group={"origin": own})).flights[0].points[0]
+        np.testing.assert_allclose(place, (100, 250.07, 10), atol=0.02)
+        around = {name: part for name, part in SCENE.items() if name != "origin"}
+        np.testing.assert_allclose(al.Sequence(self.scenario(rows, around, group={"origin": own})).flights[0].points[0], place)
+        with self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: .*radar.csv: has longitudes and latitudes, but the scene has no "
+                                    "origin on the Earth: expected the key origin"):
+            al.Sequence(self.scenario(rows, around))
+
+    def test_far_birds(self):
+        """One warning for each file, with distances; a guess if another reading brings birds near."""
+        gate = al.Sensor("Search905").range_gate
+        near, far = [*self.track("A", 100, 150)], [*self.track("B", 0, gate + 500), *self.track("C", 0, -gate - 3000)]
+        cases = (
+            ([*near, *far], {}, rf"radar.csv: 2 of 3 birds never come within the lidar's range gate of {gate:g} m: they pass the lidar at "
+             rf"{gate + 500:.0f} m to {gate + 2880:.0f} m$"),
+            (self.track("A", 100, 150, swap=True), {}, r"1 of 1 birds .*: it passes the lidar at 5,\d\d\d km; probably latitude and longitude are exchanged: "
+             "corrected, the nearest bird is 18[0-9] m away$"),
+            (((name, t, lat, -lon, h) for name, t, lat, lon, h in near), {}, "probably the longitude has the wrong sign"),
+            (((name, t, -lat, lon, h) for name, t, lat, lon, h in near), {}, "probably the latitude has the wrong sign"),
+            (near, {"origin": [31.2, 121.3, 3]}, r"it passes the lidar at 8,\d\d\d km; the origin is 31.2, 121.3 \(latitude, longitude\)$"))
+        for rows, group, words in cases:
+            with self.subTest(words), self.said() as heard:
+                al.Sequence(self.scenario(rows, group=group))
+            self.assertEqual(len(heard), 1, heard)
+            self.assertRegex(heard[0], words)
+        metres = ((name, t, 683000 + k, 5257000, 440) for k, (name, t, *_) in enumerate(near))
+        with self.said() as heard:
+            al.Sequence(self.scenario(metres, head="track_id,timestamp,x,y,z"))
+        self.assertRegex(" ".join(heard), "x and y are metres east and north of the scene's origin$")
+        with self.said() as heard:  # a pattern, too
+            birds = [{"pattern": "Circles", "number_of_birds": 3, "center": [20000, 0, 0], "radius": 100}]
+            al.Sequence(TestSequence.scenario_file(self.home, **{**SCENARIO, "birds": birds}))
+        self.assertRegex(" ".join(heard), r"small.scenario.json: birds\[0\]: 3 of 3 birds never come within")
+
+    def test_start(self):
+        rows = [*self.track("A", 100, 150), *self.track("B", -100, 150, begin=600.0)]
+        with self.said() as heard:
+            late = al.Sequence(self.scenario(rows, start_time="2021-05-04T12:10:00+02:00"))
+        self.assertEqual(heard, [])
+        self.assertEqual(late.flights[0].lines(0.0, 12.0)[1], ["B"])
+        with self.said() as heard:
+            al.Sequence(self.scenario(rows, start_time=DAY + 36100))
+        self.assertRegex(" ".join(heard), "radar.csv: no track is under way in the 12 s of the scans: from 2021-05-04T10:00:00Z to "
+                         "2021-05-04T10:10:12Z; first scan at 2021-05-04T10:01:40Z; choose start_time or number_of_scans$")
+        for changes in ({}, {"start_time": "2021-05-04T12:10:00+02:00"}):
+            with self.said() as heard:
+                self.assertEqual(al.Sequence(self.scenario(rows[:1], **changes)).flights[0].ids, [])
+            self.assertRegex(" ".join(heard), r"left out: tracks of one position \(1\) .*radar.csv: holds no track of two or more positions$")
+        for start, rows, words in (("yesterday", rows, "start_time: is 'yesterday', expected 2026"), ("2021-05-04", [("A", 0, 47.45, 8.55, 440), ("A", 9, 47.45, 8.55, 440)],
+                                                                                                    "start_time: is given, but no file of birds")):
+            with self.subTest(words), self.assertRaisesRegex(al.Error, words):
+                al.Sequence(self.scenario(rows, start_time=start))
+
+    def test_the_shipped_example(self):
+        out = self.home / "shipped"
+        code, words, warned = run("sequence", pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples/sequence/radar.scenario.json", "-o", out, "--scans", "3")
+        self.assertEqual(code or 0, 0, warned)
+        self.assertRegex(words, "radar.csv: 10 tracks with 412 positions: .*height is altitude_m.*heights are above the sea")
+        self.assertRegex(warned, r"left out: rows without a position \(1\)")
+        self.assertRegex(warned, "1 of [0-9]+ birds never come within the lidar's range gate of 4000 m")
+        self.assertGreater(sum(row["status"] == "seen" for row in rows_of(out / "sequences/00/truth.csv")), 8)
+
+    def test_wrong_keys(self):
+        rows = [*self.track("A", 100, 150)]
+        self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: file_name is missing", al.Sequence,
+                               self.scenario(rows, birds=[{"pattern": "File"}]))
+        for group, words in (({"height_reference": "msl"}, "height_reference"), ({"geoid_undulation": 470}, "geoid_undulation"),
+                             ({"columns": {"hight": "z"}}, "columns"), ({"origin": [1, 2]}, "origin"), ({"height_ref": "sea"}, "height_ref"),
+                             ({"pattern": "Circles", "height_reference": "sea"}, "height_reference")):
+            with self.subTest(words), self.assertRaisesRegex(al.Error, f"small.scenario.json: .*{words}"):
+                al.Sequence(self.scenario(rows, group=group))
