@@ -120,7 +120,8 @@ def play(paraview, events, arguments=()):
                                    ("FileSaveServerStateDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/state.pvsm")):
         ElementTree.SubElement(script, "pqevent", object=f"pqClientMainWindow/{widget}", command=command, arguments=value)
     with tempfile.TemporaryDirectory() as home, display(1280, 1024) as variables:
-        variables.pop("PV_MACRO_PATH", None)
+        for name in ("PV_MACRO_PATH", "PYTHONPATH"):
+            variables.pop(name, None)
         variables.update(HOME=home, QT_QPA_PLATFORM="xcb")
         file_name = os.path.join(home, "events.xml")
         ElementTree.ElementTree(script).write(file_name)
