@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arguments and exit codes of the command `avianlidar` (also `python3 -m avianlidar`). `_verbs` does the work."""
 import argparse
+import contextlib
 import math
 import os
 import pathlib
@@ -318,7 +319,8 @@ def main(argv: list[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: _terminal.warn(str(message))
-            getattr(_verbs, options.verb)(options)
+            with _terminal.alive(options.verb) if takes_over and not Ranks().rank else contextlib.nullcontext():
+                getattr(_verbs, options.verb)(options)
             sys.stdout.flush()
         code = 0
     except KeyboardInterrupt as stop:

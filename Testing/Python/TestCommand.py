@@ -14,7 +14,7 @@ import numpy as np
 
 import avianlidar as al
 import exampletools
-from avianlidar import _command, reach
+from avianlidar import _command, _terminal, reach
 from boxfiles import CORNERS, TRIANGLES, poly_data, stl
 from cloudtools import CLOUDS, READ_BACK
 import helpertools
@@ -201,6 +201,18 @@ class Surroundings(unittest.TestCase):
         text, code = from_terminal(self, work, stdout=subprocess.DEVNULL)
         self.assertEqual(code, 0)
         self.assertRegex(text, r"scan: *100%")
+
+    def test_a_log_says_that_long_work_is_alive(self):
+        """A line at each interval, without carriage returns: the share and the time left once they are known."""
+        program = "import sys; from avianlidar import _command, _terminal; _terminal.INTERVAL = 0.1; sys.exit(_command.main(sys.argv[1:]))"
+        for words, expected in ((("scan", SCENE, "--scan-set", "rays_per_beam=1000", "-o", OUTPUT / "log.vtp"), r"scan: \d+ %, about \d+ s left"),
+                                (("reach", "--sensor", "Search905"), r"reach: running for \d+ s")):
+            done = subprocess.run([sys.executable, "-c", program, *map(str, words)], capture_output=True, text=True, check=True)
+            lines = done.stderr.splitlines()
+            self.assertEqual([line for line in lines if not re.fullmatch(r"avianlidar: \w+: (\d+ %, about \d+ s left|running( for \d+ s)?)", line)], [])
+            self.assertTrue(any(re.fullmatch(f"avianlidar: {expected}", line) for line in lines), lines)
+            self.assertNotIn("\r", done.stderr)
+        self.assertEqual([_terminal.in_time(seconds) for seconds in (3.4, 99, 119, 5940, 7200)], ["3 s", "99 s", "2 min", "99 min", "2.0 h"])
 
     def test_streams_that_are_closed(self):
         """As of `| head`, and of daemons."""
