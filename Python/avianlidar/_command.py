@@ -48,8 +48,8 @@ VERBS = {
   avianlidar info echoes.las
 """),
     "compare": ("how far two clouds are apart",
-        "Computes distances between the nearest points of two clouds: the Hausdorff distance, the root mean square "
-        "(paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
+        "Computes distances between the nearest points of two clouds: the median and other percentiles, the Hausdorff "
+        "distance, the root mean square (paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
   avianlidar compare simulated.las measured.pcd
   avianlidar compare simulated.las measured.pcd -o distances.vtp
 """),

@@ -40,15 +40,17 @@ def _alarms(cloud) -> str:
                    ((-1, "false alarms of the noise"), (-2, "echoes of the air")) if number in ids)
 
 
+def _percent_of(what: str) -> Callable[[float, str], None]:
+    """A progress function for a bar."""
+    return lambda share, _: bar(what, round(100 * share), 100)
+
+
 def _scan_of(options) -> Scan:
     """The scan that the options describe."""
-    def percent_of(what: str):
-        return lambda share, _: bar(what, round(100 * share), 100)
-
     scene = Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
-                  progress=percent_of("scene"))
+                  progress=_percent_of("scene"))
     sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0))
-    scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=percent_of(options.verb))
+    scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=_percent_of(options.verb))
     preset = getattr(options, "preset", None)
     if preset:
         scan.preset = preset
@@ -180,8 +182,21 @@ def _compared(*clouds) -> Any:
     measure = _wrapped.vtkAvianLidarCloudComparison()
     for port, cloud in enumerate(clouds):
         measure.SetInputDataObject(port, cloud)
-    update(measure)
+    update(measure, _percent_of("compare"))
     return measure
+
+
+def _say_apart(files, clouds) -> None:
+    """Warns about clouds whose boxes overlap by less than a hundredth. Flat boxes may be a hundredth of the size
+    apart."""
+    boxes = np.array([cloud.data.GetBounds() for cloud in clouds]).reshape(2, 3, 2)
+    sizes = boxes[:, :, 1] - boxes[:, :, 0]
+    size, least = np.linalg.norm(sizes, axis=1).max(), sizes.min(axis=0)
+    gaps = boxes[:, :, 0].max(axis=0) - boxes[:, :, 1].min(axis=0)
+    if (gaps > np.where(least < 0.01 * size, 0.01 * size, -0.01 * least)).any():
+        where = ", but ".join(f"{file.name} extends {extent(box.ravel())}" for file, box in zip(files, boxes))
+        warn(f"the clouds do not overlap: {where}: if one is in coordinates of a map, such as UTM, or in the frame of "
+             "its sensor, move it into the frame of the other first")
 
 
 def compare(options) -> None:
@@ -196,8 +211,14 @@ def compare(options) -> None:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, but the other file is not")
     ways = "SimulatedToReference", "ReferenceToSimulated"
     measure = _compared(*(cloud.data for cloud in clouds))
+    _say_apart(files, clouds)
     a, b = (file.name for file in files)
+    shares = 25, 50, 75, 95, 99
+    limits = np.array([np.percentile(Cloud(measure.GetOutputDataObject(port))["nearest_distance"], shares)
+                       for port in range(2)])
     table([("distance of nearest points (m)", f"{a} to {b}", f"{b} to {a}"),
+            *(("median" if share == 50 else f"{share} % are within", *map("{:.6g}".format, pair))
+              for share, pair in zip(shares, limits.T)),
             *((words, *(f"{getattr(measure, f'Get{name}{way}')():.6g}" for way in ways)) for words, name in (
                 ("root mean square", "RMSE"), ("largest", "Hausdorff"),
                 ("density-aware Chamfer distance (1)", "DensityAwareChamfer"))),

@@ -11,6 +11,7 @@ import unittest
 import unittest.mock
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 import avianlidar as al
 import exampletools
@@ -93,6 +94,12 @@ class Verbs(unittest.TestCase):
         self.assertEqual(errors, [])
         self.assertRegex(text, r"density-aware Chamfer distance: \S+ \(alpha = 1 1/m\)")
         self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
+        points = [al.load_cloud(self.files[name]).points for name in ("las", "pcd")]
+        for column, (one, other) in enumerate((points, points[::-1])):
+            nearest = cKDTree(other).query(one)[0]
+            for share, words in ((25, "25 % are within"), (50, "median"), (75, "75 % are within"), (95, "95 % are within"), (99, "99 % are within")):
+                found = re.search(rf"(?m)^{words} +(\S+) +(\S+)$", text).groups()
+                self.assertAlmostEqual(float(found[column]), np.percentile(nearest, share), delta=2e-6)
         # One false alarm more, 5 km above, is the whole distance; without it nothing is left.
         head, *rows = self.files["csv"].read_text(encoding="utf-8").splitlines()
         names, row = [name.partition(" ")[0] for name in head.split(",")], rows[-1].split(",")
@@ -103,6 +110,17 @@ class Verbs(unittest.TestCase):
         self.assertRegex(text, r"(?s)alarm.csv has .*Without these echoes the Hausdorff distance is 0 m")
         _, _, errors = compared(self.files["bin"], self.files["las"])
         self.assertRegex("".join(errors), r"warning: a \.bin file is in the frame of its sensor")
+
+    def test_clouds_that_do_not_overlap(self):
+        """Such as one in UTM; flat clouds that are a little apart do overlap."""
+        rng, files = np.random.default_rng(1), [OUTPUT / "local.csv", OUTPUT / "other.csv"]
+        flat = rng.uniform(0, 100, (200, 3)) * (1, 1, 0)
+        for move, apart in (((346600, 3451000, 0), True), ((100.5, 0, 0), True), ((99.5, 0, 0), True), ((90, 0, 0), False), ((0, 0, 0.5), False), ((0, 0, 30), True)):
+            for file, points in zip(files, (flat, flat + move)):
+                file.write_text("x,y,z\n" + "".join("%.3f,%.3f,%.3f\n" % tuple(point) for point in points), encoding="utf-8")
+            errors = run("compare", *files)[2]
+            self.assertEqual(["do not overlap: local.csv extends east" in error for error in errors], [True] * apart, move)
+            self.assertEqual(["but other.csv extends east 34660" in error for error in errors], [move[1] > 0] * apart)
 
     def test_csv_is_read_back(self):
         """All that a table has: numbers to 15 digits, units but that of pure numbers, colours, whole numbers as such."""
