@@ -188,7 +188,8 @@ def parser() -> Parser:
         add("--up-axis", choices=("y", "z"), help="axis of a mesh that points up; default: that of the file's format")
         if name == "scan":
             _out(verb[name], f"file: {WRITTEN}; .png gives a picture of the range image; {MANY}", action="append")
-            add("--quiet", action="store_true", help="omits the lines on what was modelled and what was left out")
+            add("--quiet", action="store_true",
+                help="omits the lines on the lidar's place and on the range at which its energy is used up")
             add("--preset", choices=tuple(PRESETS), help=(
                 "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams, at the "
                 "airport without and then with masts and fences: "

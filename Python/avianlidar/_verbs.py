@@ -10,7 +10,7 @@ import numpy as np
 from . import Cloud, Scan, Scene, Sensor, _display, _scene, _sheet, load_cloud, save
 from . import vtkAvianLidar as _wrapped
 from ._advice import check_suffix as check_advice
-from ._advice import notes_of, table_rows
+from ._advice import notes_of, table_rows, to_act_on
 from ._cloud import vertices
 from ._disk import replacing
 from ._pipeline import update
@@ -19,6 +19,7 @@ from ._suffixes import OF_SENSOR, PACKETS, POINTS
 from ._terminal import bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
+from .apps._air import check_received
 from .apps._inputs import read_plan, read_scenario
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
 
@@ -55,7 +56,19 @@ def _scan_of(options) -> Scan:
     if preset:
         scan.preset = preset
         scene.tree.SetPreset(preset == "Paper")
-    return scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
+    scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
+    check_received(scan, options.sensor, "--sensor Search905")
+    return scan
+
+
+def _say_place(options, scan: Scan) -> None:
+    """Prints where the lidar stands, and what placed it there."""
+    place, known = scan.sensor.position, scan.scene.lidar_position
+    why = "as --sensor-set says"
+    if place == tuple(options.position or known or (0, 0, 0)):
+        why = ("as --position says" if options.position else "as the scene file says" if known else
+               "the default; --position X Y Z moves it")
+    tell("the lidar stands at ({:.10g}, {:.10g}, {:.10g}) m, ".format(*place) + why)
 
 
 def scan(options) -> None:
@@ -64,6 +77,8 @@ def scan(options) -> None:
     for out in options.out:
         if out.suffix.lower() == ".geojson" and not scan.scene.geodetic_origin:
             raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
+    if not options.quiet:
+        _say_place(options, scan)
     echoes = scan.echoes.annotated()
     for out in options.out:
         if out.suffix.lower() == ".png":
@@ -74,12 +89,14 @@ def scan(options) -> None:
         text = f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}"
         tell(text + (f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""))
     if not options.quiet:
-        tell(*notes_of(echoes.fields))
+        tell(*to_act_on(echoes.fields))
 
 
 def advise(options) -> None:
     _check_outs(options, check_advice)
-    advice = _scan_of(options).advise(options.energy, options.range, options.missed, options.beams)
+    scan = _scan_of(options)
+    _say_place(options, scan)
+    advice = scan.advise(options.energy, options.range, options.missed, options.beams)
     table(table_rows(advice))
     tell(advice)
     for out in options.out:
@@ -142,8 +159,7 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
         rows.append((name, cloud.units[name] or "-", f"{finite.min():.6g}", f"{finite.max():.6g}"))
     table(rows)
     if not quiet:
-        for line in notes_of(fields):
-            print(line)
+        table(notes_of(fields))
 
 
 def info(options) -> None:

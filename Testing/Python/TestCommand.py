@@ -48,8 +48,9 @@ class Verbs(unittest.TestCase):
     def test_scan_writes_every_format(self):
         code, lines, errors = self.ran
         self.assertEqual((code, errors), (0, []))
-        self.assertTrue(lines[0].startswith(f"{self.files['las']}: {self.echoes.number_of_points} echoes of 3072 beams"), lines)
-        self.assertTrue(lines[CLOUDS.index(".bin")].endswith(", labels in echoes.label"), lines)
+        self.assertEqual((lines[0], len(lines)), ("the lidar stands at (0, 0, 3) m, as the scene file says", 1 + len(self.files)))
+        self.assertTrue(lines[1].startswith(f"{self.files['las']}: {self.echoes.number_of_points} echoes of 3072 beams"), lines)
+        self.assertTrue(lines[1 + CLOUDS.index(".bin")].endswith(", labels in echoes.label"), lines)
         written = al.load_cloud(self.files["vtp"])
         for name, values in self.echoes.items():
             self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
@@ -74,6 +75,34 @@ class Verbs(unittest.TestCase):
                 self.assertEqual(set(echoes["material_id"]), {2})
                 self.assertAlmostEqual(echoes["distance_m"].min(), 110, delta=0.1)
                 self.assertEqual(run("convert", out, OUTPUT / "mesh.las")[0], 0)  # without an origin
+
+    def test_where_the_lidar_stands(self):
+        """The place and its source before the work, and a warning inside a solid."""
+        hangar, out = OUTPUT / "hangar.stl", OUTPUT / "stands.vtp"
+        hangar.write_text(stl(np.array(CORNERS) * 20 - (30, 60, 3), TRIANGLES), encoding="utf-8")
+        for words, expected, inside in (((), "(0, 0, 0) m, the default; --position X Y Z moves it", True),
+                                        (("--position", 9, -90, 2), "(9, -90, 2) m, as --position says", False),
+                                        (("--sensor-set", "position=9,-90,1"), "(9, -90, 1) m, as --sensor-set says", False)):
+            code, lines, errors = run("scan", hangar, *words, *FEW, "-o", out)
+            self.assertEqual((code, lines[0]), (0, f"the lidar stands at {expected}"))
+            self.assertEqual(["is inside the closed surface of 'hangar'" in error for error in errors], [True] * inside)
+        self.assertEqual(len(run("scan", hangar, *FEW, "-o", out, "--quiet")[1]), 1)
+        self.assertEqual(run("advise", hangar, "--position", 9, -90, 2, *FEW, "--beams", 100)[1][0], "the lidar stands at (9, -90, 2) m, as --position says")
+
+    def test_notes_are_those_that_a_user_can_act_on(self):
+        """A scan says which energy ends the view; `info` has all notes of the field data."""
+        out = OUTPUT / "weak.vtp"
+        for weather, far in (("fog:300", True), ("haze:50000", False)):
+            lines = run("scan", SCENE, "--sensor", "Search905", *FEW, "--weather", weather, "-o", out)[1]
+            fields = al.load_cloud(out).fields
+            self.assertEqual(fields["perceivable_range"] < fields["range_gate"], far)
+            self.assertEqual(lines[2:], [f"nothing beyond {fields['perceivable_range']:.0f} m is perceived, although the range gate ends at 4000 m: more pulse "
+                                         "energy, a lower energy limit or clearer air would let the sensor see farther"] * far)
+        text, notes = "\n".join(run("info", out)[1]), [name for name in fields if name.startswith("note_")]
+        self.assertGreater(len(notes), 5)
+        for name in notes:
+            self.assertRegex(text, rf"(?m)^{name[5:].replace('_', ' ')} +{re.escape(fields[name][0])}$")
+        self.assertNotIn("detail between rays", "".join(run("info", out, "--quiet")[1]))
 
     def test_info(self):
         for file, words in ((self.files["las"], r"a cloud of \d+ points"), (self.files["vtp"], "distance_m +m +[0-9.]+ +[0-9.]+"),
@@ -182,6 +211,7 @@ class Verbs(unittest.TestCase):
                  (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
                  ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
                  ((*scan, "--scan-set", "attenuation_coefficient=nan"), "not a finite number"),
+                 ((*scan, "--weather", "fog:500"), "Airport16 has no receiver_aperture .* choose for example --sensor Search905"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
                  (("info", OUTPUT / "cut.vtp"), "cut.vtp: vtkXMLDataParser: Error parsing XML"),
                  (("info", "none.vtp"), "no such file: none.vtp"), (("info", OUTPUT), "is not a regular file"),
