@@ -30,6 +30,13 @@ foreach (file IN LISTS avianlidar_python_files)
     DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar/${folder}"
     COMPONENT python)
 endforeach ()
+# The shipped scene, which example_scene() finds.
+file(GLOB scene CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Examples/airport/scene/*")
+foreach (file IN LISTS scene)
+  get_filename_component(name "${file}" NAME)
+  configure_file("${file}" "${avianlidar_python_package}/scene/${name}" COPYONLY)
+endforeach ()
+install(FILES ${scene} DESTINATION "${AVIANLIDAR_PYTHON_DESTINATION}/avianlidar/scene" COMPONENT python)
 set(avianlidar_python_generated "${avianlidar_python_package}/_version.py")
 
 # Type stubs of the wrapped module, by VTK's own generator, which imports the module. ParaView's VTK has the generator, but

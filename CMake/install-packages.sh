@@ -44,13 +44,12 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo -v # asks for the password once; a refusal ends the script
   as_root=sudo
 fi
-# On a terminal, apt shows its progress. In a log, each step has one line, and a step that fails has apt's messages.
+# On a terminal, apt shows its progress. In a log, each step has one line, and one line every half minute. A step that
+# fails has apt's messages.
+style=-q
+[ ! -t 1 ] || style="-o Dpkg::Progress-Fancy=1"
 apt() {
-  if [ -t 1 ]; then
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -o Dpkg::Progress-Fancy=1 "$@"
-  else
-    said=$($as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -q "$@" 2>&1) || { echo "$said"; return 1; }
-  fi
+  "$(dirname "$list")/with-progress.sh" $as_root env DEBIAN_FRONTEND=noninteractive apt-get $style "$@"
 }
 install() { apt -y --no-install-recommends "$@" install $missing; }
 uris() { apt-get -q -q --no-install-recommends --print-uris install $missing; }

@@ -14,10 +14,10 @@ echo "Step 2 of 4: configuring"
 # Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
 echo "Step 3 of 4: building, about ten minutes on two cores"
-cmake --build --preset paraview
+CMake/with-progress.sh cmake --build --preset paraview
 echo "Step 4 of 4: making this project's packages, and installing them"
 rm -f build/paraview/packages/*.deb # packages of other versions
-cpack --config build/paraview/CPackConfig.cmake
+CMake/with-progress.sh cpack --config build/paraview/CPackConfig.cmake
 
 as_root=
 [ "$(id -u)" -eq 0 ] || as_root=sudo

@@ -28,7 +28,7 @@ namespace
 {
 
 constexpr char NoAperture[] = "air scatters (AirBackscatter, RainRate), expected beams of a "
-                              "sensor with a receiver_aperture above 0";
+                              "sensor with a receiver_aperture above 0, for example Search905";
 
 /// Settings that decide the bits of the results. @param air attenuation coefficient, 1/m, not used
 /// if `visibility` is above 0

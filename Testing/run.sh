@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/.."
 CMake/install-packages.sh
 cmake --preset paraview -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}"
-cmake --build --preset paraview
+CMake/with-progress.sh cmake --build --preset paraview
 tests="$PWD/build/all/tests.xml"
 mkdir -p build/all
 failed=0

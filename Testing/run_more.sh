@@ -19,7 +19,7 @@ configure() {
   preset=$1
   shift
   cmake --preset "$preset" -DAVIANLIDAR_DATA_DIR="${AVIANLIDAR_DATA_DIR:-}" "$@"
-  cmake --build --preset "$preset"
+  CMake/with-progress.sh cmake --build --preset "$preset"
 }
 failed=0
 configure paraview -DAVIANLIDAR_BUILD_BENCHMARKS=$benchmarks

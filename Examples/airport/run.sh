@@ -9,7 +9,7 @@ CMake/install-packages.sh plugin python
 
 # Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
-cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
+CMake/with-progress.sh cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
 
 export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
 /usr/bin/python3 Examples/airport/airport.py --out build/airport "$@"

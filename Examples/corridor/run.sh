@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 CMake/install-packages.sh plugin python drawing
 cmake --preset paraview -DBUILD_TESTING=OFF
-cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
+CMake/with-progress.sh cmake --build --preset paraview --target vtkAvianLidarPython AvianLidarPlugin
 
 export PYTHONPATH="$(cat build/paraview/python-path)${PYTHONPATH:+:$PYTHONPATH}"
 xvfb-run -a /usr/bin/python3 Examples/corridor/corridor.py --out build/corridor "$@"

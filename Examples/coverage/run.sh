@@ -10,7 +10,7 @@ CMake/install-packages.sh plugin python
 
 # Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
-cmake --build --preset paraview --target vtkAvianLidarPython
+CMake/with-progress.sh cmake --build --preset paraview --target vtkAvianLidarPython
 
 plan=Examples/coverage/hongqiao.coverage.json
 build/paraview/bin/avianlidar coverage "$plan" -o build/coverage "$@"

@@ -11,6 +11,7 @@ import argparse
 import base64
 import os
 import pathlib
+import tempfile
 
 import nbformat
 from jupyter_client import AsyncKernelManager
@@ -22,16 +23,18 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def execute(file):
-    """The notebook with its results, run by this Python in the notebook's folder."""
+    """The notebook with its results, run by this Python in an empty folder, like a copy."""
     notebook = nbformat.read(file, as_version=4)
     nbformat.validate(notebook)
     # Without kernel folders, the kernel is the kernel of this Python.
     kernel = AsyncKernelManager(kernel_name="python3", kernel_spec_manager=KernelSpecManager(kernel_dirs=[]))
-    client = NotebookClient(notebook, km=kernel, timeout=300, resources={"metadata": {"path": str(HERE)}})
+    client = NotebookClient(notebook, km=kernel, timeout=300)
     client.owns_km = True  # so that the client ends the kernel
     os.environ.update(MPLBACKEND="module://matplotlib_inline.backend_inline",
                       PYDEVD_DISABLE_FILE_VALIDATION="1")  # without this variable the kernel's debugger prints warnings
-    client.execute()
+    with tempfile.TemporaryDirectory() as folder:
+        client.resources = {"metadata": {"path": folder}}
+        client.execute()
     return notebook
 
 

@@ -9,7 +9,7 @@ CMake/install-packages.sh plugin
 
 # Without the tests, which need more packages. `cmake --preset paraview` turns the tests on again.
 cmake --preset paraview -DBUILD_TESTING=OFF
-cmake --build --preset paraview
+CMake/with-progress.sh cmake --build --preset paraview
 
 folder=$(ls -dt build/paraview/lib/paraview-*/plugins/AvianLidarPlugin | head -n 1)
 echo "The plugin: $PWD/$folder/AvianLidarPlugin.so"

@@ -3,7 +3,7 @@
 
     import avianlidar as al
 
-    scene = al.load_scene("Examples/airport/scene/hongqiao.lidarscene.json")
+    scene = al.load_scene(al.example_scene())
     sensor = al.Sensor("Airport16", position=(0, 0, 3))        # metres east, north, up
     scan = al.Scan(scene, sensor, rays_per_beam=200)
     print(scan["distance_m"].mean(), scan.echoes.units)        # NumPy arrays, not copied
@@ -24,7 +24,7 @@ from ._files import load_cloud, save
 from ._pipeline import Error
 from ._plot import hue_colors, plot_map, plot_range_image
 from ._scan import Scan
-from ._scene import Scene, load_scene, materials, mesh, mover
+from ._scene import Scene, example_scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
 from ._version import __version__
 from .apps._design_page import Designs
@@ -33,5 +33,5 @@ from .apps._sequence import Sequence
 from .apps._tracks import BirdTracks
 
 __all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence",
-           "hue_colors", "load_cloud", "load_scene", "materials", "mesh", "mover", "places_of", "plot_map",
-           "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]
+           "example_scene", "hue_colors", "load_cloud", "load_scene", "materials", "mesh", "mover", "places_of",
+           "plot_map", "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]

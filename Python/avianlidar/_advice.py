@@ -5,7 +5,7 @@ import io
 import json
 import os
 import pathlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -144,21 +144,14 @@ def table_rows(advice: Advice) -> list[tuple[Any, ...]]:
     return rows
 
 
-def notes_of(fields: Mapping[str, Any]) -> list[str]:
-    """Sentences on what was modelled of a scan and what was left out, from the field data of the echoes, if known."""
-    def note(name: str) -> str:
-        return " ".join(fields.get("note_" + name, ()))
+def to_act_on(fields: Mapping[str, Any]) -> Iterator[str]:
+    """Sentences on limits of a scan that a user can remove, from the field data of the echoes."""
+    farthest, gate = (float(fields.get(name, np.inf)) for name in ("perceivable_range", "range_gate"))
+    if farthest < gate:
+        yield (f"nothing beyond {farthest:.0f} m is perceived, although the range gate ends at {gate:g} m: "
+               "more pulse energy, a lower energy limit or clearer air would let the sensor see farther")
 
-    if not note("two_reflections") or "rays_per_beam" not in fields:
-        return []
-    samples = ("Cells", "Rays")[int(fields.get("beam_samples", 0))]
-    back = ", which sends light back" if fields.get("air_backscatter") else ""
-    rain = f", rain of {float(fields['rain_rate']):g} mm/h" if fields.get("rain_rate") else ""
-    air = f"air of {float(fields.get('attenuation_coefficient', 0)):.3g} 1/m{back}{rain}"
-    connections = f"{int(fields.get('number_of_connections', 0))} connections"
-    return [f"modelled  {int(fields['rays_per_beam'])} rays per beam ({samples}); {air}",
-            f"          paths with two reflections: {note('two_reflections')}; {connections}",
-            f"          noise: {note('noise')}",
-            f"left out  {note('all_left_out')}; {note('further_reflections').replace('not modelled: ', '')}",
-            f"perceived {note('perceivable_range')}",
-            f"detail    {note('detail_between_rays')}"]
+
+def notes_of(fields: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Name and text of each note on what was modelled of a scan and what was left out, from the field data."""
+    return [(name[5:].replace("_", " "), " ".join(text)) for name, text in fields.items() if name.startswith("note_")]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arguments and exit codes of the command `avianlidar` (also `python3 -m avianlidar`). `_verbs` does the work."""
 import argparse
+import contextlib
 import math
 import os
 import pathlib
@@ -47,8 +48,8 @@ VERBS = {
   avianlidar info echoes.las
 """),
     "compare": ("how far two clouds are apart",
-        "Computes distances between the nearest points of two clouds: the Hausdorff distance, the root mean square "
-        "(paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
+        "Computes distances between the nearest points of two clouds: the median and other percentiles, the Hausdorff "
+        "distance, the root mean square (paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
   avianlidar compare simulated.las measured.pcd
   avianlidar compare simulated.las measured.pcd -o distances.vtp
 """),
@@ -187,7 +188,8 @@ def parser() -> Parser:
         add("--up-axis", choices=("y", "z"), help="axis of a mesh that points up; default: that of the file's format")
         if name == "scan":
             _out(verb[name], f"file: {WRITTEN}; .png gives a picture of the range image; {MANY}", action="append")
-            add("--quiet", action="store_true", help="omits the lines on what was modelled and what was left out")
+            add("--quiet", action="store_true",
+                help="omits the lines on the lidar's place and on the range at which its energy is used up")
             add("--preset", choices=tuple(PRESETS), help=(
                 "fidelity by name, with the error of energy and the seconds of one core for 15,360 beams, at the "
                 "airport without and then with masts and fences: "
@@ -318,7 +320,8 @@ def main(argv: list[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: _terminal.warn(str(message))
-            getattr(_verbs, options.verb)(options)
+            with _terminal.alive(options.verb) if takes_over and not Ranks().rank else contextlib.nullcontext():
+                getattr(_verbs, options.verb)(options)
             sys.stdout.flush()
         code = 0
     except KeyboardInterrupt as stop:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from ._advice import to_act_on
 from ._cloud import triangles_of
 from ._sight import extent
 
@@ -130,7 +131,7 @@ def scan_rows(scan) -> dict[str, Any]:
     rows = {"beams": scan.report.number_of_points, "echoes": echoes.number_of_points, "arrays": ", ".join(echoes)}
     if echoes.number_of_points:
         rows["distances"] = "{:.5g} to {:.5g} m".format(echoes["distance_m"].min(), echoes["distance_m"].max())
-    return rows
+    return {**rows, **{"limit": text for text in to_act_on(echoes.fields)}}
 
 
 def coverage_rows(cover) -> dict[str, Any]:

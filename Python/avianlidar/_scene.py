@@ -400,3 +400,12 @@ def load_scene(file, progress: Progress | None = None) -> Scene:
     """The scene in a .lidarscene.json file: meshes, footprints, materials, and the place on the Earth. `progress` is
     called with the completed share (0 to 1) and the name of the running class."""
     return Scene(os.fspath(file), progress=progress)
+
+
+def example_scene() -> str:
+    """The name of the shipped scene file, the airport Shanghai Hongqiao, in the folder of this package.
+
+    >>> load_scene(example_scene()).lidar_position
+    (0.0, 0.0, 3.0)
+    """
+    return os.path.join(os.path.dirname(os.path.abspath(__file__)), "scene", "hongqiao.lidarscene.json")

@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Output of the command: lines, tables, and a progress bar on a terminal."""
+"""Output of the command: lines, tables, a progress bar on a terminal, and lines on long work in a log."""
+import contextlib
+import signal
 import sys
-from collections.abc import Iterable
+import time
+from collections.abc import Iterable, Iterator
 from typing import Any
 
+INTERVAL = 30.0  # seconds between lines on long work
 _shown: list[Any] = []  # the progress bar on the terminal
+_work: dict[str, Any] = {}  # the work that runs: its name, start (s), share at the start and completed share
 
 
 def bar(what: str, done: float, total: float) -> None:
-    """Shows a progress bar on a terminal for each named work; writes nothing to a log."""
+    """Shows the progress of a named work: a bar on a terminal; in a log, lines of `alive`."""
+    share = done / total if total else 1.0
+    if _work.get("what") != what or share < _work["share"]:
+        _work.update(what=what, start=time.monotonic(), first=share)
+    _work["share"] = share
     if not _shown or _shown[0].desc != what:
         close_bar()
         if not sys.stderr.isatty():
@@ -27,10 +36,43 @@ def close_bar(leave: bool = True) -> None:
         last.close()
 
 
+def in_time(seconds: float) -> str:
+    """A time in words."""
+    minutes = round(seconds / 60.0)
+    return f"{round(seconds)} s" if seconds < 99.5 else f"{minutes} min" if minutes < 100 else f"{minutes / 60.0:.1f} h"
+
+
+def _say_alive() -> None:
+    """Prints one line on the work that runs, unless a bar shows this work."""
+    if _shown:
+        return
+    spent, share, first = time.monotonic() - _work["start"], _work["share"], _work["first"]
+    text = f"running for {in_time(spent)}" if spent >= 1.0 else "running"
+    if first < share < 1.0:
+        text = f"{100.0 * share:.0f} %, about {in_time(spent * (1.0 - share) / (share - first))} left"
+    print(f"avianlidar: {_work['what']}: {text}", file=sys.stderr, flush=True)
+
+
+@contextlib.contextmanager
+def alive(verb: str) -> Iterator[None]:
+    """Prints a line on long work every INTERVAL. A timer's signal interrupts the work in Python, also where VTK reports
+    progress."""
+    _work.update(what=verb, start=time.monotonic(), first=0.0, share=0.0)
+    before = signal.signal(signal.SIGALRM, lambda *_: _say_alive())
+    signal.siginterrupt(signal.SIGALRM, False)
+    signal.setitimer(signal.ITIMER_REAL, INTERVAL, INTERVAL)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def tell(*lines: Any) -> None:
     """Prints lines to the output, below the progress bar."""
     close_bar()
-    print(*lines, sep="\n")
+    if lines:
+        print(*lines, sep="\n")
 
 
 def say(text: str) -> None:

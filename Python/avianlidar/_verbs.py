@@ -10,7 +10,7 @@ import numpy as np
 from . import Cloud, Scan, Scene, Sensor, _display, _scene, _sheet, load_cloud, save
 from . import vtkAvianLidar as _wrapped
 from ._advice import check_suffix as check_advice
-from ._advice import notes_of, table_rows
+from ._advice import notes_of, table_rows, to_act_on
 from ._cloud import vertices
 from ._disk import replacing
 from ._pipeline import update
@@ -19,6 +19,7 @@ from ._suffixes import OF_SENSOR, PACKETS, POINTS
 from ._terminal import bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
+from .apps._air import check_received
 from .apps._inputs import read_plan, read_scenario
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
 
@@ -40,20 +41,34 @@ def _alarms(cloud) -> str:
                    ((-1, "false alarms of the noise"), (-2, "echoes of the air")) if number in ids)
 
 
+def _percent_of(what: str) -> Callable[[float, str], None]:
+    """A progress function for a bar."""
+    return lambda share, _: bar(what, round(100 * share), 100)
+
+
 def _scan_of(options) -> Scan:
     """The scan that the options describe."""
-    def percent_of(what: str):
-        return lambda share, _: bar(what, round(100 * share), 100)
-
     scene = Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
-                  progress=percent_of("scene"))
+                  progress=_percent_of("scene"))
     sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0))
-    scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=percent_of(options.verb))
+    scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=_percent_of(options.verb))
     preset = getattr(options, "preset", None)
     if preset:
         scan.preset = preset
         scene.tree.SetPreset(preset == "Paper")
-    return scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
+    scan.set(**{"number_of_threads": options.threads, **weather(options.weather), **dict(options.scan_set)})
+    check_received(scan, options.sensor, "--sensor Search905")
+    return scan
+
+
+def _say_place(options, scan: Scan) -> None:
+    """Prints where the lidar stands, and what placed it there."""
+    place, known = scan.sensor.position, scan.scene.lidar_position
+    why = "as --sensor-set says"
+    if place == tuple(options.position or known or (0, 0, 0)):
+        why = ("as --position says" if options.position else "as the scene file says" if known else
+               "the default; --position X Y Z moves it")
+    tell("the lidar stands at ({:.10g}, {:.10g}, {:.10g}) m, ".format(*place) + why)
 
 
 def scan(options) -> None:
@@ -62,6 +77,8 @@ def scan(options) -> None:
     for out in options.out:
         if out.suffix.lower() == ".geojson" and not scan.scene.geodetic_origin:
             raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
+    if not options.quiet:
+        _say_place(options, scan)
     echoes = scan.echoes.annotated()
     for out in options.out:
         if out.suffix.lower() == ".png":
@@ -72,12 +89,14 @@ def scan(options) -> None:
         text = f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}"
         tell(text + (f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""))
     if not options.quiet:
-        tell(*notes_of(echoes.fields))
+        tell(*to_act_on(echoes.fields))
 
 
 def advise(options) -> None:
     _check_outs(options, check_advice)
-    advice = _scan_of(options).advise(options.energy, options.range, options.missed, options.beams)
+    scan = _scan_of(options)
+    _say_place(options, scan)
+    advice = scan.advise(options.energy, options.range, options.missed, options.beams)
     table(table_rows(advice))
     tell(advice)
     for out in options.out:
@@ -140,8 +159,7 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
         rows.append((name, cloud.units[name] or "-", f"{finite.min():.6g}", f"{finite.max():.6g}"))
     table(rows)
     if not quiet:
-        for line in notes_of(fields):
-            print(line)
+        table(notes_of(fields))
 
 
 def info(options) -> None:
@@ -180,8 +198,21 @@ def _compared(*clouds) -> Any:
     measure = _wrapped.vtkAvianLidarCloudComparison()
     for port, cloud in enumerate(clouds):
         measure.SetInputDataObject(port, cloud)
-    update(measure)
+    update(measure, _percent_of("compare"))
     return measure
+
+
+def _say_apart(files, clouds) -> None:
+    """Warns about clouds whose boxes overlap by less than a hundredth. Flat boxes may be a hundredth of the size
+    apart."""
+    boxes = np.array([cloud.data.GetBounds() for cloud in clouds]).reshape(2, 3, 2)
+    sizes = boxes[:, :, 1] - boxes[:, :, 0]
+    size, least = np.linalg.norm(sizes, axis=1).max(), sizes.min(axis=0)
+    gaps = boxes[:, :, 0].max(axis=0) - boxes[:, :, 1].min(axis=0)
+    if (gaps > np.where(least < 0.01 * size, 0.01 * size, -0.01 * least)).any():
+        where = ", but ".join(f"{file.name} extends {extent(box.ravel())}" for file, box in zip(files, boxes))
+        warn(f"the clouds do not overlap: {where}: if one is in coordinates of a map, such as UTM, or in the frame of "
+             "its sensor, move it into the frame of the other first")
 
 
 def compare(options) -> None:
@@ -196,8 +227,14 @@ def compare(options) -> None:
         warn(f"a {of_sensor[0]} file is in the frame of its sensor, but the other file is not")
     ways = "SimulatedToReference", "ReferenceToSimulated"
     measure = _compared(*(cloud.data for cloud in clouds))
+    _say_apart(files, clouds)
     a, b = (file.name for file in files)
+    shares = 25, 50, 75, 95, 99
+    limits = np.array([np.percentile(Cloud(measure.GetOutputDataObject(port))["nearest_distance"], shares)
+                       for port in range(2)])
     table([("distance of nearest points (m)", f"{a} to {b}", f"{b} to {a}"),
+            *(("median" if share == 50 else f"{share} % are within", *map("{:.6g}".format, pair))
+              for share, pair in zip(shares, limits.T)),
             *((words, *(f"{getattr(measure, f'Get{name}{way}')():.6g}" for way in ways)) for words, name in (
                 ("root mean square", "RMSE"), ("largest", "Hausdorff"),
                 ("density-aware Chamfer distance (1)", "DensityAwareChamfer"))),

@@ -15,7 +15,7 @@ system=$cache/$kind
 make_system() {
   timeout 15m Testing/Packages/bare_system.sh trixie "$system.new" &&
     mkdir "$system.new/packages" &&
-    cp CMake/install-packages.sh CMake/debian-packages.txt "$system.new/packages" &&
+    cp CMake/install-packages.sh CMake/with-progress.sh CMake/debian-packages.txt "$system.new/packages" &&
     timeout 20m unshare --mount --pid --fork --kill-child chroot "$system.new" \
       sh -c 'mount -t proc proc /proc && packages/install-packages.sh && apt-get clean' &&
     rm -rf --one-file-system "$system.new/packages" &&

@@ -6,11 +6,11 @@ set -eu
 
 cd "$(dirname "$0")/../.."
 begin=$(date +%s)
-# step NAME COMMAND...: prints how long it took or, if it failed, the end of what it printed.
+# step NAME COMMAND...: prints how long it took or, if it failed, what it printed.
 step() {
   name=$1
   shift
-  "$@" > /tmp/step.log 2>&1 || { tail -200 /tmp/step.log; echo "ERROR: $name"; exit 1; }
+  CMake/with-progress.sh "$@" || { echo "ERROR: $name"; exit 1; }
   echo "$name: $(($(date +%s) - begin)) s after the begin"
 }
 

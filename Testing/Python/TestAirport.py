@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`avianlidar airport`: extracts and terrains that the tests write, areas and heights against closed forms, an ellipsoid's curve,
 edits that stay, extracts that are wrong; extracts of real airports, where the data folder is there."""
+import itertools
 import json
 import os
 import pathlib
@@ -54,6 +55,21 @@ def made(name, file, *words):
     code, said = run("airport", file, *words, "-o", folder)
     assert code == 0, said
     return folder, said
+
+
+# What an eye without the cones of long, and of middle wavelengths sees of light in linear sRGB: Machado, Oliveira and Fernandes, IEEE
+# TVCG 15(6), 2009, severity 1.
+EYES = {"all": np.eye(3), "without long": np.array([(0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)]),
+        "without middle": np.array([(0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)])}
+
+
+def lab(colour, eye):
+    """CIELAB of a colour #rrggbb of sRGB, in the light D65 (CIE 15:2004; IEC 61966-2-1)."""
+    levels = np.array([int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)])
+    light = np.clip(EYES[eye] @ np.where(levels <= 0.04045, levels / 12.92, ((levels + 0.055) / 1.055) ** 2.4), 0, 1)
+    xyz = [(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)] @ light / (0.9505, 1.0, 1.0890)
+    x, y, z = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
 
 
 class Map:
@@ -240,6 +256,16 @@ class Extracts(unittest.TestCase):
         for line, _ in lines:
             asked = vars(parser().parse_args(line.split()))
             self.assertTrue(any((folder / str(value)).is_file() for value in asked.values()) or "track " in line, line)
+
+    def test_colours_of_the_picture_are_told_apart(self):
+        """Those of any two classes, by the distance of CIE 1976; also with two kinds of cones."""
+        classes = {kind["class"] for kind in KNOWN["kinds"].values()}
+        self.assertEqual(classes - set(airport_pages.PARTS), set())
+        for eye, least in (("all", 14), ("without long", 7), ("without middle", 7)):
+            seen = {word: lab(colour, eye) for word, (colour, _) in airport_pages.PARTS.items()}
+            for one, other in itertools.combinations(seen, 2):
+                self.assertGreater(np.linalg.norm(seen[one] - seen[other]), least, (eye, one, other))
+        np.testing.assert_allclose(lab("#ff0000", "all"), (53.24, 80.09, 67.20), atol=0.05)
 
     def test_tags_as_they_are_found(self):
         """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken ways."""

@@ -11,10 +11,11 @@ import unittest
 import unittest.mock
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 import avianlidar as al
 import exampletools
-from avianlidar import _command, reach
+from avianlidar import _command, _terminal, reach
 from boxfiles import CORNERS, TRIANGLES, poly_data, stl
 from cloudtools import CLOUDS, READ_BACK
 import helpertools
@@ -47,8 +48,9 @@ class Verbs(unittest.TestCase):
     def test_scan_writes_every_format(self):
         code, lines, errors = self.ran
         self.assertEqual((code, errors), (0, []))
-        self.assertTrue(lines[0].startswith(f"{self.files['las']}: {self.echoes.number_of_points} echoes of 3072 beams"), lines)
-        self.assertTrue(lines[CLOUDS.index(".bin")].endswith(", labels in echoes.label"), lines)
+        self.assertEqual((lines[0], len(lines)), ("the lidar stands at (0, 0, 3) m, as the scene file says", 1 + len(self.files)))
+        self.assertTrue(lines[1].startswith(f"{self.files['las']}: {self.echoes.number_of_points} echoes of 3072 beams"), lines)
+        self.assertTrue(lines[1 + CLOUDS.index(".bin")].endswith(", labels in echoes.label"), lines)
         written = al.load_cloud(self.files["vtp"])
         for name, values in self.echoes.items():
             self.assertTrue(np.array_equal(written[name], values, equal_nan=values.dtype.kind == "f"), name)
@@ -74,6 +76,34 @@ class Verbs(unittest.TestCase):
                 self.assertAlmostEqual(echoes["distance_m"].min(), 110, delta=0.1)
                 self.assertEqual(run("convert", out, OUTPUT / "mesh.las")[0], 0)  # without an origin
 
+    def test_where_the_lidar_stands(self):
+        """The place and its source before the work, and a warning inside a solid."""
+        hangar, out = OUTPUT / "hangar.stl", OUTPUT / "stands.vtp"
+        hangar.write_text(stl(np.array(CORNERS) * 20 - (30, 60, 3), TRIANGLES), encoding="utf-8")
+        for words, expected, inside in (((), "(0, 0, 0) m, the default; --position X Y Z moves it", True),
+                                        (("--position", 9, -90, 2), "(9, -90, 2) m, as --position says", False),
+                                        (("--sensor-set", "position=9,-90,1"), "(9, -90, 1) m, as --sensor-set says", False)):
+            code, lines, errors = run("scan", hangar, *words, *FEW, "-o", out)
+            self.assertEqual((code, lines[0]), (0, f"the lidar stands at {expected}"))
+            self.assertEqual(["is inside the closed surface of 'hangar'" in error for error in errors], [True] * inside)
+        self.assertEqual(len(run("scan", hangar, *FEW, "-o", out, "--quiet")[1]), 1)
+        self.assertEqual(run("advise", hangar, "--position", 9, -90, 2, *FEW, "--beams", 100)[1][0], "the lidar stands at (9, -90, 2) m, as --position says")
+
+    def test_notes_are_those_that_a_user_can_act_on(self):
+        """A scan says which energy ends the view; `info` has all notes of the field data."""
+        out = OUTPUT / "weak.vtp"
+        for weather, far in (("fog:300", True), ("haze:50000", False)):
+            lines = run("scan", SCENE, "--sensor", "Search905", *FEW, "--weather", weather, "-o", out)[1]
+            fields = al.load_cloud(out).fields
+            self.assertEqual(fields["perceivable_range"] < fields["range_gate"], far)
+            self.assertEqual(lines[2:], [f"nothing beyond {fields['perceivable_range']:.0f} m is perceived, although the range gate ends at 4000 m: more pulse "
+                                         "energy, a lower energy limit or clearer air would let the sensor see farther"] * far)
+        text, notes = "\n".join(run("info", out)[1]), [name for name in fields if name.startswith("note_")]
+        self.assertGreater(len(notes), 5)
+        for name in notes:
+            self.assertRegex(text, rf"(?m)^{name[5:].replace('_', ' ')} +{re.escape(fields[name][0])}$")
+        self.assertNotIn("detail between rays", "".join(run("info", out, "--quiet")[1]))
+
     def test_info(self):
         for file, words in ((self.files["las"], r"a cloud of \d+ points"), (self.files["vtp"], "distance_m +m +[0-9.]+ +[0-9.]+"),
                             (SCENE, "triangles  5510"), (SOURCE / "Examples/coverage/hongqiao.coverage.json", "a plan of coverage"),
@@ -93,6 +123,12 @@ class Verbs(unittest.TestCase):
         self.assertEqual(errors, [])
         self.assertRegex(text, r"density-aware Chamfer distance: \S+ \(alpha = 1 1/m\)")
         self.assertAlmostEqual(al.load_cloud(OUTPUT / "distances.vtp")["nearest_distance"].max(), distance, delta=1e-9)
+        points = [al.load_cloud(self.files[name]).points for name in ("las", "pcd")]
+        for column, (one, other) in enumerate((points, points[::-1])):
+            nearest = cKDTree(other).query(one)[0]
+            for share, words in ((25, "25 % are within"), (50, "median"), (75, "75 % are within"), (95, "95 % are within"), (99, "99 % are within")):
+                found = re.search(rf"(?m)^{words} +(\S+) +(\S+)$", text).groups()
+                self.assertAlmostEqual(float(found[column]), np.percentile(nearest, share), delta=2e-6)
         # One false alarm more, 5 km above, is the whole distance; without it nothing is left.
         head, *rows = self.files["csv"].read_text(encoding="utf-8").splitlines()
         names, row = [name.partition(" ")[0] for name in head.split(",")], rows[-1].split(",")
@@ -103,6 +139,17 @@ class Verbs(unittest.TestCase):
         self.assertRegex(text, r"(?s)alarm.csv has .*Without these echoes the Hausdorff distance is 0 m")
         _, _, errors = compared(self.files["bin"], self.files["las"])
         self.assertRegex("".join(errors), r"warning: a \.bin file is in the frame of its sensor")
+
+    def test_clouds_that_do_not_overlap(self):
+        """Such as one in UTM; flat clouds that are a little apart do overlap."""
+        rng, files = np.random.default_rng(1), [OUTPUT / "local.csv", OUTPUT / "other.csv"]
+        flat = rng.uniform(0, 100, (200, 3)) * (1, 1, 0)
+        for move, apart in (((346600, 3451000, 0), True), ((100.5, 0, 0), True), ((99.5, 0, 0), True), ((90, 0, 0), False), ((0, 0, 0.5), False), ((0, 0, 30), True)):
+            for file, points in zip(files, (flat, flat + move)):
+                file.write_text("x,y,z\n" + "".join("%.3f,%.3f,%.3f\n" % tuple(point) for point in points), encoding="utf-8")
+            errors = run("compare", *files)[2]
+            self.assertEqual(["do not overlap: local.csv extends east" in error for error in errors], [True] * apart, move)
+            self.assertEqual(["but other.csv extends east 34660" in error for error in errors], [move[1] > 0] * apart)
 
     def test_csv_is_read_back(self):
         """All that a table has: numbers to 15 digits, units but that of pure numbers, colours, whole numbers as such."""
@@ -164,6 +211,7 @@ class Verbs(unittest.TestCase):
                  (("scan", SCENE, "-o", "none/x.las"), "there is no folder none"), ((*scan, "-o", "./x.las"), "is named twice"),
                  ((*scan, "--scan-set", "rays_per_beam=1e30"), "rays_per_beam|int"),
                  ((*scan, "--scan-set", "attenuation_coefficient=nan"), "not a finite number"),
+                 ((*scan, "--weather", "fog:500"), "Airport16 has no receiver_aperture .* choose for example --sensor Search905"),
                  (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
                  (("info", OUTPUT / "cut.vtp"), "cut.vtp: vtkXMLDataParser: Error parsing XML"),
                  (("info", "none.vtp"), "no such file: none.vtp"), (("info", OUTPUT), "is not a regular file"),
@@ -201,6 +249,18 @@ class Surroundings(unittest.TestCase):
         text, code = from_terminal(self, work, stdout=subprocess.DEVNULL)
         self.assertEqual(code, 0)
         self.assertRegex(text, r"scan: *100%")
+
+    def test_a_log_says_that_long_work_is_alive(self):
+        """A line at each interval, without carriage returns: the share and the time left once they are known."""
+        program = "import sys; from avianlidar import _command, _terminal; _terminal.INTERVAL = 0.1; sys.exit(_command.main(sys.argv[1:]))"
+        for words, expected in ((("scan", SCENE, "--scan-set", "rays_per_beam=1000", "-o", OUTPUT / "log.vtp"), r"scan: \d+ %, about \d+ s left"),
+                                (("reach", "--sensor", "Search905"), r"reach: running for \d+ s")):
+            done = subprocess.run([sys.executable, "-c", program, *map(str, words)], capture_output=True, text=True, check=True)
+            lines = done.stderr.splitlines()
+            self.assertEqual([line for line in lines if not re.fullmatch(r"avianlidar: \w+: (\d+ %, about \d+ s left|running( for \d+ s)?)", line)], [])
+            self.assertTrue(any(re.fullmatch(f"avianlidar: {expected}", line) for line in lines), lines)
+            self.assertNotIn("\r", done.stderr)
+        self.assertEqual([_terminal.in_time(seconds) for seconds in (3.4, 99, 119, 5940, 7200)], ["3 s", "99 s", "2 min", "99 min", "2.0 h"])
 
     def test_streams_that_are_closed(self):
         """As of `| head`, and of daemons."""

@@ -106,7 +106,7 @@ class Messages(unittest.TestCase):
     def test_warnings_are_warnings(self):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            al.Scan(al.Scene(vtkCubeSource()), al.Sensor(azimuth_step=10)).update()
+            al.Scan(al.Scene(vtkCubeSource()), al.Sensor(azimuth_step=10, position=(0, -9, 0))).update()
         self.assertEqual(len(caught), 1, [str(w.message) for w in caught])
         self.assertRegex(str(caught[0].message), "^vtkAvianLidarCollisionTree: .*taken as Wall")
         self.assertEqual(caught[0].category, RuntimeWarning)

@@ -194,6 +194,9 @@ class Shown(unittest.TestCase):
     def test_what_fails_is_shown_all_the_same(self):
         self.assertIn("<Scene: cells 0", repr(al.Scene()))
         self.assertIn("<table>", al.Scene()._repr_html_())
+        foggy = al.Scan(al.Scene(WALL), al.Sensor("Search905", azimuth_step=5), visibility=300).update()
+        self.assertIn("limit nothing beyond", repr(foggy))
+        self.assertNotIn("limit", repr(foggy.set(visibility=50000).update()))
         bad = al.Sensor(range_gate=-1)
         self.assertRegex(repr(bad), "<Sensor: .*RangeGate")
         self.assertRegex(bad._repr_html_(), "<b>Sensor</b> .*RangeGate")
@@ -245,6 +248,33 @@ class NothingToSee(unittest.TestCase):
                 self.assertRegex(" ".join(self.words(scene, **sensor)), words)
         self.assertNotIn("none below", " ".join(self.words(hill, position=(0, 0, 30))))
         self.assertNotIn("up axis y", " ".join(self.words(al.Scene(tall, faces))))
+
+    def test_a_place_inside_a_closed_surface(self):
+        """Also where triangles are single, twice there or turned, of one of two solids in an object, below a roof on walls without a
+        floor, in a room of thick walls and in such a wall, and on a diagonal; not beside a solid, in an open box or below a loose roof."""
+        low, high = np.array([-4.0, -3, 0]), np.array([4.0, 3, 5])
+        points, faces = box(low, high)
+        soup = points[faces.ravel()], np.arange(36).reshape(-1, 3)
+        others = np.concatenate([points, points + (20, 0, 0)]), np.concatenate([faces, faces + 8])
+        room = np.concatenate([points, box(low + 1, high - 1)[0]]), others[1]
+        normals = np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]])
+        down, up = ((normals[:, 2] != 0) & (points[faces][:, :, 2].max(axis=1) == z) for z in (0, 5))
+        twice = np.concatenate([faces, faces[:, ::-1]])
+        for name, (corners, triangles), place, expected in (
+                ("box", (points, faces), (0, 0, 2), True), ("beside", (points, faces), (9, 0, 2), False), ("above", (points, faces), (0, 0, 9), False),
+                ("below", (points, faces), (0, 0, -2), False), ("turned", (points, np.where(np.arange(12)[:, None] % 2, faces, faces[:, ::-1])), (0, 0, 2), True),
+                ("single", soup, (1, 1, 2), True), ("twice", (points, twice), (1, 1, 2), True), ("second", others, (20, 0, 2), True), ("between", others, (10, 0, 2), False),
+                ("no floor", (points, faces[~down]), (0, 0, 2), True), ("no roof", (points, faces[~up]), (0, 0, 2), False),
+                ("roof", (points, faces[up]), (0, 0, 2), False), ("room", room, (0, 0, 2), True), ("in a wall", room, (3.5, 0, 2), True),
+                ("diagonal", (points, faces), (1.6, 1.2, 2), True)):
+            with self.subTest(name):
+                ground = al.mesh([(-90, -90, -0.5), (90, -90, -0.5), (90, 90, -0.5), (-90, 90, -0.5)], [(0, 1, 2), (0, 2, 3)])
+                scene = al.Scene(ground, material="Grass", name="ground")
+                scene.add((corners, triangles), material="Wall", name=name)
+                words = [text for text in self.words(scene, position=place) if "closed surface" in text]
+                self.assertEqual([f"is inside the closed surface of '{name}'" in text for text in words], [True] * expected)
+        with self.assertWarnsRegex(RuntimeWarning, "inside the closed surface of 'object'"):
+            al.Coverage(al.Scene(al.mesh(points, faces), material="Wall", name="object"), al.Sensor("Search905", position=(0, 0, 2)), places=[(0, 9, 2)]).update()
 
     def test_scenes_that_are_as_meant(self):
         """Each has echoes, or nothing wrong but that."""

@@ -18,12 +18,12 @@ PROGRAM = """
 import pathlib, sys
 import avianlidar as al
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter
-prefix, scene = pathlib.Path(sys.argv[1]), sys.argv[2]
+prefix = pathlib.Path(sys.argv[1])
 assert pathlib.Path(al.__file__).is_relative_to(prefix), al.__file__
 assert pathlib.Path(al.vtkAvianLidar.__file__).is_relative_to(prefix)
 libraries = {line.split()[-1] for line in open("/proc/self/maps") if "libvtkAvianLidar" in line}
 assert libraries and all(pathlib.Path(name).is_relative_to(prefix) for name in libraries), libraries
-scan = al.Scan(al.load_scene(scene), preset="Draft")
+scan = al.Scan(al.load_scene(al.example_scene()), preset="Draft")
 assert isinstance(scan.algorithm, vtkAvianLidarEchoFilter)
 scan.save("echoes.vtp")
 print(scan.echoes.number_of_points, al.load_cloud("echoes.vtp").number_of_points)
@@ -58,10 +58,9 @@ class Installed(unittest.TestCase):
                        "PYTHONPATH": os.pathsep.join([str(self.package.parent), *vtk])}
         program = PREFIX / "program.py"
         program.write_text(PROGRAM, encoding="utf-8")
-        scene = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
         for interpreter in [sys.executable] if vtk else [sys.executable, "pvpython", "pvbatch"]:
             with self.subTest(interpreter):
-                result = subprocess.run([interpreter, program, PREFIX, scene], cwd=PREFIX, env=environment,
+                result = subprocess.run([interpreter, program, PREFIX], cwd=PREFIX, env=environment,
                                         capture_output=True, text=True)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 written, read = map(int, result.stdout.split())

@@ -21,7 +21,7 @@ def run(page, text, names=()):
     assert blocks, page
     names = {**dict(names), "__name__": page}
     for block in blocks:
-        exec(compile(block.replace('"Examples/', f'"{source}/Examples/'), page, "exec"), names)
+        exec(compile(block, page, "exec"), names)
     return names
 
 

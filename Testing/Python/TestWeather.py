@@ -121,7 +121,7 @@ class Labels(unittest.TestCase):
 
 class Words(unittest.TestCase):
     def test_what_is_wrong_is_named(self):
-        with self.assertRaisesRegex(al.Error, "receiver_aperture above 0"):
+        with self.assertRaisesRegex(al.Error, "receiver_aperture above 0, for example Search905"):
             al.Scan(NOTHING, al.Sensor("Airport16"), rain_rate=1).echoes
 
     def test_weather_on_the_command_line(self):

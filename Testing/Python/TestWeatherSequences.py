@@ -97,6 +97,9 @@ class Sequences(unittest.TestCase):
         self.assertIn('scenario.weather ["fog:400"], now ["fog:500"]', error_of("sequence", self.file, "-o", self.home / "fog", "--weather", "fog:500"))
         wrong = self.scenario("wrong", weather=["fog:500"], scan={"Visibility": 3000})
         self.assertIn("weather: is given beside visibility 3000", error_of("sequence", wrong, "-o", self.home / "wrong"))
+        deaf = self.scenario("deaf", weather=["rain:3"], sensor={"preset": "Airport16"})
+        self.assertRegex(error_of("sequence", deaf, "-o", self.home / "deaf"),
+                         'weather: the air sends light back, and the sensor has no receiver_aperture .*: choose for example the preset "Search905"')
         over = self.scenario("over", weather=["rain:3"], scan={"visibility": 9000})
         self.assertEqual(main(["sequence", str(over), "-o", str(self.home / "over"), "--weather", "fog:400"]), 0)
         np.testing.assert_array_equal(labels_of(self.home / "over"), labels_of(self.home / "fog"))

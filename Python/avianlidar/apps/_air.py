@@ -51,6 +51,19 @@ def gathers_light(sensor: Sensor) -> bool:
     return float(sensor.beams.fields.get("receiver_aperture", 0.0)) > 0.0
 
 
+def scatters(scan: Any) -> bool:
+    """Whether the air of a scan sends light back."""
+    return scan.rain_rate > 0.0 or (scan.air_backscatter and scan.visibility > 0.0)
+
+
+def check_received(scan: Any, name: str, other: str) -> None:
+    """ValueError if the air of a scan sends light back that the sensor cannot receive. @param name name of the sensor
+    @param other how the user chooses another sensor"""
+    if scatters(scan) and not gathers_light(scan.sensor):
+        raise ValueError(f"weather: the air sends light back, and {name} has no receiver_aperture for this light: "
+                         f"choose for example {other}")
+
+
 def as_received(sensor: Sensor, air: Dict[str, Any]) -> Dict[str, Any]:
     """Air for a sensor. A sensor without an aperture receives no light from the air, so only the extinction is kept.
     @param air properties of coverage"""

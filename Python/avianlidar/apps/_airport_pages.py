@@ -17,12 +17,13 @@ from ._extract import CUT, UNKNOWN
 from ._features import Feature
 from ._regions import ends_of
 
-PARTS = {"grass": ("#cfe3b8", 1), "water": ("#7fb2d6", 2), "parking": ("#a5a5a5", 2), "road": ("#8c8c8c", 3),
-         "apron": ("#b0aca4", 4), "taxiway": ("#666666", 5), "runway": ("#333333", 6), "vegetation": ("#4c8c4a", 7),
-         "tree": ("#4c8c4a", 8), "terminal": ("#c0392b", 8), "hangar": ("#8e44ad", 8), "tower": ("#e67e22", 8),
-         "mast": ("#e67e22", 8), "pole": ("#e67e22", 8), "fence": ("#000000", 8),
-         "structure": ("#8e6d4f", 8)}  # classes in the picture: colour, and drawing order from below
-BUILDING = ("#a0522d", 8)
+# Classes in the picture: colour, and drawing order from below. Each pair of colours is at least 14 apart in CIELAB, and
+# at least 7 for eyes without the cones of long or of middle wavelengths.
+PARTS = {"grass": ("#c7ffb3", 1), "water": ("#8abfce", 2), "parking": ("#9b9b9b", 2), "road": ("#727272", 3),
+         "apron": ("#c8c4bc", 4), "taxiway": ("#4c4c4c", 5), "runway": ("#282828", 6), "vegetation": ("#27a77b", 7),
+         "tree": ("#004c23", 8), "terminal": ("#c2140e", 8), "hangar": ("#8e44ad", 8), "tower": ("#fd7f0b", 8),
+         "mast": ("#f5d000", 8), "pole": ("#ff2dce", 8), "fence": ("#000000", 8), "structure": ("#8e6d4f", 8),
+         "building": ("#a0522d", 8), "house": ("#db9763", 8)}
 
 
 def draw(axes, found: AirportScene, place: Place) -> None:
@@ -38,10 +39,10 @@ def draw(axes, found: AirportScene, place: Place) -> None:
                                     cmap=LinearSegmentedColormap.from_list("ground", ("#c3d3b4", "#f6f1df")))
             axes.figure.colorbar(shades, ax=axes, shrink=0.5, label="ground, m above the origin")
             continue
-        colour, order = PARTS.get(word, BUILDING)
+        colour, order = PARTS.get(word, PARTS["building"])
         shown[word] = colour
         axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour,
-                                           linewidths=0.2, zorder=order))
+                                           linewidths=0.2 if order < 8 else 1.0, zorder=order))
     axes.plot(*place.position[:2], "r^", markersize=8, zorder=20)
     for runway in found.sides:
         axes.annotate(runway.name, runway.start, color="white", fontsize=8, ha="center", zorder=21,

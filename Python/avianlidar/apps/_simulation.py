@@ -22,6 +22,7 @@ from .._scan import Scan
 from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
 from .._weather import in_weather
+from ._air import check_received, scatters
 from ._flights import FAR, SETTINGS, Flights, least_distance, read_flights
 from ._json import naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of
@@ -106,13 +107,14 @@ class Simulation:
             update(self.sensor.algorithm)
         with naming(f"{self.file}: scan"):
             self.scan = Scan(self.scene, self.sensor, **settings)
+        with naming(self.file):
+            check_received(self.scan, "the sensor", 'the preset "Search905"')
         self.scan.set(report_movers=True)
         media = field_values(self.scene.tree.GetOutput()).get("media", ())
         crowns = [text for text in media if "leaf_area_density" in json.loads(text)]
         self.clear = self.bare = self.scan  # scans without air that scatters, and without crowns of trees
         others = dict(settings)
-        scatters = self.scan.rain_rate > 0.0 or (self.scan.air_backscatter and self.scan.visibility > 0.0)
-        if scatters or len(crowns) < len(media):
+        if scatters(self.scan) or len(crowns) < len(media):
             others.update(visibility=0.0, air_backscatter=False, rain_rate=0.0)
             self.clear = self.bare = self._in_media(crowns, others)
         if crowns:

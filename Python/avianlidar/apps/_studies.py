@@ -197,18 +197,20 @@ def reach(options) -> None:
     rows: List[Tuple[Any, ...]] = [
         ("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
     said, curve = [], []
-    for name in options.sensor:
+    pairs = list(itertools.product(options.sensor, options.species or ["herring gull"]))
+    for number, (name, species) in enumerate(pairs):
+        bar("reach", number, len(pairs))
         sensor = Sensor(name).set(**dict(options.sensor_set))
-        for species in options.species or ["herring gull"]:
-            found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather),
-                                        required_detections=2, number_of_scans=3)
-            rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found),
-                         ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
-            said.append(ranges.sentence(name, species, sensor, found))
-            columns = {"range": found.ranges, "one_scan": found.one_scan, "one_scan_std_error": found.error,
-                       "two_of_three": found.several_scans}
-            curve += [{"sensor": name, "species": species, **dict(zip(columns, map(float, row)))}
-                      for row in zip(*columns.values())]
+        found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather),
+                                    required_detections=2, number_of_scans=3)
+        rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found),
+                     ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
+        said.append(ranges.sentence(name, species, sensor, found))
+        columns = {"range": found.ranges, "one_scan": found.one_scan, "one_scan_std_error": found.error,
+                   "two_of_three": found.several_scans}
+        curve += [{"sensor": name, "species": species, **dict(zip(columns, map(float, row)))}
+                  for row in zip(*columns.values())]
+    bar("reach", len(pairs), len(pairs))
     table(rows)
     print(*said, sep="\n")
     print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "
