@@ -138,6 +138,15 @@ class Sensor(PropertyOwner):
         return json.loads(self.algorithm.GetDescription())
 
     @property
+    def on_sale(self) -> bool:
+        """Whether somebody sells the lidar of the preset's file: the file names a maker other than "assumed".
+
+        >>> Sensor("OS2_128").on_sale, Sensor("Search905").on_sale, Sensor("Airport16").on_sale
+        (True, False, False)
+        """
+        return self.description.get("maker", "assumed") != "assumed"
+
+    @property
     def beams(self) -> Cloud:
         """The beams, one point each at the sensor (m): `direction` (unit vectors), `azimuth` (0.01 deg from north,
         clockwise), `vertical_angle` (deg), `timestamp` (us), `beam_id`, `laser_id`."""

@@ -294,6 +294,13 @@ class Surroundings(unittest.TestCase):
         table = np.genfromtxt(OUTPUT / "reach.csv", delimiter=",", skip_header=1)
         np.testing.assert_allclose(table[:, 2:4], np.column_stack([found.ranges, found.one_scan]), rtol=1e-5)
 
+    def test_reach_says_first_what_nobody_sells(self):
+        with unittest.mock.patch.object(reach, "RANGES", 6):
+            code, lines, _ = run("reach", "--sensor", "Search905", "--species", "herring gull")
+        self.assertEqual(code, 0)
+        self.assertEqual(lines[0], "Search905 is an idea: nobody sells this lidar.")
+        self.assertRegex(lines[1], r"^In clear air, one scan of a lidar on sale detects half of the herring gulls in its beams to at most 6[0-9] m \(OS2_128\)\.$")
+
     def test_examples_are_understood(self):
         """Every example of the help and of the page is one that the parser takes, and every verb has one."""
         page = (SOURCE / "Documentation" / "reference" / "commands.md").read_text(encoding="utf-8")

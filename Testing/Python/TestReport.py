@@ -12,8 +12,12 @@ import numpy as np
 import avianlidar as al
 import exampletools  # noqa: F401  (finds the examples)
 from avianlidar import siting
+from avianlidar.apps._answer import share_of
+from avianlidar.apps._crossing import crossing
+from avianlidar.apps._inputs import read_plan
+from avianlidar.apps._plan import Plan
 from browser import Browser
-from reporttools import HERE, PLAN, STEP, TARGET, plan, report, rows_of, same_numbers
+from reporttools import HERE, ON_SALE, PLAN, STEP, TARGET, plan, report, rows_of, same_numbers
 
 
 class Page(unittest.TestCase):
@@ -64,7 +68,44 @@ class Page(unittest.TestCase):
         captions = self.browser.run("return [...document.querySelectorAll('figcaption, caption')].map(c => c.textContent)")
         self.assertEqual(len(captions), self.browser.run("return document.querySelectorAll('table').length + document.images.length"))
         for words in captions:
-            self.assertRegex(words, "Search905.*; question: .* in strips, 50 to 100 m high")
+            self.assertRegex(words, "Search905")
+            self.assertNotIn("question", words)  # which the page says once
+        self.assertEqual(self.text.count("The question: target in strips, 50 to 100 m high."), 1)
+
+    def test_the_first_page_says_what_nobody_sells_and_what_makers_sell(self):
+        """In the first paragraph and in a table, whose numbers are those of coverage at the best site."""
+        first = self.browser.run("return document.querySelector('#answer p').textContent")
+        self.assertTrue(first.startswith("Search905 is an idea: nobody sells this lidar. At the same place, the best of 2 lidars on sale ("), first)
+        shown = self.browser.run("return [...document.querySelectorAll('#offers tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        self.assertEqual([row[1] for row in shown], ["nobody", "Velodyne", "Velodyne"])
+        self.assertEqual([row[2] for row in shown], ["2\u00a0s", "0.1\u00a0s", "0.1\u00a0s"])
+        self.assertEqual({row[0] for row in shown[1:]}, set(ON_SALE))
+        asked = Plan(read_plan(HERE / "report.coverage.json"))
+        for name, _, _, share, *_ in shown:
+            there = asked.at(self.position(), "there", 1 << 40)
+            if name != "Search905":
+                there = there.with_lidar(name)
+                row, = rows_of("report_files/on-sale.csv", receiver=name)
+                self.assertAlmostEqual(float(row["detection_probability"]), there.overall["detection_probability"], delta=1e-6)
+            self.assertEqual(share, self.browser.run("return document.querySelector('#answer b').textContent") if name == "Search905" else share_of(there.overall))
+        steps = self.browser.run("return document.querySelector('#next').textContent")
+        self.assertIn("Do not plan to buy Search905.", steps)
+        self.assertNotIn("Ask the maker", steps)
+
+    def test_the_first_page_says_what_the_share_means(self):
+        said = self.browser.run("return document.querySelector('#answer').textContent")
+        self.assertIn("one scan, which takes 2\u00a0s, as a mean over the whole length of each strip, near and far.", said)
+        twice = crossing(Plan(read_plan(HERE / "report.coverage.json")).at(self.position(), "there", 1 << 40))
+        self.assertRegex(said, "at 15\u00a0m/s \\(on average for 20\u00a0s, or (9.[0-9]|10) scans\\), [^,]* of them are detected at least twice")
+        shown = self.browser.run("return document.querySelector('#offers tbody tr').cells[4].textContent")
+        share = 0.01 * float(re.match("[0-9.]+", shown.removeprefix("under "))[0])
+        self.assertAlmostEqual(share, twice.share, delta=4.0 * twice.error + 0.006)
+        for words in ("take-off climb surfaces", "inner horizontal surfaces", "conical surfaces", "ILS"):
+            self.assertIn(words, self.browser.run("return document.querySelector('#next').textContent"))
+
+    def position(self):
+        """The best site."""
+        return [float(text) for text in self.browser.run("return [...document.querySelectorAll('#best tbody tr')[0].cells].map(c => c.textContent)")[1:4]]
 
     def test_is_read_on_a_phone(self):
         shown = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}

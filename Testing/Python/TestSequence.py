@@ -297,6 +297,7 @@ class BadScenarios(unittest.TestCase):
         bird = {"pattern": "Crossings", "number_of_birds": 3}
         for words, changes in {
                 "number_of_scans: 0": {"number_of_scans": 0},
+                "'number_of_scan' is not known; did you mean 'number_of_scans'?": {"number_of_scan": 3},
                 "birds[0].pattern: 'Swarm'": {"birds": [{"pattern": "Swarm"}]},
                 "Species is 'dodo'": {"birds": [{**bird, "species": "dodo"}]},
                 "'radios' is not known": {"birds": [{**bird, "radios": 3}]},

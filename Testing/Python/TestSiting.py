@@ -414,7 +414,14 @@ class Plans(unittest.TestCase):
         (self.folder / "nowhere.lidarscene.json").write_text('{"version": 1, "objects": [{"ground": {"size": 100}, "material": "wall"}]}')
         for member, change in (
                 ("siting.spacing: ", {"siting": {"spacing": 0.001}}), ("extent: ", {"extent": [1, 0, 0, 1]}),
-                ("preset", {"sensor": {}}), ("heigts", {"heigts": [3]}), ("Species", {"coverage": {"species": "dodo"}}),
+                ("preset", {"sensor": {}}), ("'heigts' is not known; did you mean 'heights'?", {"heigts": [3]}),
+                ("siting: 'mast' is not known; did you mean 'masts'?", {"siting": {**lattice, "mast": [5]}}),
+                ("my.coverage.json: 'sensors' is not known; did you mean 'sensor'?", {"sensor": None, "sensors": {"preset": "Search905"}}),
+                ("spread: 'distanse' is not known; did you mean 'distance'?", {"spread": "distanse"}),
+                ("regions: 'strip' is not known; did you mean 'strips'?", {"regions": {"strip": 1}}),
+                ("siting.surfaces: 'categroy' is not known; did you mean 'category'?", {"siting": {**lattice, "surfaces": {"categroy": "precision"}}}),
+                ("sensor: Sensor: property 'range_gat' is not known; did you mean 'range_gate'?", {"sensor": {"preset": "Search905", "range_gat": 9}}),
+                ("Species", {"coverage": {"species": "dodo"}}),
                 ("heights: ", {"heights": [15, 15.0]}), ("heights[0]: ", {"heights": [1e30]}),
                 ("heights: -50 m is below the sensor and all surfaces", {"heights": [20, -50]}),
                 ("mix: ", {"mix": {"crow": 1.0, "dodo": 1.0}}),

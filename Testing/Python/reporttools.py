@@ -10,7 +10,7 @@ import unittest.mock
 import exampletools
 from avianlidar._command import main
 from avianlidar import reach
-from avianlidar.apps import _pictures, _report
+from avianlidar.apps import _crossing, _pictures, _report
 import helpertools
 
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9Q"
@@ -19,16 +19,20 @@ PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQV
 
 @contextlib.contextmanager
 def quick(pictures=False):
-    """Reports have one visibility, one rain and few ranges, and a pixel for each picture unless `pictures` is set."""
+    """Reports have one visibility, one rain, few ranges, two lidars on sale and few crossing birds, and a pixel for each
+    picture unless `pictures` is set."""
     with contextlib.ExitStack() as changed:
         changed.enter_context(unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,), RAINS=(0.0,)))
         changed.enter_context(unittest.mock.patch.object(reach, "RANGES", 12))
+        changed.enter_context(unittest.mock.patch.object(_report, "on_sale", lambda: ON_SALE))
+        changed.enter_context(unittest.mock.patch.object(_crossing, "POSITIONS", 4000))
         if not pictures:
             pixel = unittest.mock.patch.object(_pictures, "draw", lambda file, *_: pathlib.Path(file).write_bytes(PIXEL))
             changed.enter_context(pixel)
         yield
 
 
+ON_SALE = ("VLP16", "HDL32E")
 PLAN = pathlib.Path(exampletools.EXAMPLES) / "coverage" / "hongqiao.coverage.json"
 HERE = pathlib.Path(exampletools.OUTPUT) / pathlib.Path(sys.argv[-1]).stem  # of the test
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False, "all_species": False}  # m2: quicker than birds

@@ -15,7 +15,8 @@ from ._airport_plans import AirportScene, Place
 from ._candidates import ground_of
 from ._extract import CUT, UNKNOWN
 from ._features import Feature
-from ._regions import ends_of
+from ._placing import Label, place_labels
+from ._regions import end_names, ends_of
 
 # Classes in the picture: colour, and drawing order from below. Each pair of colours is at least 14 apart in CIELAB, and
 # at least 7 for eyes without the cones of long or of middle wavelengths.
@@ -44,14 +45,14 @@ def draw(axes, found: AirportScene, place: Place) -> None:
         axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour,
                                            linewidths=0.2 if order < 8 else 1.0, zorder=order))
     axes.plot(*place.position[:2], "r^", markersize=8, zorder=20)
-    for runway in found.sides:
-        axes.annotate(runway.name, runway.start, color="white", fontsize=8, ha="center", zorder=21,
-                      bbox={"facecolor": "black", "pad": 1, "linewidth": 0})
     axes.legend(handles=[Patch(color=colour, label=word) for word, colour in shown.items()],
                 loc="upper left").set_zorder(30)
     west_east, south_north = found.map.rectangle[:2], found.map.rectangle[2:]
     axes.set(xlim=west_east, ylim=south_north, aspect="equal", xlabel="m east", ylabel="m north",
              title=f"{found.map.name}: the scene from above; red: the lidar")
+    place_labels(axes, [Label(name, end, way)
+                        for runway, names in zip(found.sides, end_names(found.sides))
+                        for name, (end, way) in zip(names, runway.ends())], [place.position[:2]])
 
 
 def parts_of(scene: Scene) -> Iterator[Tuple[str, str, np.ndarray]]:

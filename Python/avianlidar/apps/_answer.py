@@ -12,8 +12,9 @@ import numpy as np
 from .. import reach
 from .._weather import in_words
 from ._candidates import ground_of
+from ._crossing import Crossing
 from ._plan import Plan
-from ._regions import APPROACH_LENGTH, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
+from ._regions import APPROACH_LENGTH, KINDS, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
 from ._sites import FEWEST_DRAWS
 from ._sites_page import listed
 
@@ -45,7 +46,7 @@ def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = 
     if math.isnan(value):
         return "–"
     if value < LEAST and (value > 0.0 or not math.isnan(error)):
-        return f"under {100.0 * bound(places):.1g}\u00a0%" if places else f"under {LEAST_WORDS}"
+        return f"under {float(f'{100.0 * bound(places):.1g}'):g}\u00a0%" if places else f"under {LEAST_WORDS}"
     if value == 0.0:
         return "0\u00a0%"
     digits = decimals(100.0 * error) if error > 0.0 else 1
@@ -135,8 +136,49 @@ def air_of(view: Plan) -> str:
     return ""
 
 
+def takes(plan: Plan) -> str:
+    """The duration of one scan of the plan's sensor."""
+    return f"{1.0 / plan.sensor.rotation_rate:.2g}\u00a0s"
+
+
+def twice(crossing: Optional[Crossing]) -> str:
+    """The share of birds that is detected at least twice while crossing."""
+    return percent(crossing.share, crossing.error, crossing.birds) if crossing else "–"
+
+
+def _meaning(view: Plan, crossing: Optional[Crossing]) -> str:
+    """What the share of one scan means, and the share of birds that is detected at least twice while crossing."""
+    if not crossing:
+        return f"One scan takes {takes(view)}. The share is the mean over the whole map, near and far."
+    whole = {"strips": "the whole length of", "approaches": f"the whole {APPROACH_LENGTH / 1000.0:g}\u00a0km of"}
+    count = {kind: sum(KINDS[name.partition(" ")[0]] == kind for name in view.ends) for kind in whole}
+    one = {"strips": "strip", "approaches": "approach"}
+    parts = listed([f"{whole[kind]} {'the' if count[kind] == 1 else 'each'} {one[kind]}" for kind in whole if count[kind]])
+    scans, seconds = (f"{float(f'{value:.2g}'):g}" for value in (crossing.scans, crossing.seconds))
+    return (f"The share is that of one scan, which takes {takes(view)}, as a mean over {parts}, near and far. While "
+            f"birds cross there at right angles at {crossing.speed:.3g}\u00a0m/s (on average for {seconds}\u00a0s, or {scans} "
+            f"scans), {twice(crossing)} of them are detected at least twice.")
+
+
+def about_idea(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
+    """A sentence if nobody sells the lidar, and one on the best lidar on sale at the same place. @param offers lidars on
+    sale, the best first"""
+    if not view.idea:
+        return []
+    best, most = offers[0], max(one["row"]["detection_probability"] for one in offers)
+    crossing = best["crossing"]
+    if max(most, crossing.share if crossing else 0.0) < LEAST:
+        ever = ", even at least twice while they cross" if crossing else ""
+        return [f"{view.idea} At the same place, none of {len(offers)} lidars on sale detects {LEAST_WORDS} of the same "
+                f"birds{ever}."]
+    seen = f"{share_of(best['row'])} of the same birds by one scan"
+    seen += f", and {twice(crossing)} at least twice while they cross" if crossing else ""
+    return [f"{view.idea} At the same place, the best of {len(offers)} lidars on sale ({best['name']} of "
+            f"{best['maker']}) detects {seen}."]
+
+
 def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any],
-                    of_year: Dict[str, float]) -> List[str]:
+                    of_year: Dict[str, float], crossing: Optional[Crossing]) -> List[str]:
     """Where the lidar should stand, which share of the birds is detected from there, and how far birds are detected.
     @param view the plan's sensor at its best site, or the plan itself @param of_year the share over the plan's year"""
     birds, position = f"{birds_of(view)} {over(view)}", view.sensor.position
@@ -156,7 +198,9 @@ def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reac
     else:
         first = (f"{plan.name} should stand {where}: from there {detects}, "
                  f"the most of {site['count']} candidates{year}.")
-    return [first, *_by_end(view), _how_far(view, reaches)]
+    there = ([f"The other numbers of this page are for {place(position)}, the place in the plan or its scene."]
+             if site and view is plan else [])
+    return [first, *there, _meaning(view, crossing), *_by_end(view), _how_far(view, reaches)]
 
 
 def share_of(row: Dict[str, Any]) -> str:
@@ -186,13 +230,14 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     if not view.asked:
         return f"{said}."
     rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-    seen = [(f"{row['height']:g}\u00a0m up from {metres(row['from']) if row['from'] else '0 m'} "
-             f"to {metres(row['to'])} away") for row in rows if row["to"] > row["from"]]
+    seen = [f"at a height of {row['height']:g}\u00a0m between {metres(row['from']) if row['from'] else '0 m'} and "
+            f"{metres(row['to'])} from the lidar" for row in rows if row["to"] > row["from"]]
     never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
-    where = ["at " + ", ".join(seen)] if seen else []
+    said += f". It detects half or more of the birds {listed(seen)}" if seen else ""
     if never:
-        where.append(f"nowhere at {listed(never)} m")
-    return f"{said}; half are in its beams and near enough {', and '.join(where)}."
+        said += (f". At {listed(never)}\u00a0m it nowhere detects half of the birds, because the beams reach this height "
+                 "only where the range is already too long")
+    return f"{said}."
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:
@@ -212,22 +257,40 @@ def command(view: Plan, verb: str, out: str, **settings: str) -> str:
     return shlex.join(words + (["--threads", str(view.threads)] if view.threads else []))
 
 
-def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]]
-               ) -> List[Dict[str, str]]:
-    """The next steps: for each a head, words, an anchor of the page, and a command, which may be empty."""
-    steps = [_raise(view, advice)] if advice else []
+def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]],
+               offers: Sequence[Dict[str, Any]]) -> List[Dict[str, str]]:
+    """The next steps: for each a head, words, an anchor of the page, and a command, which may be empty. @param offers
+    lidars on sale, the best first"""
+    steps = [_ask(plan, view, offers)] if view.idea else []
+    steps += [_raise(view, advice)] if advice else []
+    if site and view is plan and not view.idea and not advice:
+        steps.append({"head": "Look for a lidar that sees farther.", "more": "#range", "command": "",
+                      "words": f"{view.name} detects almost none of the birds from any candidate."})
     if site and view is not plan:
         if len(site["gain"]) > 1:
             steps.append(_weigh(view, site))
         steps.append(_check(view, site))
     cover = view.coverage
+    ask = "" if view.idea else f" Ask the maker of {view.name} for the numbers of the lidar."
     steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
-                  "words": (f"Assumed are size and reflectance ({cover.reflectance:g}) of birds and "
-                            f"{len(set(view.assumed))} numbers of {view.name}: ask the maker for these numbers. "
-                            "This command shows the effect of darker birds:"),
+                  "words": (f"Size and reflectance ({cover.reflectance:g}) of birds and {len(set(view.assumed))} numbers "
+                            f"of {view.name} are assumed.{ask} This command shows the effect of darker birds:"),
                   "command": command(plan, "report", "darker.html",
                                      **{"coverage.reflectance": f"{cover.reflectance / 2.0:g}"})})
     return steps
+
+
+def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, str]:
+    """The step for a lidar that nobody sells."""
+    best = offers[0]["name"]
+    changed = plan.plan["sensor"].keys() - {"preset", "name", "position", "orientation"}
+    what = f"the report for {best}{', at the best site for it' if 'siting' in plan.plan else ''}"
+    settings = {"sensor.preset": best, **({"sensor.name": best} if "name" in plan.plan["sensor"] else {})}
+    return {"head": f"Do not plan to buy {view.name}.", "more": "#on-sale",
+            "words": ("The result shows what a lidar with these numbers would do. Ask makers whether they can build such "
+                      "a lidar, and for measured ranges of birds. "
+                      + (f"A plan with the sensor {best} makes {what}." if changed else f"This command makes {what}:")),
+            "command": "" if changed else command(plan, "report", "on-sale.html", **settings)}
 
 
 def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
@@ -238,12 +301,13 @@ def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     together = listed([f"{count} detect {share}" for count, share in zip(counts, more)])
     return {"head": "Weigh a second lidar.", "more": "#sites", "command": "",
             "words": (f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, "
-                      f"{together}, if they miss birds independently.")}
+                      f"{together}, if each misses birds independently.")}
 
 
 def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
     """A change of the sensor, if the band leaves out heights of the plan."""
-    found = {"head": "Change the beams first.", "more": "#heights-in-band", "command": ""}
+    head = "Change the beams first." if view.idea else "Look for a lidar with higher beams."
+    found = {"head": head, "more": "#heights-in-band", "command": ""}
     if advice["needed"] is None:
         return {**found, "head": "Take a lidar that sees farther.",
                 "words": "At the heights of the plan no bird is near enough, whatever the elevation of the beams."}
@@ -254,22 +318,37 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
         return {**found, "words": f"{ends} No tried change of the beams detects more birds from the same place."}
     now, then = (percent(row["detection_probability"], row["detection_std_error"], row["places"], bar=False)
                  for row in (advice["now"], best["then"]))
-    return {**found, "words": (f"{ends} From the same place {best['what'].partition(' (')[0]} detect {then} "
-                               f"instead of {now}. The change costs {best['cost']}.")}
+    return {**found, "words": (f"{ends} The best change that was tried: {best['what'].partition(' (')[0]}. From the same "
+                               f"place this lidar detects {then} instead of {now}. It costs {best['cost']}.")}
 
 
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
     """Sentences on equally good candidates, and on a best candidate at the lattice's edge; each list may be empty."""
     more = "1 more candidate is" if site["alike"] == 1 else f"{site['alike']} more candidates are"
-    alike = [f"{more} as good within the error."] if site["alike"] else []
+    alike = [f"{more} equally good within the error."] if site["alike"] else []
     at_edge = "The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."
     return alike, [at_edge] if site["edge"] else []
+
+
+def _other_draws(site: Dict[str, Any]) -> List[str]:
+    """A sentence on how often another site wins with other numbers."""
+    alone = [row for row in site["robustness"] if row["sensors"] == 1]
+    others = [row for row in alone if row["another winner"]]
+    if not alone:
+        return []
+    if not others:
+        changes = listed([row["change"] for row in alone])
+        return [f"With other numbers ({changes}) this site wins in all {alone[0]['draws']} draws."]
+    times = listed([f"in {row['another winner']} of {row['draws']} draws ({row['change']})" for row in others])
+    most = 100.0 * max(row["gain at most"] for row in others)
+    by = f"by {most:.0f}\u00a0% of the share" if most >= 1.0 else "by less than 1\u00a0% of the share"
+    return [f"With other numbers another site wins {times}, {by} at most."]
 
 
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The step that checks the site."""
     alike, edge = how_sure(site)
-    words = [f"{site['surfaces']}. Objects that no map shows may stand there."]
+    words = [f"{site['surfaces']} Objects that no map shows may stand there."]
     masts = []
     for row in site["masts"]:
         value, error = row["share"]
@@ -277,14 +356,7 @@ def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
         masts.append(f"{share} with a mast of {row['mast']:g}\u00a0m")
     if len(masts) > 1:
         words.append(f"The best sites have {listed(masts)}.")
-    words += alike
-    alone = [row for row in site["robustness"] if row["sensors"] == 1]
-    if alone:
-        most = max(alone, key=lambda row: row["another winner"])
-        words.append(f"With other numbers ({most['change']}) another site wins in up to {most['another winner']} of "
-                     f"{most['draws']} draws, with at most {1.0 + max(row['gain at most'] for row in alone):.2f} times "
-                     "the share.")
-    words += edge
+    words += [*site["higher"], *alike, *_other_draws(site), *edge]
     if site["draws"] < FEWEST_DRAWS:
         words.append(f"The certainty of the best site was not computed: it needs draws={FEWEST_DRAWS} or more.")
     return {"head": "Check the site.", "more": "#sites", "words": " ".join([*words, "Maps of the site for GIS:"]),

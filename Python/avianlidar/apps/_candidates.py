@@ -3,8 +3,7 @@
 runways.
 
 The surfaces are the strip, approach and transitional surfaces of ICAO Annex 14. `surfaces.json` has the dimensions,
-their source and assumptions. Not modelled are inner horizontal and conical surfaces, which lie 45 m and more above the
-aerodrome, and take-off climb surfaces.
+their source and assumptions. NOT_CHECKED names what is not modelled.
 """
 from __future__ import annotations
 
@@ -24,6 +23,9 @@ from ._regions import Runway, runway_outline
 MOST_CANDIDATES = 100_000
 SAME_PLACE = 1e-3  # m: candidates with equal coordinates to this precision are one candidate
 NAMES = ("strip", "approach", "transitional")
+# Inner horizontal and conical surfaces lie 45 m and more above the aerodrome.
+NOT_CHECKED = ("take-off climb surfaces", "inner horizontal surfaces", "conical surfaces",
+               "areas that protect ILS and other radio aids")
 TABLE: Dict[str, Any] = packaged("surfaces.json")  # all dimensions of the surfaces, their source, and the assumptions
 STEP = 100.0  # distance along a runway between places at which the runway's height is taken from the scene, m
 

@@ -11,6 +11,7 @@ from typing import Any, Dict, Iterator, List, Tuple
 
 from .._files import read_regular
 from .._pipeline import Error, words_of
+from .._properties import unknown
 
 # kinds of files, by a key that other kinds do not have
 KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}
@@ -54,12 +55,25 @@ def packaged(name: str) -> Any:
     return load_json(pathlib.Path(__file__).with_name(name))
 
 
+def _words_of(wrong: Any) -> str:
+    """The message of an error of a schema, with the nearest known word for a misspelt key or word."""
+    if wrong.validator == "additionalProperties" and isinstance(wrong.validator_value, bool):
+        known = wrong.schema["properties"]
+        return unknown("", next(name for name in wrong.instance if name not in known), known).strip()
+    if wrong.validator == "enum" and isinstance(wrong.instance, str):
+        return unknown("", wrong.instance, wrong.validator_value).strip()
+    return str(wrong.message)
+
+
 def check_json(document: Any, schema: str, what: str) -> None:
     """`Error` names the property that does not fit a schema of this package. @param what the document's name"""
     import jsonschema
-    wrong = jsonschema.exceptions.best_match(jsonschema.Draft202012Validator(packaged(schema)).iter_errors(document))
+    found = list(jsonschema.Draft202012Validator(packaged(schema)).iter_errors(document))
+    # An unknown key may be a misspelt required key.
+    wrong = next((one for one in found if one.validator == "additionalProperties" and not one.path),
+                 jsonschema.exceptions.best_match(found))
     if wrong:
-        words = wrong.message
+        words = _words_of(wrong)
         if len(words) > LONGEST:
             words = f"{words[:LONGEST // 2]} ... {words[-LONGEST // 2:]}"
         if wrong.validator == "not":

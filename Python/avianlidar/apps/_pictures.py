@@ -14,8 +14,9 @@ from .._coverage import Coverage
 from .._disk import write_whole
 from .._plot import status_colours
 from ..reach import Reach
+from ._placing import Label, place_labels
 from ._plan import Plan
-from ._regions import APPROACH_LENGTH, Runway, region_outlines
+from ._regions import APPROACH_LENGTH, Runway, end_names, ends_of, region_outlines
 
 # Colours of vtkAvianLidarCoverage's statuses.
 STATUS_COLOURS = ["#" + "".join(f"{round(255 * value):02x}" for value in colour)
@@ -29,8 +30,8 @@ PIXELS = 150  # pixels per inch
 OUTLINES = (0.1, 0.5)  # probabilities whose outlines are drawn on the first page
 AROUND_SITES = 150.0  # margin around the candidates on their map, m
 SHOWN = 250  # pixels along the longer side of the map on the first page
-AROUND = 0.04  # margin around the map on the first page, as a share of the longer side
-SIDES = (0.35, 1.15)  # least and greatest ratio of height to width of the map on the first page
+AROUND = 0.07  # margin around the map on the first page, as a share of the longer side
+SIDES = (0.4, 0.9)  # least and greatest ratio of height to width of the map on the first page
 PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
 CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
 BAR = (1.03, 0.0, 0.04, 1.0)  # place of a colour bar as high as the map, in parts of the map
@@ -60,9 +61,9 @@ def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 
              "font.family": fonts, "text.parse_math": False}  # names keep their $
     with rc_context(style), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has
-        figure = Figure(figsize=size, layout="constrained")
+        figure = Figure(figsize=size, dpi=PIXELS, layout="constrained")
         work(figure.subplots(1, columns))
-        figure.savefig(content, format="png", dpi=PIXELS)
+        figure.savefig(content, format="png")
     return content.getvalue()
 
 
@@ -79,11 +80,6 @@ def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: 
     inches for other contents"""
     x0, x1, y0, y1 = extent
     return width + beside, 0.5 + (width - 0.7) * float(np.clip((y1 - y0) / max(x1 - x0, 1e-9), 0.25, 3.0)) + above
-
-
-def _annotate(axes, words: str, place: Sequence[float], away: int = 7, **style: Any) -> None:
-    axes.annotate(words, place[:2], (away, away), textcoords="offset points", fontsize=9, **style,
-                  bbox={"facecolor": "white", "alpha": 0.8, "pad": 1, "linewidth": 0})
 
 
 def draw_land(axes, plan: Plan) -> None:
@@ -140,12 +136,14 @@ def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:
     draw_airport(axes, plan, "0.1" if is_status else "0.75")
 
 
-def answer_extent(plan: Plan) -> Tuple[float, float, float, float]:
-    """Extent of the map on the first page, m: the plan's regions and the sensor, or without runways the plan's map."""
+def answer_extent(plan: Plan, reach: float) -> Tuple[float, float, float, float]:
+    """Extent of the map on the first page, m: the runways, the plan's regions, and the circle about the sensor where
+    birds are detected; without runways the plan's map. @param reach radius of the circle, m"""
     outlines = [outline for name, outline in region_outlines(plan.runways).items() if name in plan.ends]
     corners = np.reshape(plan.extent, (2, 2)).T
     if outlines:
-        corners = np.concatenate([*outlines, [plan.sensor.position[:2]]])
+        around = np.array(plan.sensor.position[:2]) + np.outer([-reach, reach], [1.0, 1.0])
+        corners = np.concatenate([*outlines, ends_of(plan.runways), around])
     low, high = corners.min(axis=0), corners.max(axis=0)
     size = (1.0 + 2.0 * AROUND) * np.maximum(high - low, 1.0) if outlines else high - low
     width = max(size[0], size[1] / SIDES[1])
@@ -168,9 +166,10 @@ def found_at(plan: Plan, extent: Sequence[float]) -> List[Tuple[float, np.ndarra
 
 
 def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], extent: Tuple[float, float, float, float],
-                shares: Mapping[str, str]) -> None:
+                shares: Mapping[str, str]) -> List[str]:
     """Draws the airport with the sensor, the regions of the plan, and for each height the areas where the probability
-    is above OUTLINES. @param found result of `found_at` @param shares shares of each region in words"""
+    is above OUTLINES. @param found result of `found_at` @param shares shares of each region in words @return labels for
+    which there is no room"""
     from matplotlib import colormaps, patches
     x0, x1, y0, y1 = extent
     legend = []
@@ -186,22 +185,32 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
         words = {2: "", 1: ": nowhere half", 0: ": nowhere a tenth"}[int(classes.max(initial=0))]
         legend.append(patches.Patch(facecolor=colour, alpha=0.6, label=f"{height:g} m up{words}"))
     draw_land(axes, plan)
-    box = {"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0}
-    for name, outline in region_outlines(plan.runways).items():
-        if name in plan.ends:
-            axes.plot(*np.concatenate([outline, outline[:1]]).T, ":", color="0.3", linewidth=1.0)
-        if name in plan.ends or name.startswith("strip "):
-            near, far = outline[[0, 3]].mean(axis=0), outline[1:3].mean(axis=0)
-            parts = (0.75, 0.25) if name.startswith("strip ") else (0.75,)
-            at = max((near + part * (far - near) for part in parts),
-                     key=lambda place: np.hypot(*(place - plan.sensor.position[:2])))
-            label = "\n".join(filter(None, (name.partition(" ")[2], shares.get(name, ""))))
-            axes.text(*at, label, fontsize=7, color="0.1", ha="center", va="center", bbox=box, zorder=4)
+    outlines = region_outlines(plan.runways)
+    for name in plan.ends if plan.runways else ():
+        axes.plot(*np.concatenate([outlines[name], outlines[name][:1]]).T, ":", color="0.3", linewidth=1.0)
     draw_airport(axes, plan, "0.55")
     axes.set(xlim=(x0, x1), ylim=(y0, y1))
-    axes.plot(*plan.sensor.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=5)
-    _annotate(axes, plan.name, plan.sensor.position, 9, color="red", zorder=5)
-    axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=min(len(legend), 2), frameon=False)
+    place = plan.sensor.position[:2]
+    axes.plot(*place, "r^", markersize=11, markeredgecolor="white", zorder=5)
+    axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, frameon=False, title_fontsize=8,
+                title="filled: one scan detects half or more of the birds; dashed: a tenth or more")
+    return place_labels(axes, labels_of(plan, shares), [place])
+
+
+def labels_of(plan: Plan, shares: Mapping[str, str]) -> List[Label]:
+    """Labels of the map on the first page: the sensor, the ends of the runways, and the plan's regions with the share of
+    each. @param shares shares of the regions in words"""
+    found = [Label(plan.name, plan.sensor.position[:2], style={"color": "red"})]
+    for runway, names in zip(plan.runways, end_names(plan.runways)):
+        found += [Label(name, end, way, {"weight": "bold"})
+                  for name, (end, way) in zip(names, runway.ends())]
+    middle = ends_of(plan.runways).mean(axis=0) if plan.runways else np.zeros(2)
+    for name, outline in region_outlines(plan.runways).items():
+        if name in plan.ends:
+            sides = 0.5 * (outline[[0, 3]] + outline[[1, 2]])  # the middles of both sides
+            outer = max(sides, key=lambda side: round(float(np.hypot(*(side - middle))), 3))
+            found.append(Label("\n".join(filter(None, (name, shares.get(name, "")))), outer, outer - outline.mean(axis=0)))
+    return found
 
 
 def section(plan: Plan, runway: Runway) -> Tuple[np.ndarray, Tuple[float, float, float, float]]:
@@ -291,13 +300,13 @@ def draw_sites(axes, sites) -> None:
     members = list(sites.networks[-1].sites)
     axes.scatter(*sites.positions[members, :2].T, s=130, facecolors="none", edgecolors="red", linewidths=2,
                  label=f"best {len(members)} together" if len(members) > 1 else "best")
-    for site in members:
-        _annotate(axes, f"rank {sites.rank_of(site)}", sites.positions[site])
     axes.plot([], [], "r^", markersize=5, label="where the plan puts the sensor")
     axes.scatter(*sites.positions[sites.order[0], :2], s=80, marker="x", color="red", linewidths=2, label="best alone")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=3, handletextpad=0.2, columnspacing=1, frameon=False)
     extent = sites_extent(sites)
     axes.set(xlim=extent[:2], ylim=extent[2:])
+    places = sites.positions[:, :2]
+    place_labels(axes, [Label(f"rank {sites.rank_of(site)}", tuple(places[site])) for site in members], places[members])
 
 
 def sites_extent(sites) -> Tuple[float, float, float, float]:

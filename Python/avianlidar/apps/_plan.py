@@ -23,6 +23,7 @@ from ._geojson import read_runways
 from ._json import naming
 from ._looks import require_memory
 from ._inputs import sensor_name
+from ._on_sale import idea
 from ._regions import Runway, by_kind, ends_of, places_by_region, region_heights, region_names
 from ._scores import weighted
 
@@ -154,6 +155,16 @@ class Plan:
                       "sensor": sensor}, self.threads, self.scene, "siting")
         other.title = title
         return other
+
+    def with_lidar(self, preset: str) -> Plan:
+        """The plan with another lidar at the same place."""
+        place = {name: [float(c) for c in getattr(self.sensor, name)] for name in ("position", "orientation")}
+        return Plan({**self.plan, "sensor": {"preset": preset, **place}}, self.threads, self.scene, "siting")
+
+    @property
+    def idea(self) -> str:
+        """A sentence if nobody sells the plan's sensor, else empty."""
+        return idea(self.name, self.sensor, self.plan["sensor"])
 
     def _check_maps(self) -> None:
         x0, x1, y0, y1 = self.extent

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import warnings
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
@@ -19,18 +20,23 @@ from . import _answer, _sites_page
 from . import _pictures as pictures
 from ._air import gathers_light
 from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, how_sure, metres, percent, place, share_of
+from ._candidates import NOT_CHECKED
 from ._card import read_card
+from ._crossing import crossing
 from ._geojson import to_geodetic
 from ._json import load_json, naming
 from ._maps import height_name
+from ._on_sale import half_range, on_sale
 from ._plan import OTHER_PLACES, Plan
 from ._regions import rounded
 from ._sites import BEST, FEWEST_DRAWS, Sites
+from ._sites_page import listed
 from ._tables import embedded, render, write_table
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # in the section on weather, m
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # rain rates, mm/h
 ANSWERED = 1000.0  # visibility whose share is given in a sentence, m
+SECTOR = 1000  # 0.01 deg: a lidar with beams in each sector of this width looks all around
 BESIDE = (("fog:1000",), ("rain:10",))  # weathers for which best sites are searched if the plan gives no year
 
 # Numbers of a sensor in the table: property, words, unit, factor from the property to the unit.
@@ -79,7 +85,6 @@ class Report:
                  progress: Optional[Callable[[str, int, int], Any]] = None):
         self.plan, self.progress, self.done = plan, progress or (lambda *_: None), 0
         self.plans = Plan.all_of(plan, threads)
-        self.asked = f"question: {self.plans[0].bird} {self.plans[0].where}"  # part of every caption
         self.scene = load_json(plan["scene"])
         with naming(f"{plan['file']}: tracks"):
             self.tracks = read_card(plan["tracks"]) if "tracks" in plan else None
@@ -90,7 +95,7 @@ class Report:
 
     def _figure(self, file: pathlib.Path, what: str, caption: str) -> Dict[str, str]:
         """A picture of the page. @param what kind of the picture, for readers who do not see it"""
-        return {"source": embedded(file), "alt": f"{what}. {caption}.", "caption": f"{caption}; {self.asked}"}
+        return {"source": embedded(file), "alt": f"{what}. {caption}.", "caption": caption}
 
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], what: str, caption: str, work) -> Dict[str, str]:
         pictures.draw(file, size, work)
@@ -173,7 +178,7 @@ class Report:
                 "robustness": sites.robustness(changes), "words": _sites_page.words(sites), "near": len(sites.near),
                 "count": len(sites.positions), "taken": sites.stands_wrong(plan.sensor.position),
                 "surfaces": _sites_page.surface_sentence(sites), "draws": sites.draws,
-                "heights_varied": sites.varies_heights,
+                "heights_varied": sites.varies_heights, "higher": sites.higher_mast,
                 "map": self._figure(folder / "sites.png", "Map of candidates",
                                     f"{plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; "
                                     "light grey: areas where no lidar may stand"),
@@ -282,24 +287,50 @@ class Report:
         if plan is self.plans[0]:
             who = "the plan" if "position" in plan.plan["sensor"] else "the scene"
             but = ", but no lidar may stand there" if site["taken"] else ""
-            said.append(f"At the position of {who}, {place(plan.sensor.position)}, the share is "
+            said.append(f"At the sensor's position in {who}, {place(plan.sensor.position)}, the share is "
                         f"{share_of(plan.overall)}{but}.")
         return said
 
-    def _first_picture(self, view: Plan, folder: pathlib.Path) -> Dict[str, str]:
+    def _offers(self, view: Plan, folder: pathlib.Path) -> List[Dict[str, Any]]:
+        """What lidars on sale detect at the place of a lidar that nobody sells, the best first."""
+        if not view.idea:
+            return []
+        names, offers = on_sale(), []
+        for number, name in enumerate(names, 1):
+            there = view.with_lidar(name)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # about sensors that the user has not chosen
+                row, found = there.in_airs([{}])[0][-1], crossing(there) if there.runways else None
+            offers.append({"name": name, "maker": there.sensor.description["maker"], "takes": _answer.takes(there),
+                           "row": row, "crossing": found, "half": half_range(name, next(iter(view.mix))),
+                           "looks_around": len(np.unique(there.sensor.beams["azimuth"] // SECTOR)) == 36000 // SECTOR})
+            self.progress("lidars on sale", number, len(names))
+        write_table(folder / "on-sale.csv", [
+            {"receiver": one["name"], "maker": one["maker"],
+             **{name: one["row"][name] for name in ("detection_probability", "detection_std_error")},
+             "twice": one["crossing"].share if one["crossing"] else None,
+             "twice_std_error": one["crossing"].error if one["crossing"] else None} for one in offers])
+        return sorted(offers, reverse=True, key=lambda one: (
+            one["crossing"].share if one["crossing"] else 0.0, one["row"]["detection_probability"]))
+
+    def _first_picture(self, view: Plan, folder: pathlib.Path, reaches: Dict[str, Any]) -> Dict[str, str]:
         """The airport with the sensor, the regions of the plan, and where birds are detected at each height."""
-        extent = pictures.answer_extent(view)
+        extent = pictures.answer_extent(view, max(one.to(pictures.OUTLINES[0]) for one in reaches["of"].values()))
         found = pictures.found_at(view, extent)
         seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} of the map at {height:g} m"
                          for height, classes in found)
         shares = {row["region"]: share_of(row) for row in view.by_end}
         regions = "; dotted: the plan's strips and approaches, with the share detected in each" if view.runways else ""
-        return self._draw(
-            folder / "answer.png", pictures.map_size(extent, 4.6, 0.0, 0.2 * math.ceil(len(found) / 2) + 0.1),
+        left_out: List[str] = []
+        picture = self._draw(
+            folder / "answer.png", pictures.map_size(extent, 5.9, 0.0, 0.2 * math.ceil(len(found) / 4) + 0.3),
             f"Map of the airport: one scan detects half or more of the birds on {seen} above {view.above}",
             f"{view.name} (red triangle), {place(view.sensor.position)}. "
             f"Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
-            lambda axes: pictures.draw_answer(axes, view, found, extent, shares))
+            lambda axes: left_out.extend(pictures.draw_answer(axes, view, found, extent, shares)))
+        if left_out:
+            picture["caption"] += f". No room for the labels {listed([' '.join(one.split()) for one in left_out])}"
+        return picture
 
     def write(self, file) -> pathlib.Path:
         """Writes the page. Beside the page, a folder with the page's name and `_files` gets shares.csv, ends.csv,
@@ -331,8 +362,10 @@ class Report:
         answering = [next((view for view in best if view.name == plan.name), plan) for plan in self.plans]
         weather = self._weather(views, folder)
         site_of: List[Any] = [*sited] or [None] * len(self.plans)
-        said = [_answer.first_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)])
-                for plan, view, site, of in zip(self.plans, answering, site_of, reaches)]
+        crossings = [crossing(view) if view.runways else None for view in answering]
+        said = [_answer.first_sentences(plan, view, site, of, weather["over_the_year"][views.index(view)], over)
+                for plan, view, site, of, over in zip(self.plans, answering, site_of, reaches, crossings)]
+        offers = self._offers(answering[0], folder)
         answers = [sentence for words, plan, view, site in zip(said, self.plans, answering, site_of)
                    for sentence in (*words, *self._besides(plan, view, site))]
         weather["words"] = [self._weather_words(views.index(view), view, weather) for view in answering]
@@ -347,10 +380,14 @@ class Report:
         return render(
             "report.html.jinja",
             filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell,
-            filter_rounded=rounded, asked=self.asked, chance=share_of(answering[0].overall), said=said[0],
+            filter_rounded=rounded, filter_twice=_answer.twice, chance=share_of(answering[0].overall),
+            said=[*_answer.about_idea(answering[0], offers), *said[0]], offers=offers,
+            own={"name": first.name, "maker": "nobody", "takes": _answer.takes(first), "row": answering[0].overall,
+                 "crossing": crossings[0], "half": reaches[0]["of"][next(iter(first.mix)) or "target"].to(0.5)},
+            ideas=[plan.idea for plan in self.plans if plan.idea], not_checked=listed(NOT_CHECKED),
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
-            first=self._first_picture(answering[0], folder),
-            steps=_answer.next_steps(first, answering[0], site_of[0], advices[0]),
+            first=self._first_picture(answering[0], folder, reaches[0]),
+            steps=_answer.next_steps(first, answering[0], site_of[0], advices[0], offers),
             answer=[*answers, weather["words"][0]], bird=first.bird, cover=first.coverage,
             area=float(np.ravel(known["effective_area"])[0]), attenuation=float(known["attenuation_coefficient"]),
             plan=first, places=int(first.overall["places"]), assumptions=assumptions(self.plans),

@@ -313,6 +313,17 @@ class Sites:
         return [{"mast": mast, "position": self.positions[site], "share": self.share([site])}
                 for mast, site in self._best_with_masts()]
 
+    @property
+    def higher_mast(self) -> List[str]:
+        """A sentence if the best candidate has the highest mast of the plan, so that a higher mast may be better."""
+        masts = self.best_by_mast()
+        best = next((row["mast"] for row in masts
+                     if np.array_equal(row["position"], self.positions[self.order[0]])), None)
+        if best is None or best < max(self.masts):
+            return []
+        which = f"highest mast of the plan ({best:g} m)" if len(self.masts) > 1 else f"only mast of the plan ({best:g} m)"
+        return [f"The best site has the {which}: a higher mast may be better. Add its height to siting.masts."]
+
     def over_the_year(self, order, species: int, places) -> np.ndarray:
         """The mean share of some places at each site over the year. @param order of the sites @param species number of
         the species @param places numbers of the places"""

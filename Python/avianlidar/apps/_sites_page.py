@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Sequence
 import numpy as np
 
 from . import _pictures as pictures
-from ._candidates import TABLE
+from ._candidates import NAMES, NOT_CHECKED, TABLE
 from ._sites import Change, Sites
 from ._tables import write_sites, write_table
 
@@ -21,7 +21,7 @@ def listed(words: Sequence[str]) -> str:
 def kept_surfaces(sites: Sites) -> str:
     """Words on the surfaces that masts stay below, and on the candidates that pierce a surface."""
     if not sites.pierced:
-        return "no surface is used, because the plan switches the surfaces off"
+        return f"not checked, because the plan switches the surfaces off; also not checked: {', '.join(NOT_CHECKED)}"
     category = sites.surfaces[0].category + ("" if "category" in sites.changed else " (assumed)")
     code = "code number" if "code" in sites.changed else "code number by its length, assumed:"
     codes = "; ".join(f"{one.runway.name}: {code} {one.code}" for one in sites.surfaces)
@@ -30,18 +30,19 @@ def kept_surfaces(sites: Sites) -> str:
     count = sum(sites.pierced.values())
     return (f"masts keep below {', '.join(sites.pierced)} surfaces of ICAO Annex 14 ({TABLE['year']}) for {category} "
             f"approaches, {codes}{changes}; {count} of "
-            f"{count + len(sites.positions)} candidates pierced a surface and are left out ({sites.counted})")
+            f"{count + len(sites.positions)} candidates pierced a surface and are left out ({sites.counted}); not checked: {', '.join(NOT_CHECKED)}")
 
 
 def surface_sentence(sites: Sites) -> str:
-    """Sentence on the checks of the place of a mast, for the first page of a report."""
+    """Sentences on the checks of the place of a mast, for the first page of a report."""
+    clear = "clear of runways, buildings and the plan's exclusions"
     if not sites.pierced:
-        return ("The site is clear of runways, buildings and the plan's exclusions. "
-                "The plan switches obstacle limitation surfaces off")
+        return (f"The site is {clear}. No obstacle limitation surface was checked, because the plan switches the "
+                f"surfaces off. Also not checked: {listed(NOT_CHECKED)}.")
     approaches = f"{sites.surfaces[0].category} approaches{'' if 'category' in sites.changed else ', assumed'}"
-    return (f"The mast stays below the {listed(list(sites.pierced))} surfaces of ICAO Annex 14 ({approaches}), "
-            f"which {sum(sites.pierced.values())} other candidates pierce ({sites.counted}), "
-            "and is clear of buildings and the plan's exclusions")
+    off = [name for name in NAMES if name not in sites.pierced]
+    return (f"Checked: the mast stays below the {listed(list(sites.pierced))} surfaces of ICAO Annex 14 ({approaches}) "
+            f"and is {clear}. Not checked: {listed([*(f'{name} surfaces' for name in off), *NOT_CHECKED])}.")
 
 
 def words(sites: Sites) -> Dict[str, str]:

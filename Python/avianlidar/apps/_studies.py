@@ -16,10 +16,11 @@ from .._sensor import Sensor
 from .._terminal import bar, close_bar, table, tell, warn
 from .._weather import without_air
 from . import _pictures, _sites_page
-from ._answer import percent
+from ._answer import percent, share_of
 from ._design_page import Designs, answers
 from ._inputs import PROPERTIES, read_plan, read_scenario
 from ._maps import write_maps
+from ._on_sale import farthest, idea
 from ._plan import Plan
 from ._report import Report
 from ._sequence import Sequence
@@ -140,8 +141,7 @@ def coverage(options) -> None:
                 count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
             row = plan.overall
             tell(f"{folder}: {count} files; {plan.bird if any(plan.mix) else 'the target'} detected in one scan: "
-                 f"{row['detection_probability']:.3f} +- {row['detection_std_error']:.3f} {plan.where} (assumed: bird"
-                 f"{', receiver' if plan.assumed else ''})")
+                 f"{share_of(row)} {plan.where} (assumed: bird{', receiver' if plan.assumed else ''})")
 
 
 def siting(options) -> None:
@@ -194,10 +194,14 @@ def design(options) -> None:
 def reach(options) -> None:
     if options.out and options.out.suffix.lower() != ".csv":
         raise ValueError(f"{options.out}: is not the name of a table, expected one that ends in .csv")
+    several = options.species or ["herring gull"]
+    ideas = [idea(name, Sensor(name), dict(options.sensor_set)) for name in options.sensor]
+    if any(ideas):
+        print(*filter(None, [*ideas, *map(farthest, several)]), sep="\n")
     rows: List[Tuple[Any, ...]] = [
         ("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
     said, curve = [], []
-    pairs = list(itertools.product(options.sensor, options.species or ["herring gull"]))
+    pairs = list(itertools.product(options.sensor, several))
     for number, (name, species) in enumerate(pairs):
         bar("reach", number, len(pairs))
         sensor = Sensor(name).set(**dict(options.sensor_set))

@@ -66,10 +66,10 @@ def near(beams, places, position, half_beamwidth, reach=1.0):
     return running.some_beams(beams, np.flatnonzero(wanted))
 
 
-def fly(scene, sensor, places, scans, species, air, rays, seed=0):
+def fly(scene, sensor, places, scans, species, air, rays, seed=0, headings=None):
     """@return of each place the share of scans in which its bird had an echo, and the mean of the probabilities that the
     mover report expects. @param sensor or several that look at the same bird, of which one must see it @param air attenuation
-    coefficient, 1/m"""
+    coefficient, 1/m @param headings of the birds, rad clockwise from north; default: random in each scan"""
     random = np.random.default_rng(seed)
     birds = birds_of(species)
     sensors = sensor if isinstance(sensor, (list, tuple)) else [sensor]
@@ -87,7 +87,7 @@ def fly(scene, sensor, places, scans, species, air, rays, seed=0):
             for i in numbers:
                 way = places[i] - positions[0]
                 away = 1.0 + (random.uniform() - 0.5) * unit / np.linalg.norm(way)
-                movers.append(placed(birds[random.integers(PHASES)], i, positions[0] + away * way, random.uniform(0, 2 * math.pi)))
+                movers.append(placed(birds[random.integers(PHASES)], i, positions[0] + away * way, random.uniform(0, 2 * math.pi) if headings is None else headings[i]))
             found, missed = np.zeros(len(places), dtype=bool), np.ones(len(places))
             for scan, beams in zip(looking, lit):
                 turned = vtkPolyData()  # the noise of another revolution

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far birds are detected: the share of them by range for each receiver, as a picture and a table.
+"""How far birds are detected: the share of them by range for each receiver, as a picture, a table of all sensors and
+species, and ranges.json, the same ranges (m) for the package.
 
     Testing/Studies/run.py ranges --out build/ranges
 """
+import json
+
 import numpy as np
 
 import avianlidar as al
@@ -11,10 +14,11 @@ from avianlidar import reach
 from avianlidar.apps._pictures import draw_reach
 from running import study
 
-SENSORS = ("Search905", "Search1550", "Automotive16", "Airport16")
-ON_SALE = ("OS0_128", "OS1_64", "OS2_128", "VLP16", "VLP32C", "HDL32E", "Helios16P", "Pandar40P", "PandarXT32", "Mid40", "Mid360", "Avia")
-SPECIES = ("starling", "crow", "herring gull", "Canada goose")
-VISIBILITY = 23e3  # m
+SHOWN = ("Search905", "Search1550", "Automotive16", "Airport16")  # in the picture
+DRAWN = ("starling", "crow", "herring gull", "Canada goose")
+SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose")
+VISIBILITY = reach.CLEAR  # m
+BIRDS = 100  # of sensors that are not in the picture
 
 
 def row(name, sensor, species, found):
@@ -25,16 +29,21 @@ def row(name, sensor, species, found):
 
 @study()
 def main(options):
-    rows = []
-    with tools.figure(options.out / "ranges.png", 2, 2, figsize=(9.0, 7.0)) as panels:
-        for name, axes in zip(SENSORS, np.ravel(panels)):
-            sensor = al.Sensor(name)
-            found = {species: reach.within_beams(sensor, species, visibility=VISIBILITY) for species in SPECIES}
-            rows += [row(name, sensor, species, one) for species, one in found.items()]
-            draw_reach(axes, found, "2 of 3 scans")
-            axes.set_title(f"{name}{'' if name == 'Airport16' else ', assumed receiver'}", fontsize=10)
-    for name in ON_SALE:
+    rows, numbers, curves = [], {}, {}
+    for name in (*SHOWN, *(name for name in al.Sensor.presets() if name not in SHOWN)):
         sensor = al.Sensor(name)
-        rows.append(row(name, sensor, "herring gull", reach.within_beams(sensor, "herring gull", birds=100, visibility=VISIBILITY)))
+        for species in SPECIES:
+            drawn = name in SHOWN and species in DRAWN
+            found = reach.within_beams(sensor, species, birds=reach.BIRDS if drawn else BIRDS, visibility=VISIBILITY)
+            rows.append(row(name, sensor, species, found))
+            numbers.setdefault(name, {})[species] = [round(found.to(share), 1) for share in reach.SHARES]
+            if drawn:
+                curves.setdefault(name, {})[species] = found
+    with tools.figure(options.out / "ranges.png", 2, 2, figsize=(9.0, 7.0)) as panels:
+        for name, axes in zip(SHOWN, np.ravel(panels)):
+            draw_reach(axes, curves[name], "2 of 3 scans")
+            axes.set_title(f"{name}{'' if name == 'Airport16' else ', assumed receiver'}", fontsize=10)
+    text = json.dumps({"shares": reach.SHARES, "visibility": VISIBILITY, "ranges": numbers}, indent=1)
+    (options.out / "ranges.json").write_text(f"{text}\n", encoding="utf-8")
     tools.leave(options.out, "coverage-ranges", (
         "receiver", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to"), rows, 2)

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Birds that cross a strip or an approach, and the share of them that is detected at least twice on the way.
+
+A bird flies level and straight, at right angles to the runway, from one side of the region to the other. The drawn
+places of the plan give the distance along the region and the height. The speed is the airspeed of the species, without
+wind. A scan detects the bird with the probability of its heading, averaged over the phases of its wings; scans are
+independent for a bird of this heading.
+"""
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+import warnings
+from typing import List, Tuple
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .. import vtkAvianLidar as _wrapped
+from .._coverage import Coverage
+from .._pipeline import update
+from .._properties import set_properties
+from ._plan import Plan
+from ._regions import APPROACH_HALF_WIDTH, STRIP_HALF_WIDTH, region_names
+from ._scores import weighted
+
+TWICE = 2  # detections
+BIRDS, POSITIONS = 2000, 100_000  # greatest numbers of birds and of their positions in scans
+SPEED = 15.0  # speed of a target without a species, m/s; assumed
+FLIGHTS = 400  # flights from which the speed of a species is taken
+TOGETHER = 20_000  # positions whose poses are in memory together
+
+
+@dataclasses.dataclass(frozen=True)
+class Crossing:
+    """The share of birds that is detected at least TWICE while they cross a region.
+
+    share, error  share and its standard error, because birds are drawn   birds  number of birds
+    speed         mean speed of the species of the plan, m/s              scans  mean number of scans of a crossing
+    seconds       mean duration of a crossing, s
+    """
+
+    share: float
+    error: float
+    birds: int
+    speed: float
+    scans: float
+    seconds: float
+
+
+@functools.lru_cache(maxsize=None)
+def speed_of(species: str, table: str = "") -> float:
+    """Speed of a species, m/s: mean of the flights of vtkAvianLidarTracks, to 0.5 m/s. @param table the user's table of
+    species"""
+    if not species:
+        return SPEED
+    tracks = _wrapped.vtkAvianLidarTracks()
+    set_properties(tracks, species=species, number_of_birds=FLIGHTS, species_file_name=table)
+    update(tracks)
+    trails = tracks.GetOutputDataObject(1)
+    times = vtk_to_numpy(trails.GetPointData().GetArray("time"))
+    points = vtk_to_numpy(trails.GetPoints().GetData())
+    lines = np.split(vtk_to_numpy(trails.GetLines().GetConnectivityArray()),
+                     vtk_to_numpy(trails.GetLines().GetOffsetsArray())[1:-1])
+    speeds = [np.linalg.norm(np.diff(points[line], axis=0), axis=1).sum() / np.ptp(times[line]) for line in lines]
+    return round(2.0 * float(np.mean(speeds))) / 2.0
+
+
+def detected_at_least(times: int, probabilities: np.ndarray) -> np.ndarray:
+    """The probability that at least `times` of independent scans detect each bird. @param probabilities birds x scans"""
+    fewer = np.zeros((times, len(probabilities)))  # by the number of detections
+    fewer[0] = 1.0
+    for p in probabilities.T:
+        fewer[1:] = fewer[1:] * (1.0 - p) + fewer[:-1] * p
+        fewer[0] *= 1.0 - p
+    return 1.0 - fewer.sum(axis=0)
+
+
+def flights(plan: Plan, speed: float, random: np.random.Generator) -> Tuple[np.ndarray, List[np.ndarray], np.ndarray]:
+    """Birds that cross the plan's regions. @return number of the drawn place of each bird; its positions in scans, n x 3,
+    m; its heading, rad clockwise from north"""
+    step, names = speed / plan.sensor.rotation_rate, region_names(plan.runways)  # step in m
+    base, wider = APPROACH_HALF_WIDTH
+    begins = {name: (np.asarray(runway.start), runway, STRIP_HALF_WIDTH, 0.0)
+              for name, runway in zip(names["strips"], plan.runways)}
+    ends = [(end, runway) for runway in plan.runways for end, _ in runway.ends()]
+    begins.update({name: (end, runway, base, wider) for name, (end, runway) in zip(names["approaches"], ends)})
+    half: np.ndarray = np.zeros(len(plan.points))
+    middle, across = np.zeros((2, len(plan.points), 2))
+    for name, members in plan.ends.items():
+        begin, runway, width, more = begins[name]
+        axis, side = runway.axes()
+        along = (plan.points[members, :2] - begin) @ axis
+        half[members], across[members] = width + more * np.abs(along), side
+        middle[members] = begin + along[:, None] * axis
+    count = max(min(BIRDS, len(half), int(POSITIONS * step / (2.0 * half.mean() + step))), 2)
+    chosen = np.sort(random.choice(len(half), count, replace=False))
+    way = across[chosen] * random.choice([-1.0, 1.0], count)[:, None]
+    first = random.uniform(0.0, step, count)
+    positions = [
+        np.column_stack([middle[i] + (np.arange(start, 2.0 * half[i], step) - half[i])[:, None] * to,
+                         np.full(len(np.arange(start, 2.0 * half[i], step)), plan.points[i, 2])])
+        for i, start, to in zip(chosen, first, way)]
+    return chosen, positions, np.arctan2(way[:, 0], way[:, 1])
+
+
+def crossing(plan: Plan) -> Crossing:
+    """The share of the plan's birds that is detected at least TWICE while they cross. The plan has runways."""
+    cover = plan.regions  # which keeps the clutter
+    own = {name: getattr(cover, name) for name in ("places", "species", "all_species", "pose_probabilities")}
+    cover.all_species, cover.pose_probabilities = False, True
+    weights, total, parts = plan.weights(plan.points), np.zeros(3), []
+    for number, (species, mixed) in enumerate(plan.mix.items()):
+        speed = speed_of(species, cover.species_file_name or "")
+        chosen, positions, headings = flights(plan, speed, np.random.default_rng(plan.seed))
+        cover.species = species
+        counts = np.array([len(of) for of in positions])
+        found = np.concatenate([np.empty(0), *_seen(cover, np.concatenate(positions), np.repeat(headings, counts))])
+        probabilities = np.zeros((len(chosen), counts.max(initial=1)))
+        probabilities[np.arange(counts.max(initial=1)) < counts[:, None]] = found
+        share, error, _ = weighted(detected_at_least(TWICE, probabilities), weights[number, chosen])
+        parts.append((mixed * share, mixed * error, len(chosen)))
+        total += mixed * np.array([speed, counts.mean(), counts.mean() / plan.sensor.rotation_rate])
+    for name, value in own.items():
+        setattr(cover, name, value)
+    share, error = np.sum([part[:2] for part in parts], axis=0).tolist()
+    return Crossing(share, error, min(part[2] for part in parts), *total.tolist())
+
+
+def _seen(cover: Coverage, places: np.ndarray, headings: np.ndarray) -> List[np.ndarray]:
+    """Probabilities that one scan detects a bird of a heading (rad) at each place, averaged over its wing phases."""
+    found = []
+    for first in range(0, len(places), TOGETHER):
+        part = slice(first, first + TOGETHER)
+        cover.places = places[part]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the plan's coverage has warned
+            of_poses = cover["pose_probabilities"].astype(float).reshape(len(places[part]), -1)
+        count = _headings(cover, of_poses.shape[-1])
+        of_headings = of_poses.reshape(len(of_poses), -1, count).mean(axis=1)
+        at = headings[part] / (2.0 * math.pi) * count
+        low = np.floor(at).astype(int)
+        rows, share = np.arange(len(at)), at - low
+        found.append((1.0 - share) * of_headings[rows, low % count] + share * of_headings[rows, (low + 1) % count])
+    return found
+
+
+def _headings(cover: Coverage, poses: int) -> int:
+    """The number of headings of a bird's poses: 16 for each phase of flapping wings."""
+    return poses if cover.gliding or poses == 1 else 16
