@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reports of plans that ask for less than TestReport's, sites by mix and strikes, reach of receivers, and plans that are wrong."""
+import csv
 import html
 import math
 import os
+import pathlib
 import re
 import shlex
 import types
@@ -15,12 +17,19 @@ import exampletools  # noqa: F401  (finds the examples)
 import flown
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main, parser
+from avianlidar.apps import _answer
+from avianlidar.apps._json import packaged
+from avianlidar.apps._on_sale import on_sale
 from avianlidar.apps._plan import Plan
 from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
 from browser import Browser
 from reporttools import HERE, SENSOR, STEP, TARGET, plan, report, rows_of, same_numbers, written
+
+
+SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
+SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose")
 
 
 class Less(unittest.TestCase):
@@ -133,6 +142,56 @@ class Less(unittest.TestCase):
         straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3), np.array([1.0, 1.0, 0.0]))
         self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
         self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
+
+    def test_ranges_of_the_package_are_those_of_the_table(self):
+        """For all sensors and species; one of them is computed again."""
+        ranges = packaged("ranges.json")["ranges"]
+        with open(SOURCE / "Documentation" / "evidence" / "tables" / "coverage-ranges.csv", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual({(row["receiver"], row["bird"]) for row in table}, {(name, bird) for name in al.Sensor.presets() for bird in SPECIES})
+        for row in table:
+            shown = [float(row[head].partition(" ")[0].replace("–", "0")) for head in ("9 of 10, to", "half, to", "a tenth, to")]
+            np.testing.assert_allclose(shown, ranges[row["receiver"]][row["bird"]], rtol=0.051, atol=0.06)  # two digits
+        found = reach.within_beams(al.Sensor("Search905"), "crow", visibility=reach.CLEAR)
+        np.testing.assert_allclose(ranges["Search905"]["crow"], [found.to(share) for share in reach.SHARES], atol=0.06)
+
+    def test_what_nobody_sells(self):
+        self.assertEqual({name for name in al.Sensor.presets() if name not in on_sale()},
+                         {"Airport16", "Airport32", "Automotive16", "CorridorC16", "Search905", "Search1550"})
+        for sensor, words in (({"preset": "OS2_128"}, ""), ({"preset": "OS2_128", "rotation_rate": 20}, ""),
+                              ({"preset": "OS2_128", "pulse_energy": 1.0}, "OS2_128 changed is an idea: its pulse_energy is not that of the lidar on sale."),
+                              ({"preset": "Search1550"}, "Search1550 is an idea: nobody sells this lidar."),
+                              ({"preset": "Airport16"}, "Airport16 is an idea: its sensor file names no maker.")):
+            self.assertEqual(self.small(sensor=sensor).idea, words)
+
+    def test_a_lidar_on_sale_is_advised_as_one(self):
+        """No table of other lidars; the maker is asked. Without a winner, the page says where its numbers hold."""
+        text = html.unescape(report("sold", plan(sensor={"preset": "OS2_128", "azimuth_step": STEP}, coverage=TARGET, places=60, siting={
+            "bounds": [-1200, 0, 500, 1500], "spacing": 1200, "draws": 0, "sensors": 1})).read_text(encoding="utf-8"))
+        self.assertIn("Nowhere: from none of", text)
+        self.assertIn("The other numbers of this page are for the sensor's place in the plan or its scene (at the origin, 3\u00a0m up).", text)
+        self.assertIn("Ask the maker of", text)
+        for words in ("is an idea", 'id="offers"', "Do not plan to buy"):
+            self.assertNotIn(words, text)
+
+    def test_the_highest_mast_may_be_too_low(self):
+        for masts, words in (([5, 10], "the highest mast of the plan (10 m)"), ([10], "the only mast of the plan (10 m)"), ([5, 10, 400], None)):
+            sites = Sites(self.small(heights=[20], siting={"bounds": [800, 1600, -400, 400], "spacing": 400, "draws": 0, "sensors": 1, "masts": masts})).look()
+            mast = max(sites.best_by_mast(), key=lambda row: sites.values[np.argmin(np.abs(sites.positions - row["position"]).sum(axis=1))])["mast"]
+            said = sites.higher_mast
+            self.assertEqual(bool(said), mast == max(masts), (said, mast))
+            if words and said:
+                self.assertIn(words, said[0])
+
+    def test_other_draws_in_words(self):
+        def site(*rows):
+            return {"robustness": [{"sensors": 1, "draws": 10, "change": change, "another winner": count, "gain at most": gain}
+                                   for change, count, gain in rows]}
+        said = _answer._other_draws
+        self.assertEqual(said(site()), [])
+        self.assertEqual(said(site(("other places", 0, 0.0))), ["With other numbers (other places) this site wins in all 10 draws."])
+        self.assertEqual(said(site(("effective area ±20 %", 0, 0.0), ("other places", 3, 0.042))),
+                         ["With other numbers another site wins in 3 of 10 draws (other places), by 4\u00a0% of the share at most."])
 
     def test_what_is_wrong_is_named(self):
         for change, words in (({"compare_with": ["Airport17"]}, "Airport17"),

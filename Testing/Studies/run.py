@@ -49,6 +49,7 @@ PICTURES = {
     "weather": {"weather": "weather"},
     "your_airport": {"airport": "your-airport"},
 }
+DATA = {"ranges": ("ranges.json", "Python/avianlidar/apps")}  # numbers that the package holds, by study
 TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "media_time", "more_reflections",
           "moved_scenes", "multiple_scattering", "others", "paper_times", "presets", "protocol", "quadcopter",
           "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
@@ -66,6 +67,8 @@ def pages(words):
             importlib.import_module(name).main(["--out", str(out)])
         for picture, target in PICTURES.get(name, {}).items():
             shutil.copyfile(out / f"{picture}.png", page_tables.DOCUMENTATION / "images" / f"{target}.png")
+        for name_of_file, target in [DATA[name]] if name in DATA else ():
+            shutil.copyfile(out / name_of_file, HERE.parents[1] / target / name_of_file)
         for table in out.glob("*.md"):
             shown = name if table.stem == "table" else table.stem
             if not page_tables.put(shown, table.read_text(encoding="utf-8")):

@@ -153,24 +153,25 @@ def _meaning(view: Plan, crossing: Optional[Crossing]) -> str:
     whole = {"strips": "the whole length of", "approaches": f"the whole {APPROACH_LENGTH / 1000.0:g}\u00a0km of"}
     count = {kind: sum(KINDS[name.partition(" ")[0]] == kind for name in view.ends) for kind in whole}
     one = {"strips": "strip", "approaches": "approach"}
-    parts = listed([f"{whole[kind]} {'the' if count[kind] == 1 else 'each'} {one[kind]}" for kind in whole if count[kind]])
+    parts = listed([f"{whole[kind]} {'the' if count[kind] == 1 else 'each'} {one[kind]}"
+                    for kind in whole if count[kind]])
     scans, seconds = (f"{float(f'{value:.2g}'):g}" for value in (crossing.scans, crossing.seconds))
     return (f"The share is that of one scan, which takes {takes(view)}, as a mean over {parts}, near and far. While "
-            f"birds cross there at right angles at {crossing.speed:.3g}\u00a0m/s (on average for {seconds}\u00a0s, or {scans} "
-            f"scans), {twice(crossing)} of them are detected at least twice.")
+            f"birds cross there at right angles at {crossing.speed:.3g}\u00a0m/s (on average for {seconds}\u00a0s, or "
+            f"{scans} scans), {twice(crossing)} of them are detected at least twice.")
 
 
 def about_idea(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
-    """A sentence if nobody sells the lidar, and one on the best lidar on sale at the same place. @param offers lidars on
-    sale, the best first"""
+    """A sentence if nobody sells the lidar, and one on the best lidar on sale at the same place. @param offers lidars
+    on sale, the best first"""
     if not view.idea:
         return []
     best, most = offers[0], max(one["row"]["detection_probability"] for one in offers)
     crossing = best["crossing"]
     if max(most, crossing.share if crossing else 0.0) < LEAST:
         ever = ", even at least twice while they cross" if crossing else ""
-        return [f"{view.idea} At the same place, none of {len(offers)} lidars on sale detects {LEAST_WORDS} of the same "
-                f"birds{ever}."]
+        return [f"{view.idea} At the same place, none of {len(offers)} lidars on sale detects {LEAST_WORDS} of the "
+                f"same birds{ever}."]
     seen = f"{share_of(best['row'])} of the same birds by one scan"
     seen += f", and {twice(crossing)} at least twice while they cross" if crossing else ""
     return [f"{view.idea} At the same place, the best of {len(offers)} lidars on sale ({best['name']} of "
@@ -198,8 +199,8 @@ def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reac
     else:
         first = (f"{plan.name} should stand {where}: from there {detects}, "
                  f"the most of {site['count']} candidates{year}.")
-    there = ([f"The other numbers of this page are for {place(position)}, the place in the plan or its scene."]
-             if site and view is plan else [])
+    there = [f"The other numbers of this page are for the sensor's place in the plan or its scene ({place(position)})."]
+    there = there if site and view is plan else []
     return [first, *there, _meaning(view, crossing), *_by_end(view), _how_far(view, reaches)]
 
 
@@ -235,8 +236,8 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
     said += f". It detects half or more of the birds {listed(seen)}" if seen else ""
     if never:
-        said += (f". At {listed(never)}\u00a0m it nowhere detects half of the birds, because the beams reach this height "
-                 "only where the range is already too long")
+        said += (f". At {listed(never)}\u00a0m it nowhere detects half of the birds, because the beams reach this "
+                 "height only where the range is already too long")
     return f"{said}."
 
 
@@ -273,8 +274,8 @@ def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: O
     cover = view.coverage
     ask = "" if view.idea else f" Ask the maker of {view.name} for the numbers of the lidar."
     steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
-                  "words": (f"Size and reflectance ({cover.reflectance:g}) of birds and {len(set(view.assumed))} numbers "
-                            f"of {view.name} are assumed.{ask} This command shows the effect of darker birds:"),
+                  "words": (f"Size and reflectance ({cover.reflectance:g}) of birds and {len(set(view.assumed))} "
+                            f"numbers of {view.name} are assumed.{ask} This command shows the effect of darker birds:"),
                   "command": command(plan, "report", "darker.html",
                                      **{"coverage.reflectance": f"{cover.reflectance / 2.0:g}"})})
     return steps
@@ -287,8 +288,8 @@ def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, 
     what = f"the report for {best}{', at the best site for it' if 'siting' in plan.plan else ''}"
     settings = {"sensor.preset": best, **({"sensor.name": best} if "name" in plan.plan["sensor"] else {})}
     return {"head": f"Do not plan to buy {view.name}.", "more": "#on-sale",
-            "words": ("The result shows what a lidar with these numbers would do. Ask makers whether they can build such "
-                      "a lidar, and for measured ranges of birds. "
+            "words": ("The result shows what a lidar with these numbers would do. Ask makers whether they can build "
+                      "such a lidar, and for measured ranges of birds. "
                       + (f"A plan with the sensor {best} makes {what}." if changed else f"This command makes {what}:")),
             "command": "" if changed else command(plan, "report", "on-sale.html", **settings)}
 
@@ -318,8 +319,8 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
         return {**found, "words": f"{ends} No tried change of the beams detects more birds from the same place."}
     now, then = (percent(row["detection_probability"], row["detection_std_error"], row["places"], bar=False)
                  for row in (advice["now"], best["then"]))
-    return {**found, "words": (f"{ends} The best change that was tried: {best['what'].partition(' (')[0]}. From the same "
-                               f"place this lidar detects {then} instead of {now}. It costs {best['cost']}.")}
+    return {**found, "words": (f"{ends} The best change that was tried: {best['what'].partition(' (')[0]}. From the "
+                               f"same place this lidar detects {then} instead of {now}. It costs {best['cost']}.")}
 
 
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:

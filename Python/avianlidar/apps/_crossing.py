@@ -68,7 +68,7 @@ def speed_of(species: str, table: str = "") -> float:
 
 
 def detected_at_least(times: int, probabilities: np.ndarray) -> np.ndarray:
-    """The probability that at least `times` of independent scans detect each bird. @param probabilities birds x scans"""
+    """The probability that at least `times` independent scans detect each bird. @param probabilities birds x scans"""
     fewer = np.zeros((times, len(probabilities)))  # by the number of detections
     fewer[0] = 1.0
     for p in probabilities.T:
@@ -78,8 +78,8 @@ def detected_at_least(times: int, probabilities: np.ndarray) -> np.ndarray:
 
 
 def flights(plan: Plan, speed: float, random: np.random.Generator) -> Tuple[np.ndarray, List[np.ndarray], np.ndarray]:
-    """Birds that cross the plan's regions. @return number of the drawn place of each bird; its positions in scans, n x 3,
-    m; its heading, rad clockwise from north"""
+    """Birds that cross the plan's regions. @return number of the drawn place of each bird; its positions in scans,
+    n x 3, m; its heading, rad clockwise from north"""
     step, names = speed / plan.sensor.rotation_rate, region_names(plan.runways)  # step in m
     base, wider = APPROACH_HALF_WIDTH
     begins = {name: (np.asarray(runway.start), runway, STRIP_HALF_WIDTH, 0.0)

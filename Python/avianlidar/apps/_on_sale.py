@@ -21,13 +21,13 @@ def on_sale() -> Tuple[str, ...]:
 
 
 def idea(name: str, sensor: Sensor, given: Iterable[str] = ()) -> str:
-    """A sentence if nobody sells a lidar, else empty. @param name of the lidar @param given names of properties that are
-    set"""
+    """A sentence if nobody sells a lidar, else empty. @param name of the lidar @param given names of properties that
+    are set"""
     changed = [one for one in given if one not in CHOSEN]
     if not sensor.on_sale:
         named = "maker" in sensor.description
         return f"{name} is an idea: {'nobody sells this lidar' if named else 'its sensor file names no maker'}."
-    return f"{name} is an idea: {', '.join(changed)} differ from the lidar on sale." if changed else ""
+    return f"{name} is an idea: its {', '.join(changed)} is not that of the lidar on sale." if changed else ""
 
 
 def half_range(name: str, species: str) -> float:

@@ -198,8 +198,8 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
 
 
 def labels_of(plan: Plan, shares: Mapping[str, str]) -> List[Label]:
-    """Labels of the map on the first page: the sensor, the ends of the runways, and the plan's regions with the share of
-    each. @param shares shares of the regions in words"""
+    """Labels of the map on the first page: the sensor, the ends of the runways, and the plan's regions with the share
+    of each. @param shares shares of the regions in words"""
     found = [Label(plan.name, plan.sensor.position[:2], style={"color": "red"})]
     for runway, names in zip(plan.runways, end_names(plan.runways)):
         found += [Label(name, end, way, {"weight": "bold"})
@@ -209,7 +209,8 @@ def labels_of(plan: Plan, shares: Mapping[str, str]) -> List[Label]:
         if name in plan.ends:
             sides = 0.5 * (outline[[0, 3]] + outline[[1, 2]])  # the middles of both sides
             outer = max(sides, key=lambda side: round(float(np.hypot(*(side - middle))), 3))
-            found.append(Label("\n".join(filter(None, (name, shares.get(name, "")))), outer, outer - outline.mean(axis=0)))
+            words = "\n".join(filter(None, (name, shares.get(name, ""))))
+            found.append(Label(words, outer, outer - outline.mean(axis=0)))
     return found
 
 

@@ -2,7 +2,7 @@
 """Labels of a picture, placed so that no label covers another label or leaves the axes."""
 from __future__ import annotations
 
-from typing import Any, List, NamedTuple, Sequence, Tuple
+from typing import Any, List, NamedTuple, Sequence
 
 import numpy as np
 
@@ -16,12 +16,12 @@ class Label(NamedTuple):
     """Words beside a place (m east and north), with the direction (m) in which the label moves first, and a style."""
 
     words: str
-    place: Sequence[float]
-    first: Sequence[float] = (1.0, 1.0)
+    place: Any
+    first: Any = (1.0, 1.0)
     style: Any = {}
 
 
-def place_labels(axes, labels: Sequence[Label], keep_free: Sequence[Tuple[float, float]] = ()) -> List[str]:
+def place_labels(axes, labels: Sequence[Label], keep_free: Any = ()) -> List[str]:
     """Writes labels beside their places: each at the nearest free position, in the given order. Limits and size of the
     axes must not change later. @param keep_free places of marks, m, that labels do not cover @return words of the
     labels without a free position, which are not written"""

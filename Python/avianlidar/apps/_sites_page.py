@@ -30,7 +30,8 @@ def kept_surfaces(sites: Sites) -> str:
     count = sum(sites.pierced.values())
     return (f"masts keep below {', '.join(sites.pierced)} surfaces of ICAO Annex 14 ({TABLE['year']}) for {category} "
             f"approaches, {codes}{changes}; {count} of "
-            f"{count + len(sites.positions)} candidates pierced a surface and are left out ({sites.counted}); not checked: {', '.join(NOT_CHECKED)}")
+            f"{count + len(sites.positions)} candidates pierced a surface and are left out ({sites.counted}); "
+            f"not checked: {', '.join(NOT_CHECKED)}")
 
 
 def surface_sentence(sites: Sites) -> str:

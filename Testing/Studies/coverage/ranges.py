@@ -23,8 +23,8 @@ BIRDS = 100  # of sensors that are not in the picture
 
 def row(name, sensor, species, found):
     """Of the table. Ranges have the two digits that the draw of birds leaves of them."""
-    return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.half(sensor, found)}**", reach.metres(found.to(0.1)),
-            reach.metres(found.to(0.9, True)))
+    return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.half(sensor, found)}**",
+            reach.metres(found.to(0.1)), reach.metres(found.to(0.9, True)))
 
 
 @study()
