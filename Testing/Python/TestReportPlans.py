@@ -164,6 +164,12 @@ class Less(unittest.TestCase):
                               ({"preset": "Airport16"}, "Airport16 is an idea: its sensor file names no maker.")):
             self.assertEqual(self.small(sensor=sensor).idea, words)
 
+    def test_lidars_on_sale_are_ordered_by_shares_that_are_numbers(self):
+        def offer(twice, once, half):
+            return {"crossing": types.SimpleNamespace(share=twice), "row": {"detection_probability": once}, "half": half}
+        best_first = [offer(0.02, 0.001, 5.0), offer(0.01, 0.009, 90.0), offer(1e-9, 1e-8, 60.0), offer(1e-4, 1e-7, 50.0), offer(0.0, 0.0, math.nan)]
+        self.assertEqual(sorted(best_first[::-1], key=_answer.merit, reverse=True), best_first)
+
     def test_a_lidar_on_sale_is_advised_as_one(self):
         """No table of other lidars; the maker is asked. Without a winner, the page says where its numbers hold."""
         text = html.unescape(report("sold", plan(sensor={"preset": "OS2_128", "azimuth_step": STEP}, coverage=TARGET, places=60, siting={

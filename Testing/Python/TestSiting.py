@@ -357,7 +357,7 @@ class Airport(unittest.TestCase):
                                "siting": {"spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0, **of}}))
         whole, kept = sites(surfaces=False), sites()
         self.assertEqual(whole.pierced, {})
-        self.assertIn("no surface is used", _sites_page.words(whole)["obstacle limits"])
+        self.assertIn("the plan switches the surfaces off", _sites_page.words(whole)["obstacle limits"])
         high = pierced([Surfaces.of(runway, self.scene) for runway in self.runways], whole.positions) > 0
         np.testing.assert_array_equal(kept.positions, whole.positions[~high])
         self.assertEqual(sum(kept.pierced.values()), np.count_nonzero(high))

@@ -166,16 +166,20 @@ def about_idea(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
     on sale, the best first"""
     if not view.idea:
         return []
-    best, most = offers[0], max(one["row"]["detection_probability"] for one in offers)
-    crossing = best["crossing"]
-    if max(most, crossing.share if crossing else 0.0) < LEAST:
-        ever = ", even at least twice while they cross" if crossing else ""
-        return [f"{view.idea} At the same place, none of {len(offers)} lidars on sale detects {LEAST_WORDS} of the "
-                f"same birds{ever}."]
+    best, crossing = offers[0], offers[0]["crossing"]
     seen = f"{share_of(best['row'])} of the same birds by one scan"
     seen += f", and {twice(crossing)} at least twice while they cross" if crossing else ""
-    return [f"{view.idea} At the same place, the best of {len(offers)} lidars on sale ({best['name']} of "
-            f"{best['maker']}) detects {seen}."]
+    who = (f"the best of {len(offers)} lidars on sale ({best['name']} of {best['maker']})" if any(merit(best)[:2]) else
+           f"each of {len(offers)} lidars on sale")
+    return [f"{view.idea} At the same place, {who} detects {seen}."]
+
+
+def merit(offer: Dict[str, Any]) -> Tuple[float, float, float]:
+    """What lidars on sale are ordered by: shares detected twice and by one scan, if they are given as a number, and the
+    range to which half of the birds are detected."""
+    shares = (offer["crossing"].share if offer["crossing"] else 0.0, offer["row"]["detection_probability"])
+    twice_share, one_scan = (share if share >= LEAST else 0.0 for share in shares)
+    return twice_share, one_scan, 0.0 if math.isnan(offer["half"]) else offer["half"]
 
 
 def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any],
@@ -197,7 +201,8 @@ def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reac
         first = (f"Nowhere: from none of {site['count']} candidates, of {site['lattice']}, one scan of {plan.name} "
                  f"detects {LEAST_WORDS} of {birds}{year or air_of(view)}.")
     else:
-        first = (f"{plan.name} should stand {where}: from there {detects}, "
+        stands = "would stand best" if view.idea else "should stand"
+        first = (f"{plan.name} {stands} {where}: from there {detects}, "
                  f"the most of {site['count']} candidates{year}.")
     there = [f"The other numbers of this page are for the sensor's place in the plan or its scene ({place(position)})."]
     there = there if site and view is plan else []

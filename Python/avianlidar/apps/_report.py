@@ -310,8 +310,7 @@ class Report:
              **{name: one["row"][name] for name in ("detection_probability", "detection_std_error")},
              "twice": one["crossing"].share if one["crossing"] else None,
              "twice_std_error": one["crossing"].error if one["crossing"] else None} for one in offers])
-        return sorted(offers, reverse=True, key=lambda one: (
-            one["crossing"].share if one["crossing"] else 0.0, one["row"]["detection_probability"]))
+        return sorted(offers, key=_answer.merit, reverse=True)
 
     def _first_picture(self, view: Plan, folder: pathlib.Path, reaches: Dict[str, Any]) -> Dict[str, str]:
         """The airport with the sensor, the regions of the plan, and where birds are detected at each height."""

@@ -322,8 +322,8 @@ class Sites:
         if best is None or best < max(self.masts):
             return []
         which = "highest" if len(self.masts) > 1 else "only"
-        return [f"The best site has the {which} mast of the plan ({best:g} m): a higher mast may be better. Add its height "
-                "to siting.masts."]
+        return [f"The best site has the {which} mast of the plan ({best:g} m): a higher mast may be better. Add its "
+                "height to siting.masts."]
 
     def over_the_year(self, order, species: int, places) -> np.ndarray:
         """The mean share of some places at each site over the year. @param order of the sites @param species number of
