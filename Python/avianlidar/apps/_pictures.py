@@ -63,6 +63,7 @@ def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has
         figure = Figure(figsize=size, dpi=PIXELS, layout="constrained")
         work(figure.subplots(1, columns))
+        figure.draw_without_rendering()  # the layout needs two passes to fix axes of equal scales
         figure.savefig(content, format="png")
     return content.getvalue()
 

@@ -27,7 +27,8 @@ def place_labels(axes, labels: Sequence[Label], keep_free: Any = ()) -> List[str
     labels without a free position, which are not written"""
     from matplotlib.text import Text
     from matplotlib.transforms import Bbox
-    axes.figure.draw_without_rendering()  # the layout fixes the axes
+    for _ in range(2):  # the layout needs two passes to fix axes of equal scales
+        axes.figure.draw_without_rendering()
     scale = axes.figure.dpi / 72.0  # pixels in a point
     inside = axes.get_window_extent()
     marks = axes.transData.transform(np.reshape(keep_free, (-1, 2)))
