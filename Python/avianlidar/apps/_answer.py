@@ -113,15 +113,15 @@ def over(view: Plan) -> str:
     for kind, names in region_names(view.runways).items():
         there = [name.partition(" ")[2] for name in names if name in view.ends]
         every = len(there) == len(names)
+        high = f", up to {view.heights_of(kind)[1]:.3g}\u00a0m high" if there and not view.asked else ""
         if there and kind == "strips":
             which = f"the strips of {whose}" if every else f"the strip of {listed(there)}"
-            parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle)")
+            parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle{high})")
         elif there:
             which = "the approaches" if every else f"the approach to {listed(there)}"
-            parts.append(f"{which} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end)")
+            parts.append(f"{which} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end{high})")
     if not view.asked:
-        tops = [f"{view.heights_of(name)[1]:.3g}" for name in view.members]
-        return f"over {listed(parts)}, to {listed(tops)}\u00a0m high"
+        return f"over {listed(parts)}"
     low, high = view.asked
     heights = f"{low:g}" if low == high else f"{low:g} to {high:g}"
     return f"at {heights}\u00a0m over {listed(parts)}"
