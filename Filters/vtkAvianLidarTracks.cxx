@@ -331,7 +331,7 @@ private:
   vtkNew<vtkCellArray> Lines;
   vtkSmartPointer<vtkIntArray> ObjectIds = Arrays::Make<vtkIntArray>(Arrays::ObjectId);
   vtkSmartPointer<vtkIntArray> SpeciesIds = Arrays::Make<vtkIntArray>(Arrays::SpeciesId);
-  const std::size_t BuiltIn = vtkAvianLidarBirds::KnownSpecies({}).size();
+  const std::size_t BuiltIn = vtkAvianLidarBirds::BuiltInSpecies().size();
   vtkIdType Next = 0;
 };
 }

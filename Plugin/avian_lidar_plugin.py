@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Common functions of the macros. This module is in the plugin's library. `import avian_lidar_plugin` works wherever the
-plugin is loaded, also in a copy of a macro, after `from paraview import servermanager`, which lets Python find modules
-of plugins."""
+"""Common functions of the macros. This module is in the plugin's library. `import avian_lidar_plugin` works wherever
+the plugin is loaded, also in a copy of a macro, after `from paraview import servermanager`, which lets Python find
+modules of plugins."""
 
 import importlib.util
 import itertools
@@ -216,10 +216,13 @@ def surfaces_and_tree(selected):
     plugin."""
     if selected is None:
         selected = next(filter(is_example, of_kind("AvianLidarSceneReader")), None) or open_example()
-    trees = of_kind(TREE)[::-1]  # the newest first
-    tree = next((one for one in upstream(selected) if one in trees), None)
-    if tree is None:
-        tree = next((one for one in trees if one.Input == selected or is_part(selected)), None) or tree_of(selected)
+    newest = sorted(simple.GetSources().values(), key=lambda one: -one.SMProxy.GetGlobalID())
+    trees = [one for one in newest if one.SMProxy.GetXMLName() == TREE]
+    chains = [upstream(selected)]
+    if is_part(selected):  # of a scan, or else of the newest scan
+        chains += [chain for chain in map(upstream, newest) if selected in chain] + [trees]
+    tree = next((one for chain in chains for one in chain if one in trees), None)
+    tree = tree or next((one for one in trees if one.Input == selected), None) or tree_of(selected)
     tree.UpdatePipeline()
     if tree == selected:
         apply(tree)
@@ -239,9 +242,14 @@ def lidar_place(tree):
     return [position.GetRange(i)[0] for i in range(3)] if position else place_beside(tree)
 
 
-def ground_below(place):
-    """Height of the ground below a sensor, m. The sensor stands HEIGHT above the ground."""
-    return place[2] - HEIGHT
+def ground_below(place, tree):
+    """Height of the surface straight below a place, m, or of the lowest point of the surfaces."""
+    down = servermanager.sources.AvianLidarBeamSource(
+        Position=place, ChannelElevations=[-90.0], AzimuthRange=[0.0, 1.0], AzimuthStep=1.0)
+    seen = servermanager.filters.AvianLidarBeamView(Beams=down, Surfaces=tree, BeamId=0)
+    seen.UpdatePipeline()
+    below = seen.GetDataInformation()
+    return below.GetBounds()[5] if below.GetNumberOfPoints() else tree.GetDataInformation().GetBounds()[4]
 
 
 def how_to_move(beams):

@@ -37,12 +37,12 @@ WEST, EAST, SIDE = 260.0, 480.0, 330.0
 CAMERA_ELEVATION = 40
 
 
-def flights(kinds, position, seconds):
-    """A source of tracks for each kind of birds."""
+def flights(kinds, centre, seconds):
+    """A source of tracks for each kind of birds. @param centre of their region on the ground, m"""
     found = []
     for number, (name, properties) in enumerate(kinds.items()):
         simple.SetActiveSource(None)  # an active source would become the input Lines
-        tracks = simple.AvianLidarTracks(registrationName=free_name(name), Center=[*position[:2], ground_below(position)],
+        tracks = simple.AvianLidarTracks(registrationName=free_name(name), Center=centre,
                                          TimeRange=[0.0, seconds], FirstObjectId=FIRST + IDS * number, **properties)
         tracks.UpdatePipeline()
         found.append(tracks)
@@ -66,7 +66,7 @@ def show_birds(kinds, tracks, echoes, view, trail_width=TRAIL_WIDTH):
 
 
 def scan(view=None, surfaces=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WIDTH):
-    """Scans the surfaces, or the airport, with birds. @return (tracks, sensor, echo filter, echoes of each kind of birds)"""
+    """Scans the surfaces, or the airport, with birds. @return (tracks, sensor, echo filter, echoes of each kind)"""
     colour = neighbour(ENERGY_COLOURS, globals().get("__file__")).colour
     view = start(view)
     scene, tree = surfaces_and_tree(surfaces)
@@ -74,7 +74,8 @@ def scan(view=None, surfaces=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WI
     beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=position,
                                        NumberOfRevolutions=revolutions)
     beams.UpdatePipelineInformation()
-    tracks = flights(BIRDS, position, revolutions / beams.RotationRate)
+    x, y, ground = *position[:2], ground_below(position, tree)
+    tracks = flights(BIRDS, [x, y, ground], revolutions / beams.RotationRate)
     movers = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan with birds"), Beams=beams, Surfaces=tree,
                                          Movers=movers, AttenuationCoefficient=AIR, NumberOfReflections=1)
@@ -87,7 +88,6 @@ def scan(view=None, surfaces=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WI
     show(echoes, view, Representation="Points", PointSize=CLUTTER_SIZE)
     simple.Hide(movers, view)
     birds = show_birds(BIRDS, tracks, echoes, view, trail_width)
-    x, y, ground = *position[:2], ground_below(position)
     frame(view, 0.0, CAMERA_ELEVATION, (x - WEST, x + EAST, y - SIDE, y + SIDE, ground, ground + 20.0))
     simple.SetActiveSource(echoes)
     say_place(TITLE, tree, beams)

@@ -20,8 +20,8 @@ CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # sizes of poin
 
 
 def track(view=None, surfaces=None):
-    """Scans the surfaces, or the airport, with birds and tracks the birds. @return (paths of the birds, echo filter, clutter filter,
-    tracker)"""
+    """Scans the surfaces, or the airport, with birds and tracks the birds. @return (paths of the birds, echo filter,
+    clutter filter, tracker)"""
     birds = neighbour(BIRDS, globals().get("__file__"))
     view = start(view)
     ways, beams, echoes, of_birds = birds.scan(view, surfaces, REVOLUTIONS, TRAIL_WIDTH)

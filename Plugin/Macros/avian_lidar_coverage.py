@@ -3,12 +3,12 @@
 
 The macro takes the selected surfaces or, with nothing selected, the airport that comes with the plugin. It makes a
 sensor Search 905 at the position that the scene gives, or else beside the surfaces, and an Avian Lidar Coverage for a
-herring gull in clear air around the sensor. The first view shows the airport, a surface within which a scan detects the bird with a
-probability of at least 1/2, and a slice 30 m above the ground with the probability. The second view shows the same
-slice with the status: seen, too weak, shadowed, in clutter, between beams, outside the band. A change of Species,
-Meteorological Visibility or Reflectance of the coverage does not need new lines of sight. If the surfaces have a collision
-tree, or if a part or a result of a scan is selected, the macro uses the existing tree. The macro hides earlier scans.
-After an error there are no new objects, and Output Messages gives the reason.
+herring gull in clear air around the sensor. The first view shows the airport, a surface within which a scan detects the
+bird with a probability of at least 1/2, and a slice 30 m above the ground with the probability. The second view shows
+the same slice with the status: seen, too weak, shadowed, in clutter, between beams, outside the band. A change of
+Species, Meteorological Visibility or Reflectance of the coverage does not need new lines of sight. If the surfaces have
+a collision tree, or if a part or a result of a scan is selected, the macro uses the existing tree. The macro hides
+earlier scans. After an error there are no new objects, and Output Messages gives the reason.
 
 In ParaView: select surfaces, or nothing, and click the button in the toolbar. In a script: cover(view, surfaces).
 """
@@ -38,10 +38,10 @@ EAST = 0.0
 ROOM = 820.0
 
 
-def region(place):
+def region(place, ground):
     """Bounds of the region around the lidar, m. The slice lies at a layer of points, so status values are not
-    interpolated."""
-    x, y, ground = *place[:2], ground_below(place)
+    interpolated. @param ground height of the ground, m"""
+    x, y = place[:2]
     return [x - REACH, x + REACH, y - REACH, y + REACH, ground, ground + CEILING]
 
 
@@ -100,13 +100,14 @@ def cover(view=None, surfaces=None):
     view = start(view)
     scene, tree = surfaces_and_tree(surfaces)
     place = lidar_place(tree)
+    ground = ground_below(place, tree)
     beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=place)
     simple.SetActiveSource(None)  # an active source would become the input Places
     coverage = simple.AvianLidarCoverage(registrationName=free_name("Coverage map"), Beams=beams, Surfaces=tree,
-                                         Bounds=region(place), Spacing=SPACING, Species=SPECIES)
+                                         Bounds=region(place, ground), Spacing=SPACING, Species=SPECIES)
     coverage.UpdatePipeline()
     level = simple.Slice(registrationName=free_name(f"Coverage at {LEVEL:g} m"), Input=coverage)
-    level.SliceType.Origin = [*place[:2], ground_below(place) + LEVEL]
+    level.SliceType.Origin = [*place[:2], ground + LEVEL]
     level.SliceType.Normal = [0.0, 0.0, 1.0]
     probable = simple.Threshold(registrationName=free_name("Probable"), Input=level, Scalars=["POINTS", PROBABILITY],
                                 ThresholdMethod="Above Upper Threshold", UpperThreshold=LEAST)
@@ -120,7 +121,7 @@ def cover(view=None, surfaces=None):
         show_sensor(beams, each)
     show_probability(probable, surface, view)
     show_reasons(status, level, other)
-    west, *others = region(place)
+    west, *others = region(place, ground)
     for each in (view, other):
         frame(each, EAST, CAMERA_ELEVATION, (west - ROOM, *others), pixels=pixels)
     simple.SetActiveView(view)

@@ -2,11 +2,12 @@
 """ParaView macro: an airport in ground fog, and the echoes of a lidar.
 
 The macro takes the selected surfaces or, with nothing selected, the airport that comes with the plugin. It makes a
-sensor Search 905 at the position that the scene gives, or else beside the surfaces, and a medium (fog of 400 m visibility up to a
-height of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo Filter. The fog is
-translucent, the airport is grey, and echoes are coloured by energy. You can then change Kind, Meteorological Visibility
-or the shape of the medium. If the surfaces have a collision tree, or if a part or a result of a scan is selected, the
-macro uses the existing tree. The macro hides earlier scans. After an error there are no new objects, and Output Messages gives the reason.
+sensor Search 905 at the position that the scene gives, or else beside the surfaces, and a medium (fog of 400 m
+visibility up to a height of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo
+Filter. The fog is translucent, the airport is grey, and echoes are coloured by energy. You can then change Kind,
+Meteorological Visibility or the shape of the medium. If the surfaces have a collision tree, or if a part or a result of
+a scan is selected, the macro uses the existing tree. The macro hides earlier scans. After an error there are no new
+objects, and Output Messages gives the reason.
 
 In ParaView: choose the macro in the menu Macros. In a script: cover(view, surfaces).
 """
@@ -40,7 +41,7 @@ def cover(view=None, surfaces=None):
     place = lidar_place(tree)
     beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=place)
     simple.SetActiveSource(None)
-    fog = fog_above(ground_below(place))
+    fog = fog_above(ground_below(place, tree))
     together = simple.GroupDatasets(registrationName=free_name("Airport in fog"), Input=[tree, fog])
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan in fog"), Beams=beams, Surfaces=together)
     echoes.UpdatePipeline()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView macro: colours the trails of the selected Avian Lidar Tracks by species, with the names in the legend.
 
-A species has the same colour in all views. The first Apply of Avian Lidar Tracks also runs the macro.
+A species has the same colour in all views, and the legend keeps the species of earlier tracks. The first Apply of Avian
+Lidar Tracks also runs the macro.
 
 In ParaView: select the tracks, and choose the macro in the menu Macros. In a script: colour([tracks], view).
 """
@@ -29,7 +30,8 @@ def colour_of(tracks):
 
 def colour(sources, view=None, **properties):
     """Shows the trails of sources of tracks by species, with one legend."""
-    species = {}
+    table = simple.GetColorTransferFunction(ARRAY)
+    species = dict(zip(map(int, table.Annotations[::2]), table.Annotations[1::2]))
     for tracks in sources:
         if tracks is None or tracks.SMProxy.GetXMLName() != "AvianLidarTracks":
             raise ValueError("select Avian Lidar Tracks first")
@@ -38,7 +40,6 @@ def colour(sources, view=None, **properties):
     for tracks in sources:
         display = show(simple.OutputPort(tracks, 1), view, **properties)
         simple.ColorBy(display, ("CELLS", ARRAY))
-    table = simple.GetColorTransferFunction(ARRAY)
     table.InterpretValuesAsCategories = 1
     table.AnnotationsInitialized = 1
     table.Annotations = [text for number in sorted(species) for text in (str(number), species[number])]

@@ -64,17 +64,18 @@ def build(macros, view, scene, sensor, species, number, weather, air):
     beams = getattr(simple, sensor)(registrationName=free_name(name_of(sensor)), Position=place,
                                     NumberOfRevolutions=REVOLUTIONS)
     beams.UpdatePipelineInformation()
+    x, y, ground = *place[:2], ground_below(place, tree)
     solid, fog = tree, None
     if weather == "ground fog":
         simple.SetActiveSource(None)
-        fog = fogs.fog_above(ground_below(place))
+        fog = fogs.fog_above(ground)
         solid = simple.GroupDatasets(registrationName=free_name("Scene in fog"), Input=[tree, fog])
     tracks, inputs = [], {}
     if number > 0:
         flight = {"Pattern": "Crossings", "Species": species, "NumberOfBirds": number, "Radius": RADIUS,
                   "Heights": HEIGHTS}
         kinds = {species.capitalize(): flight}
-        tracks = birds.flights(kinds, place, REVOLUTIONS / beams.RotationRate)
+        tracks = birds.flights(kinds, [x, y, ground], REVOLUTIONS / beams.RotationRate)
         inputs["Movers"] = simple.GroupDatasets(registrationName=free_name("Birds"), Input=tracks)
     echoes = simple.AvianLidarEchoFilter(registrationName=free_name("Scan"), Beams=beams, Surfaces=solid,
                                          NumberOfReflections=1, **inputs, **air)
@@ -84,7 +85,6 @@ def build(macros, view, scene, sensor, species, number, weather, air):
     if number > 0:
         simple.Hide(inputs["Movers"], view)
         birds.show_birds(kinds, tracks, echoes, view)
-        x, y, ground = *place[:2], ground_below(place)
         reach = (birds.WEST, birds.EAST, birds.SIDE) if scene is None else (RADIUS, RADIUS, RADIUS)
         about = (x - reach[0], x + reach[1], y - reach[2], y + reach[2], ground, ground + HEIGHTS[1])
         frame(view, 0.0, birds.CAMERA_ELEVATION, about)

@@ -229,7 +229,8 @@ def parser() -> Parser:
     add = verb["airport"].add_argument
     add("extract", type=pathlib.Path, help="extract of a map: .osm, .osm.pbf, .geojson, .gpkg")
     add("--heights", type=pathlib.Path, metavar="DEM",
-        help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; default: level ground")
+        help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; or the height of level ground above "
+        "the sea, m; default: level ground at the aerodrome's elevation in the map")
     add("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[], help="surveyed obstacles: AIXM "
         "5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
     which = verb["airport"].add_mutually_exclusive_group()

@@ -159,14 +159,26 @@ class Macros(Case):
     def test_own_airport(self):
         """Every macro takes the selected surfaces, at their height above the sea, and from then on a result of these."""
         wall = simple.Box(registrationName="wall", XLength=90, ZLength=20, Center=[0, 50, 110])
+        other = simple.AvianLidarCollisionTree(registrationName="z", Input=simple.Box(registrationName="other"))
         for path in (FOG, BIRDS, COVERAGE):
             text = run(path, wall if path == FOG else simple.GetActiveSource())
             self.assertRegex(text, "the sensor stands beside the surfaces")
         (tree,), (fog, gulls, level) = find("Collision tree"), find("Ground fog", "Gulls", "Coverage at 30 m")
         self.assertEqual(tree.Input, wall)
+        self.assertNotEqual(tree, other)
+        run(AIRPORT, find("Search 905")[0])  # a sensor belongs to its scan
+        self.assertEqual(simple.GetActiveSource().Surfaces, tree)
         for name in ("Scan with birds", "Coverage map"):
             self.assertEqual(find(name)[0].Surfaces, tree)
         self.assertEqual((fog.Bottom, gulls.Center[2], level.SliceType.Origin[2]), (100, 100, 130))
+
+    def test_ground_below_a_mast(self):
+        """Heights count from the surface straight below the lidar, not from the lowest point nor from the lidar."""
+        low, high = simple.Box(XLength=90, YLength=90, ZLength=2, Center=[0, 0, -1]), simple.Box(ZLength=4, Center=[20, 0, 3])
+        tree = simple.AvianLidarCollisionTree(Input=simple.AppendGeometry(Input=[low, high]))
+        tree.UpdatePipeline()
+        ground = sys.modules["avian_lidar_plugin"].ground_below
+        self.assertEqual([ground(place, tree) for place in ([5, 5, 10], [20, 0, 15], [20, 0, 4], [500, 0, 3])], [0, 5, 1, -2])
 
     def test_a_map_of_reasons_goes_with_its_airport(self):
         """The map's second view is closed by the next scan, also if it is the active view."""

@@ -215,6 +215,23 @@ def write_heights(name, heights, low, spacing, driver="GTiff"):
 
 
 class Extracts(unittest.TestCase):
+    def test_level_ground_lies_at_the_airports_elevation(self):
+        """From --heights, else from the map, else at 0 m with a warning; heights above the sea then fit."""
+        for name, tags, words, height, warned in (
+                ("level", {"ele": "228 ft"}, (), 69.494, False), ("given", {"ele": "228 ft"}, ("--heights", "70.5"), 70.5, False),
+                ("unknown", {}, (), 0.0, True)):
+            plan = Map()
+            plan.area((-1500, -800), (1500, 800), aeroway="aerodrome", **tags)
+            plan.way([(-900, 0), (900, 0)], aeroway="runway", ref="09/27")
+            folder, said = made(f"elevation-{name}", plan.write(f"elevation-{name}.osm"), *words)
+            origin = json.loads((folder / "airport.lidarscene.json").read_text())["origin"]
+            self.assertAlmostEqual(origin["height"], height, places=3)
+            self.assertEqual("does not say the aerodrome's elevation" in said, warned, said)
+            self.assertIn(f"the ground is level at {height:g} m", (folder / "README.txt").read_text(encoding="utf-8"))
+        code, said = run("airport", plan.write("elevation.osm"), "--heights", "30000", "-o", fresh("elevation-high"))
+        self.assertEqual(code, 2, said)
+        self.assertIn("--heights 30000: expected a raster, or the height of level ground", said)
+
     def test_runways_that_cross(self):
         folder, _ = made("crossing", crossing().write("crossing.osm"))
         self.assertEqual(sorted(path.name for path in folder.iterdir()), sorted([*airport.WHAT, airport.RECORD]))

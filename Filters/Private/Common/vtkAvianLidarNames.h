@@ -171,7 +171,7 @@ constexpr Name FlapFrequency{ "flap_frequency", "Hz" };
 constexpr Name FlapPhase{ "flap_phase", "1" };
 /// name of the species (text)
 constexpr Name Species{ "species", "" };
-/// number of the species (int): built-in species from 0, then the species of an own table
+/// number of the species (int): built-in species from 0, then the species of the user's table
 constexpr Name SpeciesId{ "species_id", "" };
 /// name of each `species_id` (text)
 constexpr Name SpeciesNames{ "species_names", "" };

@@ -14,7 +14,6 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
-#include <cstddef>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -37,15 +36,26 @@ std::string vtkAvianLidarBirds::TextOf(const char* property, const std::string& 
 }
 
 //------------------------------------------------------------------------------
+std::vector<avianlidar::BirdSpecies> vtkAvianLidarBirds::BuiltInSpecies()
+{
+  return avianlidar::readSpecies(vtkAvianLidarBuiltInText("species.csv"), "species.csv");
+}
+
+//------------------------------------------------------------------------------
+std::vector<avianlidar::BirdSpecies> vtkAvianLidarBirds::OwnSpecies(const std::string& file)
+{
+  if (file.empty())
+  {
+    return {};
+  }
+  return avianlidar::readSpecies(TextOf("SpeciesFileName", file), file);
+}
+
+//------------------------------------------------------------------------------
 std::vector<avianlidar::BirdSpecies> vtkAvianLidarBirds::KnownSpecies(const std::string& file)
 {
-  std::vector<avianlidar::BirdSpecies> all;
-  if (!file.empty())
-  {
-    all = avianlidar::readSpecies(TextOf("SpeciesFileName", file), file);
-  }
-  const auto builtIn =
-    avianlidar::readSpecies(vtkAvianLidarBuiltInText("species.csv"), "species.csv");
+  std::vector<avianlidar::BirdSpecies> all = OwnSpecies(file);
+  const auto builtIn = BuiltInSpecies();
   all.insert(all.end(), builtIn.begin(), builtIn.end());
   return all;
 }
@@ -53,14 +63,15 @@ std::vector<avianlidar::BirdSpecies> vtkAvianLidarBirds::KnownSpecies(const std:
 //------------------------------------------------------------------------------
 std::string vtkAvianLidarBirds::NamesOfSpecies(const std::string& file)
 {
-  std::vector<avianlidar::BirdSpecies> all = KnownSpecies({});
+  std::vector<avianlidar::BirdSpecies> all = BuiltInSpecies();
   try
   {
-    const auto known = KnownSpecies(file);
-    all.insert(all.end(), known.begin(), known.end() - static_cast<std::ptrdiff_t>(all.size()));
+    const auto own = OwnSpecies(file);
+    all.insert(all.end(), own.begin(), own.end());
   }
   catch (const std::runtime_error&)
   {
+    // reported by the execution
   }
   std::string names;
   for (const avianlidar::BirdSpecies& species : all)

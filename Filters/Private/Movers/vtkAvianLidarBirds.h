@@ -21,11 +21,16 @@ namespace vtkAvianLidarBirds
 /// The text of a file. @param property property that holds the file name
 std::string TextOf(const char* property, const std::string& file);
 
-/// The species of the user's table, if there is a file, then the built-in species.
+std::vector<avianlidar::BirdSpecies> BuiltInSpecies();
+
+/// The species of the user's table; none without a file.
+std::vector<avianlidar::BirdSpecies> OwnSpecies(const std::string& file);
+
+/// The species of the user's table, then the built-in species.
 std::vector<avianlidar::BirdSpecies> KnownSpecies(const std::string& file);
 
 /// Names of the built-in species, then of the species of the user's table, one in each line.
-/// A table that cannot be read has no names here, because the execution reports the error.
+/// A table that cannot be read adds no names, because the execution reports the error.
 std::string NamesOfSpecies(const std::string& file);
 
 /// Index of the species that the property Species names.

@@ -12,7 +12,7 @@ from osgeo import osr
 
 from .._pipeline import Error
 from ._extract import COAST, CUT, sea, without_parts
-from ._features import Feature, form_of, properties_of
+from ._features import Feature, form_of, length_of, properties_of
 from ._gdal import box_of, degrees, geometry, moved, valid
 from ._ground import height_at, posts_of, read_heights
 from ._json import packaged
@@ -21,6 +21,7 @@ from ._obstacles import read_obstacles
 from ._osm import read_extract
 from ._runways import choose_runways
 
+LOWEST, HIGHEST = -500.0, 9000.0  # heights of level ground above the sea, m
 FLAT_SPACING = 100.0  # spacing of a ground without a terrain, which follows the curvature of the Earth, m
 
 
@@ -47,7 +48,7 @@ class AirportMap:
     def __init__(self, extract, heights=None, icao: Optional[str] = None, bounds: Optional[Sequence[float]] = None,
                  obstacles: Sequence[Any] = (), progress: Callable[[str, int, int], Any] = lambda *_: None):
         self.known, self.extract = packaged("airport.json"), pathlib.Path(extract)
-        self.dem = pathlib.Path(heights) if heights is not None else None
+        self.dem, self.level = self._ground(heights)
         self.progress = progress
         if bounds is not None:
             west, south, east, north = bounds
@@ -83,6 +84,32 @@ class AirportMap:
         self.outline = outline if outline is not None and all(
             outline.Contains(one.shape.Centroid()) for one in self.runways) else None
 
+    @staticmethod
+    def _ground(heights) -> Tuple[Optional[pathlib.Path], Optional[float]]:
+        """The raster of heights, or the height of level ground above the sea, m."""
+        if heights is None or pathlib.Path(heights).exists():
+            return pathlib.Path(heights) if heights is not None else None, None
+        try:
+            level = float(str(heights))
+        except ValueError:
+            return pathlib.Path(heights), None
+        if not LOWEST <= level <= HIGHEST:
+            raise Error(f"--heights {heights}: expected a raster, or the height of level ground above the sea within "
+                        f"{LOWEST:g} and {HIGHEST:g} m")
+        return None, level
+
+    def _level(self) -> Tuple[float, str]:
+        """The height of level ground above the sea, m, and its source in words."""
+        if self.level is not None:
+            return self.level, "as --heights says"
+        said = length_of(self.tags.get("ele"), HIGHEST)
+        if said is not None:
+            return round(said, 3), "the elevation (ele) of the aerodrome in the map"
+        warnings.warn(f"{self.extract}: there are no --heights, and the map does not say the aerodrome's elevation: level "
+                      "ground at 0 m is assumed. For birds with heights above the sea, give the elevation in metres, "
+                      "for example --heights 69.5", RuntimeWarning, stacklevel=4)
+        return 0.0, "assumed"
+
     def _place(self, bounds: Optional[Sequence[float]]) -> None:
         """Sets the origin and the rectangle of the scene."""
         ends = np.array([one.shape.GetPoints() for one in self.runways])[:, :, :2]
@@ -111,7 +138,9 @@ class AirportMap:
         if self.dem is None:
             spacing, error = FLAT_SPACING, self.known["level_error"]
             posts = np.zeros(posts_of(rectangle, spacing))
-            words = "heights: none given: the ground is level at 0 m (assumed), and curves as the Earth does"
+            level, why = self._level()
+            self.origin = (*self.origin[:2], level)
+            words = f"heights: the ground is level at {level:.10g} m ({why}), and curves as the Earth does"
         else:
             posts, spacing, here, words = read_heights(self.dem, self.origin, rectangle, self.known)
             self.origin, error = (*self.origin[:2], round(here, 3)), self.known["terrain_error"]

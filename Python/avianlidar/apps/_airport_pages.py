@@ -173,7 +173,7 @@ Features that were read, and what became of them
 {_counts_by_kind(found)}
 
 {found.ground}
-  heights are above the sea or above the ellipsoid, as in the file
+  heights are above the sea, or above the ellipsoid if those of the file are
   the ends of the runways lie {np.nanmin(heights):.1f} to {np.nanmax(heights):.1f} m above the origin
   plans give heights above the origin
 
