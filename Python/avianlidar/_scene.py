@@ -383,7 +383,8 @@ class Scene:
 
     @property
     def geodetic_origin(self):
-        """Latitude and longitude (degrees) and height above the ellipsoid (metres) of the origin, or None."""
+        """Latitude and longitude (degrees) of the origin, and its height (metres) above the ellipsoid or the sea, as in
+        the scene file; or None."""
         return self._root_field("geodetic_origin")
 
     @property

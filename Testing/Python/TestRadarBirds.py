@@ -2,6 +2,7 @@
 """Tables of tracks as radars, GPS loggers and Movebank write them: the same birds from each, heights above the sea, the ground and the
 ellipsoid, what is left out, what is wrong; scenarios that scan these birds, and warn of birds that are far away."""
 import contextlib
+import datetime
 import json
 import os
 import pathlib
@@ -72,6 +73,10 @@ WRITTEN = {
         ["Emma #3", clock(s) + "+00:00", *(f"{x}".replace(".", ",") for x in (lat, lon, h))]), "\r\n"),
     "another zone, tabs, comments": "# MERLIN\n\n" + table("track number\ttime\tlat\tlng\talt_msl\n# begins", lambda lat, lon, h, s:
                                                            f"Emma #3\t{clock(s + 7200)}+02:00\t{lat}\t{lon}\t{h}"),
+    "a header that is a comment": "# a radar, 1.5 GHz\n" + table("# track_id, timestamp, latitude, longitude, altitude", lambda lat, lon, h, s:
+                                                                f"Emma #3,{DAY + s},{lat},{lon},{h}"),
+    "a comment with the header's words": table("#id,time,lat,lon,alt\ntrack_id,timestamp,latitude,longitude,altitude", lambda lat, lon, h, s:
+                                               f"Emma #3,{DAY + s},{lat},{lon},{h}"),
     "kilometres": table("id,epoch,position_lat,lon_wgs84,height_km", lambda lat, lon, h, s: f"Emma #3,{DAY + s},{lat},{lon},{h / 1000}"),
     "quotes": table('"trackId","dateTime","decimalLatitude","decimalLongitude","heightAboveMSL"',
                     lambda lat, lon, h, s: f'"Emma #3","{clock(s).replace(".", ",")} UTC","{lat}","{lon}","{h}"'),
@@ -140,6 +145,29 @@ class Tables(unittest.TestCase):
         np.testing.assert_allclose(vtk_to_numpy(fields.GetArray("pose_time")), [0, 1.5, 4], atol=1e-6)
         np.testing.assert_allclose(vtk_to_numpy(fields.GetArray("pose_position")), closed_form(PLACES), atol=2e-4)
         self.assertEqual(fields.GetAbstractArray("species").GetValue(0), "crow")
+        moment = datetime.datetime(2021, 5, 4, 10, 22, 30)
+        zone = datetime.timezone(datetime.timedelta(hours=8))
+        for start in (moment, moment.replace(hour=18, tzinfo=zone), DAY + 37350, np.int64(DAY + 37350)):
+            lines = al.read_tracks(file, origin=ORIGIN, start_time=start)
+            np.testing.assert_allclose(vtk_to_numpy(lines.GetPointData().GetArray("time")), [3, 4.5, 7], atol=1e-6)
+
+    def test_wrong_settings_are_named(self):
+        file = self.home / "settings.csv"
+        file.write_text(WRITTEN["a radar with its own x and y"])
+        for settings, words in (
+                ({"start_time": "yesterday"}, "start_time: is 'yesterday', expected 2026-05-04T10:22:33Z"), 
+                ({"start_time": float("nan")}, "start_time: is nan, expected"), ({"start_time": [1]}, r"start_time: is \[1\], expected"),
+                ({"height_reference": "Sea"}, "settings.csv: height_reference 'Sea' is not known; did you mean 'sea'"),
+                ({"height_reference": "qnh"}, "height_reference 'qnh' is not known; expected one of sea, ground, ellipsoid"),
+                ({"columns": {"hight": "altitude"}}, "settings.csv: columns: 'hight' is not known; did you mean 'height'"),
+                ({"height_reference": "ground"}, r"settings.csv: heights \(altitude\) are above the ground, but there is no scene: expected scene")):
+            with self.subTest(words), self.assertRaisesRegex(al.Error, words):
+                al.read_tracks(file, **{"origin": ORIGIN, **settings})
+        file.write_text("time,x,y,altitude_agl\n0,5,6,30\n1,6,6,30\n")
+        self.assertRaisesRegex(al.Error, r"heights \(altitude_agl\) are above the ground, but there is no scene", al.read_tracks, file)
+        file.write_text("time,x,y,z\n0,5,6,30\n1,6,6,30\n")
+        self.assertRaisesRegex(al.Error, "start_time: is given, but .*settings.csv has no times since 1970",
+                               al.read_tracks, file, start_time=DAY)
 
     def test_levels_of_heights(self):
         head, row = "time,lat,lon,{}\n", "{},47.4512,8.5523,{}\n"
@@ -151,13 +179,14 @@ class Tables(unittest.TestCase):
             self.assertAlmostEqual(z(name, 445) - up, 25.0, places=3)
         for name in ("altitude", "height_above_ellipsoid", "alt hae", "altitude_wgs84"):
             self.assertAlmostEqual(z(name, 492, geoid_undulation=47.0, height_reference="ellipsoid") - up, 25.0, places=3)
+        ground = al.Scene((np.array([(-1e4, -1e4, 0.0), (1e4, -1e4, 0.0), (0.0, 1e4, 0.0)]), np.array([(0, 1, 2)])))
         for name in ("height", "altitude_agl", "AGL", "height above ground level (m)"):
-            self.assertEqual(z(name, 25, height_reference="ground"), 25.0)
-        self.assertEqual(z("altitude_agl", 25), 25.0)
+            self.assertEqual(z(name, 25, height_reference="ground", scene=ground), 25.0)
+        self.assertEqual(z("altitude_agl", 25, scene=ground), 25.0)
         both = "ground_elevation,height_agl,altitude,height_above_ellipsoid"
         for level, wanted in (("", 25.0), ("sea", 25.0), ("ellipsoid", 20.0)):
             self.assertAlmostEqual(z(both, "400,30,445,487", height_reference=level, geoid_undulation=47.0) - up, wanted, places=3)
-        self.assertEqual(z(both, "400,30,445,487", height_reference="ground"), 30.0)
+        self.assertEqual(z(both, "400,30,445,487", height_reference="ground", scene=ground), 30.0)
         self.assertAlmostEqual(z("altitude_m,altitude_ft", "445,1") - up, 25.0, places=3)
         self.assertRaisesRegex(al.Error, r"own.csv: heights \(height-above-ellipsoid\) are above the ellipsoid.* expected geoid_undulation",
                                z, "height-above-ellipsoid", 492)
@@ -176,7 +205,10 @@ class Tables(unittest.TestCase):
         lines, _ = found.lines(0.0, 10.0)
         np.testing.assert_allclose(vtk_to_numpy(lines.GetPoints().GetData()), [(200, 210, 50), (400, 210, 70), (-50, 210, 30)], atol=1e-9)
         self.assertAlmostEqual(found.nearest((200, 210, 0), 0.0, 0.5)[0], 50.0)  # the bird rises, and flies away
-        self.assertAlmostEqual(found.nearest((300, 210, 0), 0.0, 0.5)[0], 60 * 200 / np.hypot(200, 20), places=9)
+        self.assertAlmostEqual(found.nearest((300, 210, 0), 0.0, 4.0)[0], 60 * 200 / np.hypot(200, 20), places=9)
+        self.assertAlmostEqual(found.nearest((300, 210, 0), 0.0, 0.5)[0], np.hypot(80, 52))  # not later, when it is nearer
+        self.assertAlmostEqual(found.nearest((300, 210, 0), 4.0, 5.0)[0], np.hypot(60, 66))  # nor earlier
+        self.assertAlmostEqual(found.nearest((-50, 210, 0), 9.0, 9.5)[0], 30.0)
 
     def test_what_is_left_out_is_counted(self):
         row = "{},{},{},{},{},{}\n"
@@ -191,6 +223,21 @@ class Tables(unittest.TestCase):
                          r"rows without a time \(1\), rows without an id \(1\), rows of a time that their track already has \(1\), tracks of one position \(1\)$")
         marked = "timestamp,lat,lon,height,manually-marked-outlier\n" + "".join(f"{k},47.45,8.55,440,{'true' if k == 1 else ''}\n" for k in range(3))
         self.assertEqual(self.read(marked).times.tolist(), [0, 2])
+
+    def test_rows_without_a_date(self):
+        text = "date,time,lat,lon,height\n{0},10:00:02,47.45,8.55,440\n,10:00:03,47.46,8.55,440\n{0},9:00:04,47.47,8.55,440\n"
+        found = self.read(text.format("2021-05-04"))
+        self.assertEqual(found.times.tolist(), [DAY + 32404, DAY + 36002])
+        self.assertRegex(found.warning, r"own.csv: left out: rows without a date \(1\)$")
+        found = self.read(text.format(""))
+        self.assertEqual((found.ids, found.times.tolist()), ([], []))
+        self.assertRegex(found.warning, r"own.csv: left out: rows without a date \(3\)$")
+        unused = self.read("date,timestamp,lat,lon,height\n,2021-05-04T10:00:02Z,47.45,8.55,440\n,2021-05-04T10:00:03Z,47.46,8.55,440\n")
+        self.assertEqual((unused.times.tolist(), unused.warning), ([DAY + 36002, DAY + 36003], ""))
+        with warnings.catch_warnings():  # tracks of one position alone
+            warnings.simplefilter("ignore")
+            (self.home / "one.csv").write_text("timestamp,lat,lon,height\n2021-05-04T10:00:02Z,47.45,8.55,440\n")
+            self.assertEqual(al.read_tracks(self.home / "one.csv", origin=ORIGIN).GetNumberOfPoints(), 0)
 
     def test_species(self):
         text = "bird_id,species,time,x,y,z\n" + "".join(f"{k},{name},{t},0,{t},5\n" for k, name in enumerate(
@@ -207,6 +254,13 @@ class Tables(unittest.TestCase):
         text = "Zeit,Breite,lat,lon,z,height\n0,47.4512,1,8.5523,1,445\n1,47.4513,1,8.5525,2,446.5\n"
         found = self.read(text, columns={"time": "Zeit", "latitude": "Breite", "height": "height"})
         np.testing.assert_allclose(found.points, closed_form(PLACES[:2]), atol=1e-3)
+        for name, height in (("BirdHt_ft", 445 / 0.3048), ("Vogel (km)", 0.445), ("Vogel", 445)):  # units and levels of names are taken
+            one = self.read(f"Uhr ms,lat,lon,{name}\n0,47.4512,8.5523,{height:.6f}\n2000,47.4513,8.5525,{height:.6f}\n",
+                            columns={"time": "Uhr ms", "height": name})
+            np.testing.assert_allclose(one.points[0], closed_form(PLACES)[0], atol=1e-3)
+            self.assertEqual(one.times.tolist(), [0, 2])
+        one = self.read("time,x,y,BirdHt AMSL [ft]\n0,5,6,1500\n1,6,6,1500\n", columns={"height": "BirdHt AMSL [ft]"})
+        np.testing.assert_allclose(one.points[0], (5, 6, 1500 * 0.3048 - ORIGIN[2]))
         self.assertRaisesRegex(al.Error, r"own.csv: has no column 'Uhr' \(time\), but Zeit, Breite", self.read, text, columns={"time": "Uhr"})
 
     def test_bad_tables_are_named(self):
@@ -349,6 +403,9 @@ class Scenarios(unittest.TestCase):
         with self.said() as heard:
             al.Sequence(self.scenario(metres, head="track_id,timestamp,x,y,z"))
         self.assertRegex(" ".join(heard), "x and y are metres east and north of the scene's origin$")
+        with self.said() as heard:  # inside the gate before the first scan alone
+            al.Sequence(self.scenario([*self.track("A", 0, gate - 500, seconds=100)][::50], start_time=DAY + 36080))
+        self.assertRegex(" ".join(heard), f"1 of 1 birds never come .*: it passes the lidar at {gate + 300:.0f} m$")
         with self.said() as heard:  # a pattern, too
             birds = [{"pattern": "Circles", "number_of_birds": 3, "center": [20000, 0, 0], "radius": 100}]
             al.Sequence(TestSequence.scenario_file(self.home, **{**SCENARIO, "birds": birds}))

@@ -498,8 +498,11 @@ class Plans(unittest.TestCase):
         shape = {"type": "LineString", "coordinates": [[13.3, 53.6], [13.3, 53.61]]}
         for tags in ({"tags": {"aeroway": "runway", "ref": "18/36", "width": "45 m"}}, {"aeroway": "RUNWAY", "ref": "18/36", "width": 45, "name": None},
                      {"other_tags": '"aeroway"=>"runway","ref"=>"18/36","width"=>"45"'}, {"kind": "runway", "ref": "18/36", "width": "45.0"},
-                     {"other_tags": '{"aeroway": "runway", "ref": "18/36"}'}):
-            (self.folder / "b.geojson").write_text(json.dumps({"features": [{"properties": tags, "geometry": shape}]}))
+                     {"other_tags": '{"aeroway": "runway", "ref": "18/36"}'}, {"source_tags": {"aeroway": "runway", "ref": "18/36"}, "names": {"primary": None}},
+                     {"tags": {"aeroway": "runway", "name": None, "ref": "18/36", "width": ""}, "meta": {"name": "editor", "width": "wide"}}):
+            odd = [{"properties": {"kind": "road", name: text}, "geometry": shape} for name in ("tags", "other_tags", "names")
+                   for text in ("{a,b}", "{1: 2}", "{" * 100000, '"a"=>', "[1]", [1], 7, None)]
+            (self.folder / "b.geojson").write_text(json.dumps({"features": [*odd, {"properties": tags, "geometry": shape}]}))
             one, = siting.read_runways(self.folder / "b.geojson", (53.6, 13.3, 0.0))
             self.assertEqual((one.name, one.width), ("18/36", 45.0))
 

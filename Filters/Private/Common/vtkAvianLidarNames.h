@@ -141,7 +141,7 @@ constexpr Name Medium{ "medium", "" };
 /// all media of the scene, as JSON (text)
 constexpr Name Media{ "media", "" };
 constexpr Name SurfaceTexts[] = { ObjectNames, ObjectClasses, MaterialNames, Medium, Media };
-/// latitude, longitude, and height above the WGS84 ellipsoid
+/// latitude, longitude, and height above the WGS84 ellipsoid or the sea, as in the scene file
 constexpr Name GeodeticOrigin{ "geodetic_origin", "deg deg m" };
 /// position of the lidar in the scene file (3 components)
 constexpr Name LidarPosition{ "lidar_position", "m" };

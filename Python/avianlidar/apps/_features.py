@@ -32,25 +32,33 @@ MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
 NO_HEIGHT, NO_LEVEL = re.compile(r"\s*(?:-1(?:\.0*)?)?\s*"), re.compile(r"\s*0*\s*")
 NO_MIN_HEIGHT = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
-TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # format of tags in GDAL's OSM driver
+TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # a tag in hstore
+# Properties that hold several tags, as GDAL, QGIS, osmtogeojson (overpass turbo) and Overture write them
+TAGS = ("other_tags", "all_tags", "tags", "source_tags")
 
 
 def tags_of(properties: Mapping[str, Any]) -> Dict[str, str]:
-    """Tags as texts, also those that GDAL and other programs put together into one property."""
+    """Tags as texts, without empty ones. Tags that GDAL and other programs put together into one property are taken
+    out."""
     tags: Dict[str, str] = {}
     for name, value in properties.items():
-        if name in ("other_tags", "all_tags", "tags", "names") and str(value).startswith("{"):
-            value = json.loads(value) if isinstance(value, str) else value
-        if name == "names" and isinstance(value, dict):
-            tags["name"] = str(value.get("primary") or "")
-        elif isinstance(value, dict):
-            tags.update((key, str(word)) for key, word in value.items())
-        elif name in ("other_tags", "all_tags", "tags"):
-            tags.update((re.sub(r"\\(.)", r"\1", key), re.sub(r"\\(.)", r"\1", word))
-                        for key, word in TAG.findall(str(value)))
-        elif value is not None and value != "":
-            tags[name] = str(value)
+        inner = _tags_in(value) if name in (*TAGS, "names") else {name: value}
+        inner = {"name": inner.get("primary")} if name == "names" else inner
+        tags.update((key, str(word)) for key, word in inner.items()
+                    if word is not None and word != "" and not isinstance(word, (dict, list)))
     return tags
+
+
+def _tags_in(value: Any) -> Dict[str, Any]:
+    """The tags in an object, in the JSON of an object, or in hstore. Other values have none."""
+    if isinstance(value, str) and value.startswith("{"):
+        try:
+            value = json.loads(value)
+        except (ValueError, RecursionError):
+            return {}
+    elif isinstance(value, str):
+        value = {re.sub(r"\\(.)", r"\1", key): re.sub(r"\\(.)", r"\1", word) for key, word in TAG.findall(value)}
+    return value if isinstance(value, dict) else {}
 
 
 def form_of(shape) -> str:

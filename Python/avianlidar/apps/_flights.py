@@ -15,10 +15,11 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import add_array
 from .._pipeline import Error, callers_level, update
-from .._properties import set_properties
+from .._properties import set_properties, unknown
 from .._scene import load_scene
 from ._candidates import ground_of
 from ._geojson import placed
+from ._json import naming
 from ._logs import LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
 
 SCIENTIFIC = {"sturnus vulgaris": "starling", "falco tinnunculus": "kestrel", "columba livia": "pigeon",
@@ -76,8 +77,9 @@ class Flights:
         return lines, [self.ids[track] for track in chosen]
 
     def nearest(self, place, begin: float, end: float) -> np.ndarray:
-        """For each track under way at some time between begin and end (s), the least distance from a place, m."""
-        return np.array([least_distance(part[:, :3], place) for part in self._under_way(begin, end, 1)[1]])
+        """For each track under way at some time between begin and end (s), its least distance from a place in this
+        time, m."""
+        return np.array([least_distance(_cut(part, begin, end), place) for part in self._under_way(begin, end, 1)[1]])
 
     def mistake(self, place, origin: Sequence[float]) -> str:
         """Words on a likely mistake in coordinates that are all far away."""
@@ -95,6 +97,14 @@ class Flights:
         return f"the origin is {origin[0]:g}, {origin[1]:g} (latitude, longitude)"
 
 
+def _cut(track: np.ndarray, begin: float, end: float) -> np.ndarray:
+    """The positions (m x 3) of a track between two times (s). @param track positions with their times, n x 4"""
+    times = track[:, 3]
+    inside = times[(times > begin) & (times < end)]
+    at = np.concatenate([[max(begin, times[0])], inside, [min(end, times[-1])]])
+    return np.column_stack([np.interp(at, times, x) for x in track[:, :3].T])
+
+
 def least_distance(points: np.ndarray, place) -> float:
     """Least distance of a line (n x 3, m) from a place, m."""
     off = points - np.asarray(place, float)
@@ -109,7 +119,7 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     """Tracks of a CSV file; `Error` names the file and what was expected.
 
     origin             latitude, longitude (deg) and height (m) of the scene's origin; default: from the scene
-    scene              a Scene, which has the ground
+    scene              a Scene, which heights above the ground need
     species            name of a species for tracks without a known species
     species_file_name  table of the user's species
     height_reference   level that heights count from: sea, ground or ellipsoid; default: as the column's name says, else
@@ -121,6 +131,8 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     origin = scene.geodetic_origin if origin is None and scene is not None else origin
     reader = Log(file)
     try:
+        if height_reference not in ("", *LEVELS):
+            raise Error(unknown("height_reference", height_reference, LEVELS))
         known = Columns(reader.names, given)
         in_degrees = ("longitude" in known.found or "latitude" in known.found) and not {"x", "y"} & {*given}
         across = ("longitude", "latitude") if in_degrees else ("x", "y")
@@ -128,7 +140,7 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
         chosen["height"], level = _height(known, in_degrees, height_reference)
         more = {what: known.find(what) for what in ("id", "species", "date", *OUTLIERS)}
         chosen.update((what, column) for what, column in more.items() if column)
-        _check_level(chosen["height"].name, level, in_degrees, origin, geoid_undulation)
+        _check_level(chosen["height"].name, level, in_degrees, origin, geoid_undulation, scene)
     except Error as error:
         raise Error(f"{file}: {error}") from None
     frame = reader.rows(chosen, across)
@@ -163,19 +175,23 @@ def read_tracks(file, scene=None, start_time: Any = None, **settings: Any) -> vt
 
     file        the table
     scene       a Scene or the name of a scene file, for longitudes and latitudes and for heights above the ground
-    start_time  time 0 of the lines, in ISO 8601 or in seconds since 1970; default: the earliest time in the table
+    start_time  time 0 of the lines: a datetime or a text in ISO 8601 (in UTC without a zone), or seconds since 1970;
+                default: the earliest time in the table
     settings    species, species_file_name, origin, height_reference, geoid_undulation and columns, as in scenarios
     """
     found = read_flights(file, scene=load_scene(scene) if isinstance(scene, (str, os.PathLike)) else scene, **settings)
     if found.warning:
         warnings.warn(found.warning, RuntimeWarning, stacklevel=callers_level())
-    if found.since_1970:
-        found.times = found.times - (found.times.min() if start_time is None else seconds_of(start_time))
+    with naming("start_time"):
+        if start_time is not None and not found.since_1970 and len(found.times):
+            raise Error(f"is given, but {file} has no times since 1970")
+        if found.since_1970:
+            found.times -= found.times.min(initial=np.inf) if start_time is None else seconds_of(start_time)
     return found.lines(-np.inf, np.inf)[0]
 
 
 def _check_level(name: str, level: str, in_degrees: bool, origin: Optional[Sequence[float]],
-                 geoid_undulation: Optional[float]) -> None:
+                 geoid_undulation: Optional[float], scene) -> None:
     """Raises an error if the scene cannot place birds of these coordinates. @param name column of the heights"""
     if origin is None and (in_degrees or level in ("sea", "ellipsoid")):
         what = "longitudes and latitudes" if in_degrees else f"heights above the {level}"
@@ -185,6 +201,8 @@ def _check_level(name: str, level: str, in_degrees: bool, origin: Optional[Seque
         raise Error(f"heights ({name}) are above the ellipsoid, and those of the scene above the sea: expected "
                     "geoid_undulation, the height of the sea level above the ellipsoid in metres (GUND in AD 2.2 of "
                     "the airport's AIP; 0 if the scene's heights are above the ellipsoid)")
+    if level == "ground" and scene is None:
+        raise Error(f"heights ({name}) are above the ground, but there is no scene: expected scene")
 
 
 def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]:

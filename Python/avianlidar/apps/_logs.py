@@ -2,16 +2,20 @@
 """Tables (CSV) of positions, as radars, loggers and Movebank write them: columns by their meaning, times, tracks."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import datetime
 import io
+import math
 import re
+from numbers import Real
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from .._files import read_regular
 from .._pipeline import Error
+from .._properties import unknown
 
 # Words of a column's name that change nothing, and units with their size in m or s
 FILLERS = {"gps", "gnss", "location", "position", "pos", "fix", "coordinate", "coord", "decimal", "utc", "gmt"}
@@ -38,6 +42,9 @@ LEVELS = {"sea": r"above (?:mean )?(?:sea(?: level)?|a?msl)|a?msl|asl|orthometri
 OUTLIERS = {f"{who} marked outlier": True for who in ("manually", "import", "algorithm")} | {"visible": False}
 ISO = re.compile(r"(\d{4})[-/](\d\d)[-/](\d\d)[T ]+(\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?)\s*"
                  r"(Z|UTC|GMT|([+-])(\d\d):?(\d\d)?)?", re.IGNORECASE)
+CLOCK = r"\d\d?:\d\d(?::\d\d.*)?"
+COMMENT = re.compile(rb"(?m)^[ \t]*#+([^\n]*)$")
+BEFORE_TABLE = re.compile(rb"(?:[ \t]*(?:#[^\n]*)?\n)*")
 ISO_EXPECTED = "2026-05-04T10:22:33Z, with or without a zone, or seconds"
 SINCE_1970, LATEST = 1e8, 8e9  # s: greater times count from 1970, and lie before the year 2223
 
@@ -50,8 +57,8 @@ class Column(NamedTuple):
     level: str = ""  # of LEVELS, or empty
 
 
-def _meaning(name: str, number: int) -> Tuple[str, Optional[Column]]:
-    """What a column holds: a key of NAMES, "height", an outlier's mark, or nothing."""
+def _meaning(name: str, number: int) -> Tuple[str, Column]:
+    """What a column holds: a key of NAMES, "height", an outlier's mark, or nothing; and the column."""
     words = [word.lower() for word in re.findall(r"[^\W_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))]
     unit = next((UNITS[word] for word in words[1:] if word in UNITS), 1.0)
     said = " ".join(word for i, word in enumerate(words) if word not in FILLERS and (i == 0 or word not in UNITS))
@@ -66,7 +73,29 @@ def _meaning(name: str, number: int) -> Tuple[str, Optional[Column]]:
     rest = levels.get(level, said).split()
     if not set(rest) - HEIGHTS and (rest or level):
         return "height", Column(name, number, unit, 0, level)
-    return "", None
+    return "", Column(name, number, unit, 0, level)
+
+
+def _with_header(raw: bytes) -> bytes:
+    """A table. If its header is a comment before the first line, the mark of this comment is removed."""
+    start = BEFORE_TABLE.match(raw).end()  # type: ignore[union-attr]  # always matches
+    end = raw.find(b"\n", start)
+    first, fits = _cells(raw[start:end if end >= 0 else len(raw)])
+    for comment in COMMENT.finditer(raw, 0, start) if fits < 3 else ():
+        if len(_cells(comment[1])[0]) == len(first) and _cells(comment[1])[1] >= 3:
+            return raw[:comment.start()] + comment[1] + raw[comment.end():]
+    return raw
+
+
+def _cells(line: bytes) -> Tuple[List[str], int]:
+    """The cells of a line, and how many of them are names with a meaning."""
+    text = line.decode(errors="replace")
+    cells = [cell.strip(' "') for cell in text.split(_separator(text))]
+    return cells, sum(_meaning(cell, 0)[0] != "" for cell in cells)
+
+
+def _separator(line: str) -> str:
+    return max(",;\t|", key=line.count)
 
 
 class Columns:
@@ -77,13 +106,14 @@ class Columns:
         self.found: Dict[str, List[Column]] = {}
         for number, name in enumerate(names):
             what, column = _meaning(name, number)
-            if column and what not in given:
+            if what and what not in given:
                 self.found.setdefault(what, []).append(column)
         for what, name in given.items():
+            if what not in (*NAMES, "height"):
+                raise Error(unknown("columns:", what, (*NAMES, "height")))
             if name not in names:
                 raise Error(f"has no column {name!r} ({what}), but {', '.join(names)}")
-            column = _meaning(name, names.index(name))[1]
-            self.found[what] = [column or Column(name, names.index(name), 1.0, 0)]
+            self.found[what] = [_meaning(name, names.index(name))[1]]
 
     def find(self, what: str, level: Optional[str] = None) -> Optional[Column]:
         """The column of a meaning. @param level of the height; None: not a height"""
@@ -106,21 +136,24 @@ class Columns:
         return column
 
 
-def seconds_of(text: Any) -> float:
-    """Seconds since 1970 of a time in ISO 8601, in UTC without a zone, or of a number of seconds since 1970."""
-    if isinstance(text, (int, float)):
-        return float(text)
-    try:
-        return float(_iso([text])[0][0])
-    except ValueError:
-        raise ValueError(f"is {text!r}, expected {ISO_EXPECTED} since 1970") from None
+def seconds_of(moment: Any) -> float:
+    """Seconds since 1970 of a datetime or a text in ISO 8601, in UTC without a zone, or of a number of seconds since
+    1970."""
+    with contextlib.suppress(ValueError):
+        if isinstance(moment, datetime.datetime):
+            seconds = (moment if moment.tzinfo else moment.replace(tzinfo=datetime.timezone.utc)).timestamp()
+        else:
+            seconds = float(moment if isinstance(moment, Real) else _iso([moment])[0][0])
+        if math.isfinite(seconds):
+            return seconds
+    raise ValueError(f"is {moment!r}, expected {ISO_EXPECTED} since 1970")
 
 
 def _iso(texts: Sequence[str]) -> Tuple[np.ndarray, bool]:
     """Seconds since 1970, and whether a text has no zone. ValueError holds the first wrong text."""
     plain, shifts, is_local = [], [], False
     for text in texts:
-        found = ISO.fullmatch(text)
+        found = ISO.fullmatch(text) if isinstance(text, str) else None
         if not found:
             raise ValueError(text)
         year, month, day, clock, own, sign, hours, minutes = found.groups()
@@ -153,7 +186,7 @@ class Log:
         raw = read_regular(file)
         if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
             raise Error(f"{file}: is in UTF-16, expected UTF-8: save the table again as CSV in UTF-8")
-        raw = re.sub(rb"(?m)^[ \t]*#[^\n]*$", b"", raw.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n"))
+        raw = COMMENT.sub(b"", _with_header(raw.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")))
         chosen = re.match(rb'\s*"?sep=(.)"?[ \t]*\n', raw)  # of spreadsheets
         self.raw = raw[chosen.end():] if chosen else raw
         self.skipped = raw[:chosen.end()].count(b"\n") if chosen else 0
@@ -161,7 +194,7 @@ class Log:
             head = self.raw.lstrip().partition(b"\n")[0].decode()
         except UnicodeDecodeError:
             raise Error(f"{file}: is not text in UTF-8: save the table again as CSV in UTF-8") from None
-        self.separator = chosen[1].decode() if chosen else max(",;\t|", key=head.count)
+        self.separator = chosen[1].decode() if chosen else _separator(head)
         cells = csv.reader([head], delimiter=self.separator, skipinitialspace=True)
         self.names = [name.strip() for name in next(cells, [])]
         if len(self.names) < 3:
@@ -222,6 +255,10 @@ class Log:
             frame = self.leave(frame, (frame[[*across]] != 0.0).any(axis=1), "rows at 0, 0 degrees")
             self.check_degrees(frame, chosen)
         frame = self.leave(frame, frame["time"].notna(), "rows without a time")
+        times = frame["time"].str.strip()
+        if "date" in frame and times.str.fullmatch(CLOCK).all():
+            dated = frame["date"].str.strip() + " " + times.str.replace(r"^(\d):", r"0\1:", regex=True)
+            frame = self.leave(frame.assign(time=dated), dated.notna(), "rows without a date")
         return self.leave(frame, frame["id"].notna(), "rows without an id") if "id" in frame else frame
 
     def check_degrees(self, frame, chosen: Dict[str, Column]) -> None:
@@ -272,8 +309,6 @@ class Log:
                 raise Error(f"{self.file}: line {self.line(frame.index[worst])}: time is {texts.iloc[worst]!r}, "
                             f"expected {ISO_EXPECTED} since 1970 or since the first scan")
             return found, bool(size > SINCE_1970)
-        if "date" in frame and texts.str.fullmatch(r"\d\d?:\d\d(?::\d\d.*)?").all():
-            texts = frame["date"].str.strip() + " " + texts.str.replace(r"^(\d):", r"0\1:", regex=True)
         codes, values = self.pandas.factorize(texts)
         try:
             found, is_local = _iso(list(values))
