@@ -16,6 +16,7 @@ PLUGIN = "AvianLidarPlugin"
 EXAMPLE = os.path.join("Scenes", "hongqiao.lidarscene.json")
 ENERGY_COLOURS, SPECIES_COLOURS = "avian_lidar_energy_colours", "avian_lidar_species_colours"
 POSITION = "lidar_position"
+BEAM = "beam_id"
 TREE = "AvianLidarCollisionTree"
 # Parts of a scan.
 SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes of many sources
@@ -210,19 +211,30 @@ def is_example(source):
             os.path.basename(source.FileName) == os.path.basename(EXAMPLE))
 
 
+def has_beams(source):
+    """Whether the points of a source are echoes or beams, as in a file of echoes."""
+    source.UpdatePipeline()
+    return source.GetPointDataInformation().GetArray(BEAM) is not None
+
+
 def surfaces_and_tree(selected):
     """The surfaces to scan and their collision tree, from the pipeline if possible. If a part or a result of a scan is
-    selected, these are the surfaces of the scan. If nothing is selected, they are the airport that comes with the
-    plugin."""
-    if selected is None:
-        selected = next(filter(is_example, of_kind("AvianLidarSceneReader")), None) or open_example()
+    selected, these are the surfaces of its scan or else of the newest scan. If nothing is selected, or there is no
+    scan, they are the airport that comes with the plugin."""
     newest = sorted(simple.GetSources().values(), key=lambda one: -one.SMProxy.GetGlobalID())
     trees = [one for one in newest if one.SMProxy.GetXMLName() == TREE]
-    chains = [upstream(selected)]
-    if is_part(selected):  # of a scan, or else of the newest scan
-        chains += [chain for chain in map(upstream, newest) if selected in chain] + [trees]
+    part = selected is not None and (is_part(selected) or has_beams(selected))
+    chains = []
+    if selected is not None:
+        chains.append(upstream(selected))
+        if part:
+            chains += [chain for chain in map(upstream, newest) if selected in chain] + [trees]
     tree = next((one for chain in chains for one in chain if one in trees), None)
-    tree = tree or next((one for one in trees if one.Input == selected), None) or tree_of(selected)
+    if tree is None:
+        surfaces = selected
+        if selected is None or part:
+            surfaces = next(filter(is_example, of_kind("AvianLidarSceneReader")), None) or open_example()
+        tree = next((one for one in trees if one.Input == surfaces), None) or tree_of(surfaces)
     tree.UpdatePipeline()
     if tree == selected:
         apply(tree)

@@ -4,12 +4,16 @@
 Run by the system's Python: TestFirstClick.py paraview. Each test starts ParaView, which plays clicks by its own player of events
 and saves the pipeline as a state. The player needs no Python."""
 
+import os
+import subprocess
 import sys
+import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from gui_testing import play
+from gui_testing import SOURCE_DIR, play
 
+SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 WINDOW = "pqClientMainWindow"
 APPLY = "propertiesDock/propertiesPanel/Accept"
 AIRPORT = {"Airport Hongqiao", "Collision tree"}
@@ -71,6 +75,16 @@ class FirstClick(unittest.TestCase):
         state, messages = play(PARAVIEW, events)
         self.assertEqual(messages, [])
         self.assertEqual({name for name in names(state) if name.startswith(("Airport Hongqiao", "Collision tree"))}, AIRPORT)
+
+    def test_surfaces_are_not_selected(self):
+        """With a new sensor or a file of echoes selected, a click scans the airport."""
+        with tempfile.TemporaryDirectory() as folder:
+            echoes = os.path.join(folder, "echoes.vtp")
+            subprocess.run([sys.executable, "-m", "avianlidar", "scan", SCENE, "--sensor-set", "azimuth_step=6", "-o", echoes], check=True)
+            for first, arguments in (([click("menubar/menuSources/Avian Lidar", "AvianLidarAirport16")], ()), ([], (echoes,))):
+                state, messages = play(PARAVIEW, [*first, click(button("airport_scan"))], arguments)
+                self.assertEqual(messages, [])
+                self.assertLessEqual(MACROS["airport_scan"], names(state))
 
     def test_the_filter_of_a_sensor(self):
         """The button of the filter is enabled as soon as a sensor is applied, and asks for surfaces."""

@@ -207,7 +207,7 @@ class Macros(Case):
         self.assertTrue(100 < self.view.CameraParallelScale < 140)
 
     def test_nothing_is_made(self):
-        for make in (simple.Wavelet, simple.AvianLidarAirport32, simple.Line):
+        for make in (simple.Wavelet, simple.Line):
             source = make()
             before = self.names()
             self.assertIn("gives no surfaces", run(AIRPORT, source))
