@@ -24,6 +24,7 @@ from ._weather import weather
 from .apps._air import as_received
 from .apps._plan import Plan
 from .apps._candidates import TABLE
+from .apps._words import plural
 
 RANGES = 48
 NEAR = 200  # beams nearest to an elevation from which the azimuths of a pattern without columns are found
@@ -150,14 +151,15 @@ def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
     """Sentence on the range to which half of the birds are detected, compared with the width of a runway's strip."""
     to, width = found.to(0.5), 2.0 * TABLE["precision"]["4"]["strip"]["half_width"]
     if to == 0.0:
-        return f"{name} sees half of the {species}s in its beams at no range."
-    return (f"{name} sees half of the {species}s in its beams to {half(sensor, found)}, "
+        return f"{name} sees half of the {plural(species)} in its beams at no range."
+    return (f"{name} sees half of the {plural(species)} in its beams to {half(sensor, found)}, "
             f"{'less' if to < width else 'more'} than the {width:g} m that the strip of a large runway is wide.")
 
 
 def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) -> list[dict[str, float]]:
-    """A row for each height (z, m): the ground distance from which the band of the plan's sensor contains the height,
-    and the ground distance to which birds are near enough, m; inf and 0 if no distance fulfils the condition.
+    """A row for each height (z, m): the ground distances from which and until which the band of the plan's sensor
+    contains the height, and the ground distance to which birds are near enough, m; `from` is inf and `to` is 0 if no
+    distance fulfils the condition.
 
     detected_to  m along the line of sight, for example Reach.to(0.5)
     """
@@ -165,11 +167,13 @@ def heights_in_band(plan: Plan, heights: Sequence[float], detected_to: float) ->
     rows = []
     for height in heights:
         above = height - plan.sensor.position[2]
-        limit = high if above >= 0.0 else -low  # deg, on the side of the horizon where the bird is
-        start = 0.0 if limit >= 90.0 or above == 0.0 else math.inf
-        if 0.0 < limit < 90.0:
-            start = abs(above) / math.tan(math.radians(limit))
+        # Limits of the band, deg, on the side of the horizon where the bird is
+        near, far = (high, low) if above >= 0.0 else (-low, -high)
+        start = 0.0 if near >= 90.0 or above == 0.0 and far <= 0.0 <= near else math.inf
+        if 0.0 < near < 90.0 and above != 0.0:
+            start = abs(above) / math.tan(math.radians(near))
         rows.append({"height": float(height), "above": above, "from": start,
+                     "until": abs(above) / math.tan(math.radians(far)) if far > 0.0 else math.inf,
                      "to": math.sqrt(max(detected_to ** 2 - above ** 2, 0.0))})
     return rows
 

@@ -299,6 +299,11 @@ class Surroundings(unittest.TestCase):
             code, lines, _ = run("reach", "--sensor", "Search905", "--species", "herring gull")
         self.assertEqual(code, 0)
         self.assertEqual(lines[0], "Search905 is an idea: nobody sells this lidar.")
+        few = (*reach.within_beams.__defaults__[:2], 40)  # birds
+        with unittest.mock.patch.object(reach, "RANGES", 6), unittest.mock.patch.object(reach.within_beams, "__defaults__", few):
+            _, placed, _ = run("reach", "--sensor", "OS1_64", "--species", "Canada goose", "--sensor-set", "Position=0,0,3")
+        self.assertRegex(placed[0], "^sensor ")  # no idea
+        self.assertRegex(placed[2], "^OS1_64 sees half of the Canada geese in its beams to ")
         self.assertRegex(lines[1], r"^In clear air, one scan of a lidar on sale detects half of the herring gulls in its beams to at most 6[0-9] m \(OS2_128\)\.$")
 
     def test_examples_are_understood(self):

@@ -4,13 +4,16 @@ echo filter, scan after scan, and against the binomial law; where the birds fly.
 import itertools
 import math
 import unittest
+import unittest.mock
 import warnings
 
 import numpy as np
 from scipy.stats import binom
 
+import avianlidar as al
 import exampletools  # noqa: F401  (finds the studies)
 import flown
+from avianlidar import Coverage
 from avianlidar.apps import _crossing
 from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._plan import Plan
@@ -65,6 +68,30 @@ class Crossings(unittest.TestCase):
         found = _crossing.crossing(asked)
         self.assertAlmostEqual(found.seconds, np.mean(spans), delta=0.1)
         self.assertAlmostEqual(found.scans, 0.4 * np.mean(spans), delta=0.1)
+
+    def test_headings_to_both_sides_of_the_line_of_sight_are_alike(self):
+        """A bird is symmetric. Silhouettes are drawn at this elevation, 0. Headings of gliding birds are sampled symmetrically. Flapping
+        birds have a small error of interpolation, because the mirror image of a phase's headings is that of another phase."""
+        cover = Coverage(al.Scene(), al.Sensor("Search905"), species="herring gull", visibility=23e3, clutter=False, pose_probabilities=True)
+        aside = np.radians(np.arange(5.0, 180.0, 10.0))
+        for gliding, error in ((True, 1e-6), (False, 0.006)):
+            cover.gliding = gliding
+            for line in np.radians([0.0, 90.0, 225.0]):
+                there = np.tile(500.0 * np.array([math.sin(line), math.cos(line), 0.0]), (2 * len(aside), 1))
+                left, right = np.split(_crossing._seen(cover, there, np.concatenate([line - aside, line + aside])), 2)
+                self.assertGreater(np.ptp(left), 0.9)
+                np.testing.assert_allclose(left, right, atol=error, err_msg=f"{gliding} {line}")
+
+    def test_the_coverage_is_as_before_after_ctrl_c(self):
+        asked = wanted(places=10)
+        names = ("places", "species", "all_species", "pose_probabilities")
+        before = [getattr(asked.regions, name) for name in names]
+        for work in (_crossing.crossing, lambda plan: plan.in_airs([{"visibility": 5e3}]), lambda plan: plan.mixed(plan.regions)):
+            with unittest.mock.patch.object(Coverage, "data", new_callable=unittest.mock.PropertyMock, side_effect=KeyboardInterrupt), \
+                    unittest.mock.patch.object(Coverage, "table", new_callable=unittest.mock.PropertyMock, side_effect=KeyboardInterrupt), \
+                    self.assertRaises(KeyboardInterrupt):
+                work(asked)
+            self.assertEqual([getattr(asked.regions, name) for name in names], before)
 
     def test_share_is_that_of_flown_birds(self):
         """Within three standard errors of three flights of each bird."""

@@ -192,6 +192,7 @@ class Work(unittest.TestCase):
         self.assertNotIn("<script", page)
         self.assertNotIn("<b>kEUR", page)
         self.assertNotRegex(page, r'(src|href)="(?!data:|#)')
+        self.assertRegex(page, r'<p class="said">The cheapest .* The designs are ideas: nobody sells these lidars\.</p>')
         self.assertIn("The cheapest of 8 designs that detects 12 % of herring gulls on the map, 10 to 40 m, by one scan costs ", page)
         chosen = next(row for row in rows if int(row["chosen"]))
         microjoules = 1e6 * float(chosen["pulse_energy [J]"]) * 38.4845e-6 / float(chosen["receiver_aperture [m2]"])
@@ -202,6 +203,12 @@ class Work(unittest.TestCase):
             up = float(changed["to"]) > float(changed["from"])
             self.assertEqual(float(changed["change_of_detected [1]"]) > 0.0, up)
             self.assertAlmostEqual(float(changed["to"]) / float(changed["from"]), 1.2 if up else 0.8, delta=1e-5)
+
+    def test_other_masts_of_a_lidar_on_sale_are_not_ideas(self):
+        for sensor, bounds, idea in (("VLP16", {"mast": [2.0, 3.0], "rotation_rate": [5, 10]}, False), ("VLP16", {"pulse_energy": [1e-6]}, True),
+                                     ("Search905", {"mast": [2.0]}, True)):
+            study = looked(study_of(fresh("sold"), {"bounds": bounds}, sensor={"preset": sensor}, places=20))
+            self.assertEqual("nobody sells these lidars" in _design_page.answers(study)[0], idea)
 
     def test_what_no_design_has(self):
         study = looked(study_of(fresh("none"), {"share": 0.999}))

@@ -24,6 +24,7 @@ from avianlidar.apps._plan import Plan
 from avianlidar.apps._inputs import read_plan
 from avianlidar.apps._report import Report
 from avianlidar.apps._sites import Sites
+from avianlidar.apps._words import plural
 from browser import Browser
 from reporttools import HERE, SENSOR, STEP, TARGET, plan, report, rows_of, same_numbers, written
 
@@ -159,7 +160,9 @@ class Less(unittest.TestCase):
         self.assertEqual({name for name in al.Sensor.presets() if name not in on_sale()},
                          {"Airport16", "Airport32", "Automotive16", "CorridorC16", "Search905", "Search1550"})
         for sensor, words in (({"preset": "OS2_128"}, ""), ({"preset": "OS2_128", "rotation_rate": 20}, ""),
-                              ({"preset": "OS2_128", "pulse_energy": 1.0}, "OS2_128 changed is an idea: its pulse_energy is not that of the lidar on sale."),
+                              ({"preset": "OS2_128", "pulse_energy": 1.0}, "OS2_128 changed is an idea: its pulse_energy differs from that of the lidar on sale."),
+                              ({"preset": "OS2_128", "RangeGate": 90, "pulse_energy": 1.0, "Position": [0, 0, 3]},
+                               "OS2_128 changed is an idea: its range_gate and pulse_energy differ from those of the lidar on sale."),
                               ({"preset": "Search1550"}, "Search1550 is an idea: nobody sells this lidar."),
                               ({"preset": "Airport16"}, "Airport16 is an idea: its sensor file names no maker.")):
             self.assertEqual(self.small(sensor=sensor).idea, words)
@@ -195,9 +198,40 @@ class Less(unittest.TestCase):
                                    for change, count, gain in rows]}
         said = _answer._other_draws
         self.assertEqual(said(site()), [])
-        self.assertEqual(said(site(("other places", 0, 0.0))), ["With other numbers (other places) this site wins in all 10 draws."])
+        self.assertEqual(said(site(("other places", 0, 0.0))), ["The choice is sharp: with other random places this site wins in all 10 draws."])
         self.assertEqual(said(site(("effective area ±20 %", 0, 0.0), ("other places", 3, 0.042))),
-                         ["With other numbers another site wins in 3 of 10 draws (other places), by 4\u00a0% of the share at most."])
+                         ["The choice is not sharp: with other random places another site wins in 3 of 10 draws. The other site then detects "
+                          "at most 4\u00a0% more birds than this site."])
+        self.assertEqual(said(site(("building heights ±2 m", 1, 0.002), ("effective area ±20 %", 2, 0.001))),
+                         ["The choice is not sharp: with building heights changed by up to 2 m another site wins in 1 of 10 draws and with "
+                          "effective area changed by up to 20 % another site wins in 2 of 10 draws. The other site then detects less than "
+                          "1\u00a0% more birds than this site."])
+
+    def test_why_a_height_is_never_detected(self):
+        """The cause is named only where it holds."""
+        def said(half, heights, **sensor):
+            view = self.small(heights=heights, sensor={**SENSOR, "position": [0, 0, 10], **sensor})
+            ranges = np.array([1.0, 2.0 * half + 2.0])  # a straight curve from 1 to 0
+            return _answer._how_far(view, {"of": {"Canada goose": reach.Reach(ranges, np.array([1.0, 0.0]) if half else np.zeros(2), np.zeros(2), np.zeros(2))}})
+        never = "it nowhere detects half of the birds"
+        self.assertIn(f"At 5\u00a0m {never}, because no beam gets there.", said(560.0, [5]))  # beams from 0 to 5.6 degrees
+        self.assertIn(f"At 100 and 150\u00a0m {never}, because the beams get there only where the range is already too long.", said(560.0, [100, 150]))
+        self.assertIn(f"At 900\u00a0m {never}, because all of these birds are too far away.", said(560.0, [900]))
+        self.assertTrue(said(0.0, [5, 100, 900]).endswith("one scan detects less than a tenth of Canada geese at any range."))
+        # Beams from 5 to 10.6 degrees lose a height of 30 m above them at 30 m / tan 5 degrees.
+        self.assertIn("at a height of 40\u00a0m between 160\u00a0m and 340\u00a0m from the lidar", said(560.0, [40], minimum_elevation=5.0))
+        self.assertIn(f"At 10\u00a0m {never}, because no beam gets there.", said(560.0, [10], minimum_elevation=5.0))
+
+    def test_plurals(self):
+        for one, several in (("herring gull", "herring gulls"), ("Canada goose", "Canada geese"), ("", "targets"), ("goldfinch", "goldfinches"),
+                             ("albatross", "albatrosses"), ("canary", "canaries"), ("jay", "jays"), ("osprey", "ospreys"), ("grouse", "grouse")):
+            self.assertEqual(plural(one), several)
+
+    def test_a_step_keeps_one_position(self):
+        """The next steps replace a position that the options give by its name in C++."""
+        read = read_plan(written("position", plan(heights=[20], siting=None, coverage=TARGET)), sensor={"Position": (5, 6, 7), "RangeGate": 900})
+        self.assertTrue(_answer.command(Plan(read), "coverage", "maps", **{"sensor.position": "1,2,3"}).endswith(
+            "-o maps --sensor-set RangeGate=900 --sensor-set position=1,2,3"))
 
     def test_what_is_wrong_is_named(self):
         for change, words in (({"compare_with": ["Airport17"]}, "Airport17"),

@@ -420,6 +420,7 @@ class Plans(unittest.TestCase):
                 ("spread: 'distanse' is not known; did you mean 'distance'?", {"spread": "distanse"}),
                 ("regions: 'strip' is not known; did you mean 'strips'?", {"regions": {"strip": 1}}),
                 ("siting.surfaces: 'categroy' is not known; did you mean 'category'?", {"siting": {**lattice, "surfaces": {"categroy": "precision"}}}),
+                ("siting.surfaces.code: '5' is not one of [1, 2, 3, 4]", {"siting": {**lattice, "surfaces": {"code": "5"}}}),
                 ("sensor: Sensor: property 'range_gat' is not known; did you mean 'range_gate'?", {"sensor": {"preset": "Search905", "range_gat": 9}}),
                 ("Species", {"coverage": {"species": "dodo"}}),
                 ("heights: ", {"heights": [15, 15.0]}), ("heights[0]: ", {"heights": [1e30]}),

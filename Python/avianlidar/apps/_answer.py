@@ -10,13 +10,15 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from .. import reach
+from .._properties import snake
 from .._weather import in_words
 from ._candidates import ground_of
 from ._crossing import Crossing
+from ._on_sale import PLACE
 from ._plan import Plan
 from ._regions import APPROACH_LENGTH, KINDS, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
 from ._sites import FEWEST_DRAWS
-from ._sites_page import listed
+from ._words import listed, plural
 
 LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
@@ -101,7 +103,7 @@ def beside(position: Sequence[float], runways: Sequence[Runway]) -> str:
 
 def birds_of(view: Plan) -> str:
     """The birds that the plan names, in the plural."""
-    return f"{view.bird}s" if len(view.mix) == 1 else f"birds {view.bird[5:]}"
+    return plural(view.bird) if len(view.mix) == 1 else f"birds {view.bird[5:]}"
 
 
 def over(view: Plan) -> str:
@@ -113,13 +115,13 @@ def over(view: Plan) -> str:
     for kind, names in region_names(view.runways).items():
         there = [name.partition(" ")[2] for name in names if name in view.ends]
         every = len(there) == len(names)
-        high = f", up to {view.heights_of(kind)[1]:.3g}\u00a0m high" if there and not view.asked else ""
+        up_to = f", up to {view.heights_of(kind)[1]:.3g}\u00a0m high" if there and not view.asked else ""
         if there and kind == "strips":
             which = f"the strips of {whose}" if every else f"the strip of {listed(there)}"
-            parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle{high})")
+            parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle{up_to})")
         elif there:
             which = "the approaches" if every else f"the approach to {listed(there)}"
-            parts.append(f"{which} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end{high})")
+            parts.append(f"{which} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end{up_to})")
     if not view.asked:
         return f"over {listed(parts)}"
     low, high = view.asked
@@ -228,22 +230,36 @@ def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
     """Sentence on how far birds are detected, and on the distances at the plan's heights."""
     found = []
     for name, one in reaches["of"].items():
-        half = f"half of {name}s to {metres(one.to(0.5))}" if one.to(0.5) > 0.0 else f"at no range half of {name}s"
+        birds = plural(name)
+        half = f"half of {birds} to {metres(one.to(0.5))}" if one.to(0.5) > 0.0 else f"at no range half of {birds}"
         found.append(f"{half} and a tenth to {metres(one.to(0.1))}" if one.to(0.1) > 0.0 else
-                     f"less than a tenth of {name}s at any range")
+                     f"less than a tenth of {birds} at any range")
     low, high = reach.band(view.sensor)
     said = f"Within its beams, {low:.1f} to {high:.1f}° up, one scan detects {'; '.join(found)}"
-    if not view.asked:
-        return f"{said}."
-    rows = reach.heights_in_band(view, view.heights, max(one.to(0.5) for one in reaches["of"].values()))
-    seen = [f"at a height of {row['height']:g}\u00a0m between {metres(row['from']) if row['from'] else '0 m'} and "
-            f"{metres(row['to'])} from the lidar" for row in rows if row["to"] > row["from"]]
-    never = [f"{row['height']:g}" for row in rows if not row["to"] > row["from"]]
+    half_to = max(one.to(0.5) for one in reaches["of"].values())
+    seen: List[str] = []
+    never: Dict[str, List[str]] = {}  # by the cause
+    for row in reach.heights_in_band(view, view.heights, half_to) if view.asked and half_to > 0.0 else ():
+        end = min(row["to"], row["until"])
+        if end > row["from"]:
+            begin = metres(row["from"]) if row["from"] else "0 m"
+            seen.append(f"at a height of {row['height']:g}\u00a0m between {begin} and {metres(end)} from the lidar")
+        else:
+            never.setdefault(_why_never(row), []).append(f"{row['height']:g}")
     said += f". It detects half or more of the birds {listed(seen)}" if seen else ""
-    if never:
-        said += (f". At {listed(never)}\u00a0m it nowhere detects half of the birds, because the beams reach this "
-                 "height only where the range is already too long")
+    for why, heights in never.items():
+        said += f". At {listed(heights)}\u00a0m it nowhere detects half of the birds{why}"
     return f"{said}."
+
+
+def _why_never(row: Dict[str, float]) -> str:
+    """The cause why half of the birds at a height are detected nowhere, if it is known. @param row of
+    `reach.heights_in_band`"""
+    if math.isinf(row["from"]):
+        return ", because no beam gets there"
+    if row["from"] >= row["to"] > 0.0:
+        return ", because the beams get there only where the range is already too long"
+    return ", because all of these birds are too far away" if row["to"] == 0.0 else ""
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:
@@ -255,7 +271,7 @@ def command(view: Plan, verb: str, out: str, **settings: str) -> str:
     if verb == "report":
         flags |= {"--metar", "--siting-set"}
     for flag, *values in view.plan.get("options", ()):
-        if flag in flags and f"{flag[2:].partition('-')[0]}.{values[0].partition('=')[0]}" not in settings:
+        if flag in flags and f"{flag[2:].partition('-')[0]}.{snake(values[0].partition('=')[0])}" not in settings:
             words += [flag, *values]
     for name, value in settings.items():
         part, _, member = name.partition(".")
@@ -289,7 +305,7 @@ def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: O
 def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, str]:
     """The step for a lidar that nobody sells."""
     best = offers[0]["name"]
-    changed = plan.plan["sensor"].keys() - {"preset", "name", "position", "orientation"}
+    changed = plan.plan["sensor"].keys() - {"preset", "name", *PLACE}
     what = f"the report for {best}{', at the best site for it' if 'siting' in plan.plan else ''}"
     settings = {"sensor.preset": best, **({"sensor.name": best} if "name" in plan.plan["sensor"] else {})}
     return {"head": f"Do not plan to buy {view.name}.", "more": "#on-sale",
@@ -330,25 +346,32 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
 
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
     """Sentences on equally good candidates, and on a best candidate at the lattice's edge; each list may be empty."""
-    more = "1 more candidate is" if site["alike"] == 1 else f"{site['alike']} more candidates are"
-    alike = [f"{more} equally good within the error."] if site["alike"] else []
+    more = "1 other site is" if site["alike"] == 1 else f"{site['alike']} other sites are"
+    alike = [f"{more} as good within the error of the random places."] if site["alike"] else []
     at_edge = "The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."
     return alike, [at_edge] if site["edge"] else []
 
 
 def _other_draws(site: Dict[str, Any]) -> List[str]:
-    """A sentence on how often another site wins with other numbers."""
+    """A sentence on how often another site wins, and with which lead, if numbers of the calculation change."""
     alone = [row for row in site["robustness"] if row["sensors"] == 1]
     others = [row for row in alone if row["another winner"]]
     if not alone:
         return []
     if not others:
-        changes = listed([row["change"] for row in alone])
-        return [f"With other numbers ({changes}) this site wins in all {alone[0]['draws']} draws."]
-    times = listed([f"in {row['another winner']} of {row['draws']} draws ({row['change']})" for row in others])
+        changes = listed([_changed(row["change"]) for row in alone])
+        return [f"The choice is sharp: with {changes} this site wins in all {alone[0]['draws']} draws."]
+    wins = listed([f"with {_changed(row['change'])} another site wins in {row['another winner']} of {row['draws']} "
+                   "draws" for row in others])
     most = 100.0 * max(row["gain at most"] for row in others)
-    by = f"by {most:.0f}\u00a0% of the share" if most >= 1.0 else "by less than 1\u00a0% of the share"
-    return [f"With other numbers another site wins {times}, {by} at most."]
+    lead = f"at most {most:.0f}\u00a0%" if most >= 1.0 else "less than 1\u00a0%"
+    return [f"The choice is not sharp: {wins}. The other site then detects {lead} more birds than this site."]
+
+
+def _changed(change: str) -> str:
+    """Words on a change of `Sites.changes`."""
+    what, _, amount = change.partition(" ±")
+    return f"{what} changed by up to {amount}" if amount else what.replace("places", "random places")
 
 
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:

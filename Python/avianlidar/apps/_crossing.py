@@ -21,7 +21,7 @@ from .. import vtkAvianLidar as _wrapped
 from .._coverage import Coverage
 from .._pipeline import update
 from .._properties import set_properties
-from ._plan import Plan
+from ._plan import Plan, restored
 from ._regions import APPROACH_HALF_WIDTH, STRIP_HALF_WIDTH, region_names
 from ._scores import weighted
 
@@ -29,6 +29,7 @@ TWICE = 2  # detections
 BIRDS, POSITIONS = 2000, 100_000  # greatest numbers of birds and of their positions in scans
 SPEED = 15.0  # speed of a target without a species, m/s; assumed
 FLIGHTS = 400  # flights from which the speed of a species is taken
+HEADINGS = 16  # headings of each phase of flapping wings: BirdHeadings of Filters/Kernel/Targets/BirdViews.h
 TOGETHER = 20_000  # positions whose poses are in memory together
 
 
@@ -36,7 +37,8 @@ TOGETHER = 20_000  # positions whose poses are in memory together
 class Crossing:
     """The share of birds that is detected at least TWICE while they cross a region.
 
-    share, error  share and its standard error, because birds are drawn   birds  number of birds
+    share, error  share and its standard error, because birds are drawn; an upper bound for a mix of species
+    birds         number of birds
     speed         mean speed of the species of the plan, m/s              scans  mean number of scans of a crossing
     seconds       mean duration of a crossing, s
     """
@@ -98,54 +100,50 @@ def flights(plan: Plan, speed: float, random: np.random.Generator) -> Tuple[np.n
     chosen = np.sort(random.choice(len(half), count, replace=False))
     way = across[chosen] * random.choice([-1.0, 1.0], count)[:, None]
     first = random.uniform(0.0, step, count)
-    positions = [
-        np.column_stack([middle[i] + (np.arange(start, 2.0 * half[i], step) - half[i])[:, None] * to,
-                         np.full(len(np.arange(start, 2.0 * half[i], step)), plan.points[i, 2])])
-        for i, start, to in zip(chosen, first, way)]
+    positions = []
+    for i, start, to in zip(chosen, first, way):
+        flown = np.arange(start, 2.0 * half[i], step)  # m
+        ground = middle[i] + (flown - half[i])[:, None] * to
+        positions.append(np.column_stack([ground, np.full(len(flown), plan.points[i, 2])]))
     return chosen, positions, np.arctan2(way[:, 0], way[:, 1])
 
 
 def crossing(plan: Plan) -> Crossing:
     """The share of the plan's birds that is detected at least TWICE while they cross. The plan has runways."""
     cover = plan.regions  # which keeps the clutter
-    own = {name: getattr(cover, name) for name in ("places", "species", "all_species", "pose_probabilities")}
-    cover.all_species, cover.pose_probabilities = False, True
     weights, total, parts = plan.weights(plan.points), np.zeros(3), []
-    for number, (species, mixed) in enumerate(plan.mix.items()):
-        speed = speed_of(species, cover.species_file_name or "")
-        chosen, positions, headings = flights(plan, speed, np.random.default_rng(plan.seed))
-        cover.species = species
-        counts = np.array([len(of) for of in positions])
-        found = np.concatenate([np.empty(0), *_seen(cover, np.concatenate(positions), np.repeat(headings, counts))])
-        probabilities = np.zeros((len(chosen), counts.max(initial=1)))
-        probabilities[np.arange(counts.max(initial=1)) < counts[:, None]] = found
-        share, error, _ = weighted(detected_at_least(TWICE, probabilities), weights[number, chosen])
-        parts.append((mixed * share, mixed * error, len(chosen)))
-        total += mixed * np.array([speed, counts.mean(), counts.mean() / plan.sensor.rotation_rate])
-    for name, value in own.items():
-        setattr(cover, name, value)
+    with restored(cover, "places", "species", "all_species", "pose_probabilities"):
+        cover.all_species, cover.pose_probabilities = False, True
+        for number, (species, mixed) in enumerate(plan.mix.items()):
+            speed = speed_of(species, cover.species_file_name or "")
+            chosen, positions, headings = flights(plan, speed, np.random.default_rng(plan.seed))
+            cover.species = species
+            counts = np.array([len(of) for of in positions])
+            found = _seen(cover, np.concatenate(positions), np.repeat(headings, counts))
+            probabilities = np.zeros((len(chosen), counts.max(initial=1)))
+            probabilities[np.arange(counts.max(initial=1)) < counts[:, None]] = found
+            share, error, _ = weighted(detected_at_least(TWICE, probabilities), weights[number, chosen])
+            parts.append((mixed * share, mixed * error, len(chosen)))
+            total += mixed * np.array([speed, counts.mean(), counts.mean() / plan.sensor.rotation_rate])
     share, error = np.sum([part[:2] for part in parts], axis=0).tolist()
     return Crossing(share, error, min(part[2] for part in parts), *total.tolist())
 
 
-def _seen(cover: Coverage, places: np.ndarray, headings: np.ndarray) -> List[np.ndarray]:
+def _seen(cover: Coverage, places: np.ndarray, headings: np.ndarray) -> np.ndarray:
     """Probabilities that one scan detects a bird of a heading (rad) at each place, averaged over its wing phases."""
-    found = []
+    found = [np.empty(0)]
     for first in range(0, len(places), TOGETHER):
         part = slice(first, first + TOGETHER)
         cover.places = places[part]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the plan's coverage has warned
             of_poses = cover["pose_probabilities"].astype(float).reshape(len(places[part]), -1)
-        count = _headings(cover, of_poses.shape[-1])
-        of_headings = of_poses.reshape(len(of_poses), -1, count).mean(axis=1)
-        at = headings[part] / (2.0 * math.pi) * count
+        poses = of_poses.shape[1]
+        phases = 1 if cover.gliding or poses == 1 else poses // HEADINGS
+        count = poses // phases  # headings of each phase, which phases shift by a part of a step
+        at = headings[part, None] / (2.0 * math.pi) * count - (np.arange(phases) + 0.5) / phases
         low = np.floor(at).astype(int)
-        rows, share = np.arange(len(at)), at - low
-        found.append((1.0 - share) * of_headings[rows, low % count] + share * of_headings[rows, (low + 1) % count])
-    return found
-
-
-def _headings(cover: Coverage, poses: int) -> int:
-    """The number of headings of a bird's poses: 16 for each phase of flapping wings."""
-    return poses if cover.gliding or poses == 1 else 16
+        below, above = (np.take_along_axis(of_poses, np.arange(phases) * count + number % count, axis=1)
+                        for number in (low, low + 1))
+        found.append((below + (at - low) * (above - below)).mean(axis=1))
+    return np.concatenate(found)

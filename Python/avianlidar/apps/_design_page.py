@@ -13,9 +13,11 @@ from .._version import __version__
 from . import _pictures as pictures
 from ._card import cell
 from ._design import CHANGE, FIELDS, TOLD, Candidate, Field, Study, is_told
+from ._on_sale import CHOSEN
 from ._report import place
 from ._scores import Value
 from ._tables import embedded, render, write_table
+from ._words import plural
 
 TOLD_WORDS = {True: "yes", False: "no", None: "undecided"}
 PULSE_COLUMNS = {"exit_aperture [m2]": "exit_aperture", "radiant_exposure [J/m2]": "exposure",
@@ -29,7 +31,7 @@ def _cost(study: Study, cost: float) -> str:
 
 def does(study: Study, share: str = "") -> str:
     """The meaning of the share, in words. @param share words before the birds, as in "30 % of " """
-    birds = f"{share}{study.plan.bird}s" if len(study.plan.mix) == 1 else f"{share}birds"
+    birds = f"{share}{plural(study.plan.bird)}" if len(study.plan.mix) == 1 else f"{share}birds"
     if study.measure == "tracked":
         return f"tracks {birds} of the scenario at least once"
     scans = f"{study.plan.coverage.required_detections} or more of the scans in {study.within:g} s"
@@ -53,9 +55,11 @@ def answers(study: Study) -> List[str]:
     varied = ", ".join(f"{FIELDS[name].words} {FIELDS[name].text(about.values[name])}" for name in study.swept)
     energy = f"{FIELDS['pulse_energy'].text(about.values['pulse_energy'])} a pulse, "
     microjoules = float(f"{1e6 * pulses['pupil']:.2g}")
+    ideas = " The designs are ideas: nobody sells these lidars." if study.plan.idea or any(
+        name not in (*CHOSEN, "mast") for name in study.swept) else ""
     found = [f"{first}; eye safety is not assessed: at {study.plan.sensor.wavelength:g} nm each pulse puts "
              f"{microjoules:g} µJ through a pupil of 7 mm at the exit aperture, "
-             "if the pulse fills the aperture evenly (assumed).",
+             f"if the pulse fills the aperture evenly (assumed).{ideas}",
              f"The design is number {about.number}: {varied}; {'' if 'pulse_energy' in study.swept else energy}"
              f"{pulses['exposure']:.4g} J/m² a pulse at the exit aperture of {1e4 * pulses['exit_aperture']:.4g} cm², "
              f"{pulses['pulse_rate']:,.0f} pulses a second."]

@@ -12,6 +12,7 @@ from .._properties import in_snake_case
 from .._weather import in_weather, weather, without_air
 from . import _metar
 from ._json import check_json, load_json, naming
+from ._on_sale import PLACE
 
 SUM = 1e-6  # allowed difference of a year's shares from the sum 1
 
@@ -117,7 +118,7 @@ def sensor_name(sensor: Mapping[str, Any], what: str = "sensor") -> str:
     """The name of a sensor in files and reports: `name`, else the name of the preset; with "changed" if more than place
     and orientation are set. @param what the sensor's member of a plan"""
     preset = pathlib.Path(sensor["preset"]).name.split(".lidarsensor")[0]
-    changed = any(name not in ("preset", "position", "orientation") for name in sensor)
+    changed = any(name not in ("preset", *PLACE) for name in sensor)
     return checked_name(sensor.get("name", f"{preset} changed" if changed and preset else preset), f"{what}.name")
 
 

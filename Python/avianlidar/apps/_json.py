@@ -60,7 +60,7 @@ def _words_of(wrong: Any) -> str:
     if wrong.validator == "additionalProperties" and isinstance(wrong.validator_value, bool):
         known = wrong.schema["properties"]
         return unknown("", next(name for name in wrong.instance if name not in known), known).strip()
-    if wrong.validator == "enum" and isinstance(wrong.instance, str):
+    if wrong.validator == "enum" and all(isinstance(one, str) for one in (wrong.instance, *wrong.validator_value)):
         return unknown("", wrong.instance, wrong.validator_value).strip()
     return str(wrong.message)
 

@@ -6,12 +6,15 @@ import functools
 import math
 from typing import Iterable, Tuple
 
+from .._properties import snake
 from .._sensor import Sensor
 from ._json import packaged
+from ._words import listed, plural
 
+PLACE = ("position", "orientation")  # settings that say how a lidar stands
 # Settings that the owner of a lidar chooses; other changes make a lidar that nobody sells.
-CHOSEN = ("preset", "name", "position", "orientation", "rotation_rate", "azimuth_step", "azimuth_range",
-          "number_of_revolutions", "background_radiance", "seed")
+CHOSEN = ("preset", "name", *PLACE, "rotation_rate", "azimuth_step", "azimuth_range", "number_of_revolutions",
+          "background_radiance", "seed")
 
 
 @functools.lru_cache(maxsize=None)
@@ -22,12 +25,13 @@ def on_sale() -> Tuple[str, ...]:
 
 def idea(name: str, sensor: Sensor, given: Iterable[str] = ()) -> str:
     """A sentence if nobody sells a lidar, else empty. @param name of the lidar @param given names of properties that
-    are set"""
-    changed = [one for one in given if one not in CHOSEN]
+    are set, `range_gate` or `RangeGate`"""
+    changed = [one for one in map(snake, given) if one not in CHOSEN]
     if not sensor.on_sale:
         named = "maker" in sensor.description
         return f"{name} is an idea: {'nobody sells this lidar' if named else 'its sensor file names no maker'}."
-    return f"{name} is an idea: its {', '.join(changed)} is not that of the lidar on sale." if changed else ""
+    differs = "differs from that" if len(changed) == 1 else "differ from those"
+    return f"{name} is an idea: its {listed(changed)} {differs} of the lidar on sale." if changed else ""
 
 
 def half_range(name: str, species: str) -> float:
@@ -43,5 +47,5 @@ def farthest(species: str) -> str:
     ranges = {name: half_range(name, species) for name in on_sale()}
     best = max(ranges, key=lambda name: ranges[name])
     return "" if math.isnan(ranges[best]) else (
-        f"In clear air, one scan of a lidar on sale detects half of the {species}s in its beams to at most "
-        f"{float(f'{ranges[best]:.2g}'):g} m ({best}).")
+        f"In clear air, one scan of a lidar on sale detects half of the {plural(species)} in its beams to at "
+        f"most {float(f'{ranges[best]:.2g}'):g} m ({best}).")

@@ -2,10 +2,11 @@
 """The question that a plan of coverage asks, and the shares of birds that are detected."""
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import warnings
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from ._geojson import read_runways
 from ._json import naming
 from ._looks import require_memory
 from ._inputs import sensor_name
-from ._on_sale import idea
+from ._on_sale import PLACE, idea
 from ._regions import Runway, by_kind, ends_of, places_by_region, region_heights, region_names
 from ._scores import weighted
 
@@ -36,6 +37,17 @@ FLAT = 0.5  # absolute z below which the ground counts as 0, m
 MOST_PIXELS = 100_000_000  # greatest number of pixels of a map
 OTHER_PLACES = 1 << 40  # offset of the seed for places that were not used to choose sites or designs
 BYTES_OF_PLACE = 200  # memory for a drawn place and its results, bytes
+
+
+@contextlib.contextmanager
+def restored(cover: Coverage, *names: str) -> Iterator[None]:
+    """Gives attributes of a coverage their present values again afterwards, also after an error or Ctrl-C."""
+    own = {name: getattr(cover, name) for name in names}
+    try:
+        yield
+    finally:
+        for name, value in own.items():
+            setattr(cover, name, value)
 
 
 class Plan:
@@ -158,7 +170,7 @@ class Plan:
 
     def with_lidar(self, preset: str) -> Plan:
         """The plan with another lidar at the same place."""
-        place = {name: [float(c) for c in getattr(self.sensor, name)] for name in ("position", "orientation")}
+        place = {name: [float(c) for c in getattr(self.sensor, name)] for name in PLACE}
         return Plan({**self.plan, "sensor": {"preset": preset, **place}}, self.threads, self.scene, "siting")
 
     @property
@@ -206,7 +218,7 @@ class Plan:
     def all_of(cls, plan: Dict[str, Any], threads: int = 0) -> List[Plan]:
         """The plan with its sensor, then with each sensor for comparison."""
         plans = [cls(plan, threads)]
-        place = {name: value for name, value in plan["sensor"].items() if name in ("position", "orientation")}
+        place = {name: value for name, value in plan["sensor"].items() if name in PLACE}
         for number, other in enumerate(plan.get("compare_with", ())):
             member = f"compare_with[{number}]"
             plans.append(cls({**plan, "sensor": {**place, **other}}, threads, plans[0].scene, member))
@@ -259,7 +271,7 @@ class Plan:
     @property
     def assumed(self) -> Tuple[str, ...]:
         """Properties of the sensor whose numbers are assumed, by the sensor's file or because the plan sets them."""
-        changed = [name for name in self.plan["sensor"] if name not in ("preset", "name", "position", "orientation")]
+        changed = [name for name in self.plan["sensor"] if name not in ("preset", "name", *PLACE)]
         return (*self.sensor.beams.fields.get("assumed", ()), *changed)
 
     def map_at(self, height: float) -> Coverage:
@@ -268,11 +280,12 @@ class Plan:
         return self.coverage
 
     def mixed(self, cover: Coverage, name: str = "detection_probability") -> np.ndarray:
-        """The mean of an array over the plan's species. Afterwards `cover` has the first species."""
+        """The mean of an array over the plan's species."""
         total: Any = 0.0
-        for species, share in reversed(self.mix.items()):
-            cover.species = species
-            total = total + share * cover[name]
+        with restored(cover, "species"):
+            for species, share in reversed(self.mix.items()):  # the first is usually the species of `cover`
+                cover.species = species
+                total = total + share * cover[name]
         return total
 
     @functools.cached_property
@@ -297,13 +310,12 @@ class Plan:
         """For each air, the rows of shares of all heights for the plan's birds: each region, and finally all places. No
         line of sight is traced again. @param airs settings of coverage, as from `air_of`"""
         regions, found = self.regions, []
-        own = {name: getattr(regions, name) for name in ("all_species", "species", *airs[0])}
-        regions.all_species = False
-        for species in self.mix:
-            regions.species = species
-            found.append([[row for row in regions.set(**air).table
-                           if math.isinf(row["height_from"]) and math.isinf(row["height_to"])] for air in airs])
-        regions.set(**own)
+        with restored(regions, "all_species", "species", *airs[0]):
+            regions.all_species = False
+            for species in self.mix:
+                regions.species = species
+                found.append([[row for row in regions.set(**air).table
+                               if math.isinf(row["height_from"]) and math.isinf(row["height_to"])] for air in airs])
         return [*map(self._of_mix, zip(*found))]
 
     @functools.cached_property

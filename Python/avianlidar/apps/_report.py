@@ -30,8 +30,8 @@ from ._on_sale import half_range, on_sale
 from ._plan import OTHER_PLACES, Plan
 from ._regions import rounded
 from ._sites import BEST, FEWEST_DRAWS, Sites
-from ._sites_page import listed
 from ._tables import embedded, render, write_table
+from ._words import listed
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # in the section on weather, m
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # rain rates, mm/h

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pathlib
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List
 
 import numpy as np
 
@@ -11,11 +11,7 @@ from . import _pictures as pictures
 from ._candidates import NAMES, NOT_CHECKED, TABLE
 from ._sites import Change, Sites
 from ._tables import write_sites, write_table
-
-
-def listed(words: Sequence[str]) -> str:
-    """a, b and c."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+from ._words import listed
 
 
 def kept_surfaces(sites: Sites) -> str:
