@@ -95,6 +95,8 @@ class Page(unittest.TestCase):
 
     def test_the_first_page_says_what_the_share_means(self):
         said = self.browser.run("return document.querySelector('#answer').textContent")
+        self.assertIn("one of 9 sites that are equally good within the error, of 9 candidates", said)
+        self.assertIn("on a mast of 5 m, 200 m west and 500 m north from the scene's origin", said.replace("\u00a0", " "))
         self.assertIn("one scan, which takes 2\u00a0s, as a mean over the whole length of each strip, near and far.", said)
         twice = crossing(Plan(read_plan(HERE / "report.coverage.json")).at(self.position(), "there", 1 << 40))
         self.assertRegex(said, "at 15\u00a0m/s \\(on average for 20\u00a0s, or (9.[0-9]|10) scans\\), [^,]* of them are detected at least twice")

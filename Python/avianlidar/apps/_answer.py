@@ -192,9 +192,11 @@ def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reac
     year = ", by the year's weather" if view.year else ""
     over_the_year = f", {share_of(of_year)} over the year" if view.year else ""
     detects = f"one scan detects {share_of(view.overall)} of {birds}{air_of(view)}{over_the_year}"
-    at = f"{place(position)} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
     mast = round(float(position[2] - ground_of(view.scene, [position[:2]])[0]), 1)
-    at = f"on a mast of {mast:g}\u00a0m, {at}" if mast > 0.0 else at
+    across, _, up = place(position).rpartition(", ")
+    up = "" if f"{mast:g}\u00a0m up" == up else f", {up}"  # not the same number twice
+    at = f"on a mast of {mast:g}\u00a0m{up}, {across}" if mast > 0.0 else place(position)
+    at = f"{at} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
     by = beside(position, view.runways)
     where = f"{by} ({at})" if by else at
     if not site:
@@ -204,8 +206,14 @@ def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reac
                  f"detects {LEAST_WORDS} of {birds}{year or air_of(view)}.")
     else:
         stands = "would stand best" if view.idea else "should stand"
-        first = (f"{plan.name} {stands} {where}: from there {detects}, "
-                 f"the most of {site['count']} candidates{year}.")
+        alike = site["alike"] + 1
+        which = (f"one of {alike} sites that are equally good within the error, of {site['count']} candidates"
+                 if site["alike"] else f"the most of {site['count']} candidates")
+        first = f"{plan.name} {stands} {where}: from there {detects}, {which}{year}."
+        own, best = plan.overall, view.overall
+        if not site["taken"] and (own["detection_probability"] + own["detection_std_error"] >=
+                                  best["detection_probability"]):
+            first += f" Its place in the plan or the scene ({place(plan.sensor.position)}) is as good: {share_of(own)}."
     there = [f"The other numbers of this page are for the sensor's place in the plan or its scene ({place(position)})."]
     there = there if site and view is plan else []
     return [first, *there, _meaning(view, crossing), *_by_end(view), _how_far(view, reaches)]
@@ -223,7 +231,7 @@ def _by_end(view: Plan) -> List[str]:
         kind, _, name = row["region"].partition(" ")
         alike.setdefault((share_of(row), "strip of" if kind == "strip" else f"{kind} to"), []).append(name)
     words = [f"{share} in the {which} {listed(names)}" for (share, which), names in alike.items()]
-    return [f"By runway end the share is {listed(words)}."] if len(view.by_end) > 1 else []
+    return [f"By region the share is {listed(words)}."] if len(view.by_end) > 1 else []
 
 
 def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:

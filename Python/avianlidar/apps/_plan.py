@@ -230,8 +230,8 @@ class Plan:
     @property
     def spread_words(self) -> str:
         """Words on the distribution of places over strips and approaches."""
-        return ("equally many on each square metre of strips and approaches" if self.spread == "area" else
-                "equally many on each metre along strips and approaches, because aircraft fly each metre once")
+        each = "square metre of" if self.spread == "area" else "metre along"
+        return f"equally many on each {each} the {' and '.join(self.members)}"
 
     @property
     def where(self) -> str:

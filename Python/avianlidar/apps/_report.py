@@ -319,7 +319,8 @@ class Report:
         seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} of the map at {height:g} m"
                          for height, classes in found)
         shares = {row["region"]: share_of(row) for row in view.by_end}
-        regions = "; dotted: the plan's strips and approaches, with the share detected in each" if view.runways else ""
+        kinds = " and ".join(view.members)
+        regions = f"; dotted: the plan's {kinds}, with the share detected in each" if view.runways else ""
         left_out: List[str] = []
         picture = self._draw(
             folder / "answer.png", pictures.map_size(extent, 5.9, 0.0, 0.2 * math.ceil(len(found) / 4) + 0.3),

@@ -32,7 +32,8 @@ def kept_surfaces(sites: Sites) -> str:
 
 def surface_sentence(sites: Sites) -> str:
     """Sentences on the checks of the place of a mast, for the first page of a report."""
-    clear = "clear of runways, buildings and the plan's exclusions"
+    clear = ("clear of runways, buildings and the plan's exclusions" if sites.options.get("exclusions") else
+             "clear of runways and buildings. The plan excludes no aprons, taxiways, roads or water")
     if not sites.pierced:
         return (f"The site is {clear}. No obstacle limitation surface was checked, because the plan switches the "
                 f"surfaces off. Also not checked: {listed(NOT_CHECKED)}.")
