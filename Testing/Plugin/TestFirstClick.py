@@ -11,7 +11,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from gui_testing import SOURCE_DIR, play
+from gui_testing import PLUGIN_DIR, SOURCE_DIR, play
 
 SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 WINDOW = "pqClientMainWindow"
@@ -92,6 +92,12 @@ class FirstClick(unittest.TestCase):
                   click(button("filter")), click("SelectInputDialog/buttonBox/1QPushButton1")]
         state, messages = play(PARAVIEW, events)
         self.assertEqual((messages, names(state)), ([], {"AvianLidarAirport161"}))
+
+    def test_the_macro_of_the_dialog(self):
+        """As a script, with the values that Finish on the dialog's first page gives."""
+        state, messages = play(PARAVIEW, [], [f"--script={PLUGIN_DIR}/Macros/avian_lidar_wizard.py"])
+        self.assertEqual(messages, [])
+        self.assertLessEqual(AIRPORT | {"Search 905", "Scan", "Herring gull", "Echoes of herring gull"}, names(state))
 
     def test_a_macro_without_a_selection(self):
         for name, words in WORDS.items():

@@ -126,7 +126,7 @@ def play(paraview, events, arguments=()):
         file_name = os.path.join(home, "events.xml")
         ElementTree.ElementTree(script).write(file_name)
         command = [paraview, "--dr", *LOAD, f"--test-directory={home}", f"--test-script={file_name}", "--exit", *arguments]
-        done = subprocess.run(command, env=variables, timeout=180, text=True, errors="replace",
+        done = subprocess.run(command, env=variables, timeout=TIMEOUT, text=True, errors="replace",
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         assert done.returncode == 0, done.stdout
         return ElementTree.parse(os.path.join(home, "state.pvsm")), re.findall(r"^.*(?:ERR|WARN)\|.*(?:\n(?!.*\|).*)*", done.stdout, re.M)
