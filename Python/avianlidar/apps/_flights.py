@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import os
 import warnings
 from typing import Any, Dict, List, Optional, Sequence, Tuple
@@ -20,11 +21,12 @@ from .._scene import load_scene
 from ._candidates import ground_of
 from ._geojson import placed
 from ._json import naming
-from ._logs import LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
+from ._logs import FROM_MAP, LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
 
 SCIENTIFIC = {"sturnus vulgaris": "starling", "falco tinnunculus": "kestrel", "columba livia": "pigeon",
               "corvus corone": "crow", "larus argentatus": "herring gull", "branta canadensis": "Canada goose"}
 FAR = 5e4  # m: birds that are all farther away make one look for a mistake in their coordinates
+MAP_FROM = 1e5  # m: x and y beyond are probably coordinates of a map
 NEAR = 2e4  # m: a mistake is likely if birds without this mistake are nearer
 SETTINGS = ("file_name", "origin", "height_reference", "geoid_undulation", "columns")  # keys of a group with a file
 
@@ -84,7 +86,9 @@ class Flights:
     def mistake(self, place, origin: Sequence[float]) -> str:
         """Words on a likely mistake in coordinates that are all far away."""
         if self.degrees is None:
-            return "x and y are metres east and north of the scene's origin"
+            away = np.abs(self.points[:, :2]).max(axis=1)
+            return ("x and y are metres east and north of the scene's origin" +
+                    (f"; {FROM_MAP}" if np.median(away) > MAP_FROM else ""))
         some = self.degrees[:: max(len(self.degrees) // 1000, 1)]
         for words, other in (("latitude and longitude are exchanged", some[:, ::-1]),
                              ("the longitude has the wrong sign", some * (-1, 1)),
@@ -134,6 +138,9 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
         if height_reference not in ("", *LEVELS):
             raise Error(unknown("height_reference", height_reference, LEVELS))
         known = Columns(reader.names, given)
+        ignored = known.ignore(reader.empty)
+        if ignored:
+            reader.notes.append(f"columns without a value are ignored: {', '.join(ignored)}")
         in_degrees = ("longitude" in known.found or "latitude" in known.found) and not {"x", "y"} & {*given}
         across = ("longitude", "latitude") if in_degrees else ("x", "y")
         chosen = {what: known.need(what) for what in ("time", *across)}
@@ -149,6 +156,8 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     frame, times = frame.iloc[order], times[order]
     places, heights = frame[[*across]].to_numpy(float), frame["height"].to_numpy(float)
     above_sea = heights - (geoid_undulation or 0.0) * (level == "ellipsoid")
+    if not in_degrees and origin is not None:
+        _check_metres(file, chosen, places, origin)
     if in_degrees:
         assert origin is not None
         points = placed(np.column_stack([places, above_sea if level != "ground" else np.full(len(places), origin[2])]),
@@ -205,6 +214,19 @@ def _check_level(name: str, level: str, in_degrees: bool, origin: Optional[Seque
         raise Error(f"heights ({name}) are above the ground, but there is no scene: expected scene")
 
 
+def _check_metres(file: str, chosen: Dict[str, Column], places: np.ndarray, origin: Sequence[float]) -> None:
+    """Raises an error for x and y that are longitude and latitude near the origin, or these exchanged."""
+    if not len(places) or np.abs(places).max() > 400.0:
+        return
+    for first, degrees in (("longitude", places), ("latitude", places[:, ::-1])):
+        if np.abs(degrees[:, 1]).max() <= 90.0:
+            away = np.linalg.norm(placed(np.column_stack([degrees, np.full(len(places), origin[2])]), origin), axis=1)
+            if np.quantile(away, 0.9) < FAR:
+                names = {first: chosen["x"].name, "latitude" if first == "longitude" else "longitude": chosen["y"].name}
+                raise Error(f"{file}: x and y look like longitude and latitude, but are metres east and north of the "
+                            f"scene's origin: set \"columns\": {json.dumps(names, ensure_ascii=False)}")
+
+
 def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]:
     """The column of heights, and the level that they count from: sea, ground, ellipsoid, or the scene's origin if
     empty."""
@@ -232,7 +254,7 @@ def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]
 
 def _no_height(known: Columns) -> Column:
     raise Error(f"has no column for the height, but {', '.join(known.names)}; expected a name such as altitude, "
-                "height-above-msl, altitude_agl or z, or the column's name in columns")
+                f"height-above-msl, altitude_agl or z, or {known.remedy('height')} with a column of the table")
 
 
 def _species_of(reader: Log, frame, begins: np.ndarray, species: str, species_file_name: str) -> List[str]:
