@@ -446,6 +446,13 @@ class Scenarios(unittest.TestCase):
         with self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: .*radar.csv: has longitudes and latitudes, but the scene has no "
                                     "origin on the Earth: expected the key origin"):
             al.Sequence(self.scenario(rows, around))
+        named = dict(zip(("latitude", "longitude", "height"), own))
+        np.testing.assert_array_equal(al.Sequence(self.scenario(rows, group={"origin": named})).flights[0].points[0], place)
+        for wrong in ([1, 2], [1, 2, 3, 4], {"latitude": 1, "longitude": 2}, {**named, "hight": 1}, "47.4, 8.5, 430", [147.45, 8.55, 3], [1, 2, None],
+                      [1, 2, True], 47, None, {**named, "height": "430"}):
+            with self.subTest(wrong), self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: origin is .*, expected latitude and longitude in "
+                                                             r'degrees and height in metres, as in \{"latitude"'):
+                al.Sequence(self.scenario(rows, group={"origin": wrong}))
 
     def test_far_birds(self):
         """One warning for each file, with distances; a guess if another reading brings birds near."""
@@ -509,7 +516,17 @@ class Scenarios(unittest.TestCase):
         self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: file_name is missing", al.Sequence,
                                self.scenario(rows, birds=[{"pattern": "File"}]))
         for group, words in (({"height_reference": "msl"}, "height_reference"), ({"geoid_undulation": 470}, "geoid_undulation"),
-                             ({"columns": {"hight": "z"}}, "columns"), ({"origin": [1, 2]}, "origin"), ({"height_ref": "sea"}, "height_ref"),
-                             ({"pattern": "Circles", "height_reference": "sea"}, "height_reference")):
+                             ({"columns": {"hight": "z"}}, "columns"), ({"height_ref": "sea"}, "height_ref"),
+                             ({"height_referense": "sea"}, r"birds\[0\]: key 'height_referense' is not known; did you mean 'height_reference'"),
+                             ({"geoid_undulaton": 4}, "did you mean 'geoid_undulation'"), ({"colums": {}}, "did you mean 'columns'"),
+                             ({"first_object_id": 7}, r"birds\[0\].first_object_id: is not to be given here"),
+                             ({"species": "heron"}, r"birds\[0\]: species 'heron' is not known: expected starling"),
+                             ({"pattern": "Circles", "species": "heron"}, r"birds\[0\]: .*[Ss]pecies is 'heron'"),
+                             ({"pattern": "Circles", "height_reference": "sea"}, r"birds\[0\].height_reference: is only for groups with the pattern File")):
             with self.subTest(words), self.assertRaisesRegex(al.Error, f"small.scenario.json: .*{words}"):
                 al.Sequence(self.scenario(rows, group=group))
+        with self.assertRaises(al.Error) as raised:
+            al.Sequence(self.scenario(rows, group={"zzz": 1}))
+        listed = str(raised.exception).partition("expected one of ")[2].split(", ")
+        self.assertLessEqual({"pattern", "species", "file_name", "height_reference", "geoid_undulation", "columns", "origin"}, {*listed})
+        self.assertTrue({"first_object_id", "seed", "time_range"}.isdisjoint(listed))

@@ -6,6 +6,8 @@ import dataclasses
 import json
 import os
 import warnings
+from collections.abc import Mapping
+from numbers import Real
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -25,6 +27,7 @@ from ._logs import FROM_MAP, LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
 
 SCIENTIFIC = {"sturnus vulgaris": "starling", "falco tinnunculus": "kestrel", "columba livia": "pigeon",
               "corvus corone": "crow", "larus argentatus": "herring gull", "branta canadensis": "Canada goose"}
+KNOWN_SPECIES = f"{', '.join([*SCIENTIFIC.values()][:-1])} or Canada goose, or one of a table (species_file_name)"
 FAR = 5e4  # m: birds that are all farther away make one look for a mistake in their coordinates
 MAP_FROM = 1e5  # m: x and y beyond are probably coordinates of a map
 NEAR = 2e4  # m: a mistake is likely if birds without this mistake are nearer
@@ -109,6 +112,22 @@ def _cut(track: np.ndarray, begin: float, end: float) -> np.ndarray:
     return np.column_stack([np.interp(at, times, x) for x in track[:, :3].T])
 
 
+def origin_of(given: Any) -> Tuple[float, float, float]:
+    """Latitude and longitude (deg) and height (m) from an object, as in scene files, or from three numbers."""
+    keys = ("latitude", "longitude", "height")
+    parts: Any = None
+    if isinstance(given, Mapping) and {*given} - {"comment"} == {*keys}:
+        parts = [given[key] for key in keys]
+    elif not isinstance(given, (str, Mapping)) and np.shape(given) == (3,):
+        parts = given
+    if parts is not None and all(isinstance(x, Real) and not isinstance(x, bool) and np.isfinite(x) for x in parts):
+        latitude, longitude, height = map(float, parts)
+        if abs(latitude) <= 90.0 and -180.0 <= longitude <= 360.0:
+            return latitude, longitude, height
+    raise Error(f"origin is {str(given)[:80]}, expected latitude and longitude in degrees and height in metres, as in "
+                '{"latitude": 47.45, "longitude": 8.55, "height": 420} or [47.45, 8.55, 420]')
+
+
 def least_distance(points: np.ndarray, place) -> float:
     """Least distance of a line (n x 3, m) from a place, m."""
     off = points - np.asarray(place, float)
@@ -117,12 +136,13 @@ def least_distance(points: np.ndarray, place) -> float:
     return float(np.linalg.norm(np.vstack([off[:1], off[:-1] + along[:, None] * way]), axis=1).min())
 
 
-def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, species: str = "",
+def read_flights(file, origin: Any = None, scene=None, species: str = "",
                  species_file_name: str = "", height_reference: str = "", geoid_undulation: Optional[float] = None,
                  columns: Optional[Dict[str, str]] = None) -> Flights:
     """Tracks of a CSV file; `Error` names the file and what was expected.
 
-    origin             latitude, longitude (deg) and height (m) of the scene's origin; default: from the scene
+    origin             latitude, longitude (deg) and height (m) of the scene's origin, as three numbers or by these
+                       names; default: from the scene
     scene              a Scene, which heights above the ground need
     species            name of a species for tracks without a known species
     species_file_name  table of the user's species
@@ -132,7 +152,12 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     columns            names of columns by meaning
     """
     file, given = str(file), columns or {}
-    origin = scene.geodetic_origin if origin is None and scene is not None else origin
+    if origin is not None:
+        origin = origin_of(origin)
+    elif scene is not None:
+        origin = scene.geodetic_origin
+    if species and not _is_known(species, species_file_name):
+        raise Error(f"species {species!r} is not known: expected {KNOWN_SPECIES}")
     reader = Log(file)
     try:
         if height_reference not in ("", *LEVELS):
@@ -273,9 +298,8 @@ def _species_of(reader: Log, frame, begins: np.ndarray, species: str, species_fi
     strange = [name for name, one in zip(first, found) if not one]
     if strange and not species:
         names = ", ".join(repr(name) for name in dict.fromkeys(strange))
-        raise Error(f"{reader.file}: the species {names[:200]} are not known: expected starling, kestrel, pigeon, "
-                    "crow, herring gull or Canada goose, a table of species (species_file_name), or the key species "
-                    "for such birds")
+        raise Error(f"{reader.file}: the species {names[:200]} are not known: expected {KNOWN_SPECIES}, or the "
+                    "key species for such birds")
     if strange:
         names = ", ".join(f"{name} ({strange.count(name)})" for name in dict.fromkeys(strange))
         reader.notes.append(f"tracks of unknown species fly as {species}: {names[:200]}")

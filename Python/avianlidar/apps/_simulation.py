@@ -23,7 +23,7 @@ from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
 from .._weather import in_weather
 from ._air import check_received, scatters
-from ._flights import FAR, SETTINGS, Flights, least_distance, read_flights
+from ._flights import FAR, SETTINGS, Flights, least_distance, origin_of, read_flights
 from ._json import naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of
 from ._inputs import checked, read_scenario
@@ -158,6 +158,8 @@ class Simulation:
                     given = {name: group[name] for name in (*SETTINGS, "species", "species_file_name") if name in group}
                     if not given.get("file_name"):
                         raise Error("file_name is missing, expected a file of tracks")
+                    if "origin" in given:
+                        given["origin"] = origin_of(given["origin"])
                     found[place] = read_flights(given.pop("file_name"), scene=self.scene, **given)
         dated, end = [one for one in found.values() if one.since_1970], self.scans / self.sensor.rotation_rate
         if "start_time" in self.scenario and not dated and all(len(one.times) for one in found.values()):
@@ -178,11 +180,16 @@ class Simulation:
                 self._warn(f"{one.file}: no track is under way in the {end:.0f} s of the scans: {self.period(one)}; "
                            f"choose {'start_time or ' * one.since_1970}number_of_scans")
             elif away.min() > FAR:
-                origin = self.scenario["birds"][place].get("origin") or self.scene.geodetic_origin
+                origin = self._origin(place)
                 self._warn_of_far(one.file, away, one.mistake(self.sensor.position, origin))
             else:
                 self._warn_of_far(one.file, away)
         return found
+
+    def _origin(self, place: int) -> Any:
+        """The origin of a group with a file: latitude, longitude (deg) and height (m)."""
+        group = self.scenario["birds"][place]
+        return origin_of(group["origin"]) if "origin" in group else self.scene.geodetic_origin
 
     def period(self, flights: Flights) -> str:
         """Words on the time in which tracks of a file are under way."""
