@@ -15,6 +15,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import TestSequence
 import avianlidar as al
+from avianlidar import reach
 from avianlidar._pipeline import update
 from avianlidar.apps._flights import read_flights
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
@@ -106,9 +107,10 @@ class Tables(unittest.TestCase):
 
     def test_said(self):
         """Which columns were taken, and how."""
-        self.assertIn("1 tracks with 3 positions: time is timestamp, longitude is location.long, latitude is location.lat, height is "
-                      "height.above.msl, id is individual.local.identifier; heights are above the sea; times without a zone are UTC",
-                      self.read(WRITTEN["Movebank in R"]).words)
+        words = self.read(WRITTEN["Movebank in R"]).words
+        self.assertRegex(" ".join(words.split()), "own.csv: 1 tracks with 3 positions time is timestamp, longitude is location.long, latitude is location.lat, "
+                         "height is height.above.msl, id is individual.local.identifier heights are above the sea times without a zone are UTC$")
+        self.assertEqual([line for line in words.split("\n")[1:] if len(line) > 120], [])
         self.assertIn("times are milliseconds since 1970", self.read(WRITTEN["a radar, ms, feet"].replace("TimestampMs", "timestamp")).words)
         self.assertNotIn("zone", self.read(WRITTEN["GPX as CSV"]).words)
 
@@ -483,6 +485,33 @@ class Scenarios(unittest.TestCase):
             al.Sequence(TestSequence.scenario_file(self.home, **{**SCENARIO, "birds": birds}))
         self.assertRegex(" ".join(heard), r"small.scenario.json: birds\[0\]: 3 of 3 birds never come within")
 
+    def test_birds_above_and_below_all_beams(self):
+        sensor = al.Sensor("Search905")
+        low, high = reach.band(sensor)
+        sea = {height: [*self.track("A", 100, 300, height)] for height in (420.0 + 3 + 20, 420.0 + 400, 20.0, 500.0)}
+        for height, words in ((443, ""), (820, rf"radar.csv: the one bird within the range gate of {sensor.range_gate:g} m stays above the beams "
+                                          rf"\({low:.1f} to {high:.1f} deg\): the lowest elevation is 4[0-9].[0-9] deg, 397 m above the lidar; check height_reference "
+                                          r"\(heights count from the sea\) and the height of the scene's origin \(420 m\)$"),
+                              (20, "the one bird .* stays below the beams .*the highest elevation is -4[0-9].[0-9] deg, 403 m below the lidar; check height_reference")):
+            with self.subTest(height), self.said() as heard:
+                al.Sequence(self.scenario(sea[height]))
+            self.assertEqual(len(heard), bool(words), heard)
+            self.assertRegex(" ".join(heard), words or "^$")
+        with self.said() as heard:  # one of two birds is at the height of the beams
+            al.Sequence(self.scenario([*sea[820], *self.track("B", 100, 300)]))
+        self.assertEqual(heard, [])
+        two = [*sea[820], *self.track("B", 50, 200, 900), *self.track("far", 0, sensor.range_gate + 900, 443)]
+        with self.said() as heard:
+            al.Sequence(self.scenario(two))
+        self.assertRegex(" ".join(heard), "1 of 3 birds never .*all 2 birds within the range gate of .* stay above the beams")
+        with self.said() as heard:  # a tilted lidar
+            al.Sequence(self.scenario(sea[820], sensor={**SCENARIO["sensor"], "orientation": [0, 40, 0]}))
+        self.assertEqual(heard, [])
+        fall = [("A", clock(36000) + "Z", 47.4527, 8.5513, 900), ("A", clock(36012) + "Z", 47.4527, 8.5513, 20)]  # passes the beams between two rows
+        with self.said() as heard:
+            al.Sequence(self.scenario(fall))
+        self.assertEqual(heard, [])
+
     def test_start(self):
         rows = [*self.track("A", 100, 150), *self.track("B", -100, 150, begin=600.0)]
         with self.said() as heard:
@@ -506,7 +535,8 @@ class Scenarios(unittest.TestCase):
         out = self.home / "shipped"
         code, words, warned = run("sequence", pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples/sequence/radar.scenario.json", "-o", out, "--scans", "3")
         self.assertEqual(code or 0, 0, warned)
-        self.assertRegex(words, "radar.csv: 10 tracks with 412 positions: .*height is altitude_m.*heights are above the sea")
+        self.assertRegex(words, r"(?s)radar.csv: 10 tracks with 412 positions\n.*height is altitude_m.*\n  heights are above the sea\n.*  from 2026.* first scan at")
+        self.assertEqual([line for line in words.split("\n") if line.startswith(" ") and len(line) > 120], [])
         self.assertRegex(warned, r"left out: rows without a height \(1\)")
         self.assertRegex(warned, "1 of [0-9]+ birds never come within the lidar's range gate of 4000 m")
         self.assertGreater(sum(row["status"] == "seen" for row in rows_of(out / "sequences/00/truth.csv")), 8)

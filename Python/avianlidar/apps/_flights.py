@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import os
+import textwrap
 import warnings
 from collections.abc import Mapping
 from numbers import Real
@@ -46,7 +48,8 @@ class Flights:
     degrees: Optional[np.ndarray]  # longitude and latitude of the points
     since_1970: bool  # else times count from the first scan
     above: Any = None  # scene whose ground heights count from, if they do not count from the origin
-    words: str = ""  # what was read and left out, for people
+    level: str = ""  # that heights count from, of LEVELS; empty: the scene's origin
+    words: str = ""  # what was read, for people, in lines
     warning: str = ""
 
     def _under_way(self, begin: float, end: float, more: int) -> Tuple[np.ndarray, List[np.ndarray]]:
@@ -86,6 +89,18 @@ class Flights:
         time, m."""
         return np.array([least_distance(_cut(part, begin, end), place) for part in self._under_way(begin, end, 1)[1]])
 
+    def within(self, place, reach: float, end: float) -> Tuple[np.ndarray, int]:
+        """Positions (n x 3, m) about a place within its reach (m), of birds under way between the times 0 and end (s),
+        also between the positions of the table; and the number of these birds."""
+        found, count = [np.empty((0, 3))], 0
+        for part in self._under_way(0.0, end, 1)[1]:
+            track = _cut(part, 0.0, end) - np.asarray(place, float)
+            at = np.linspace(0, len(track) - 1, 20 * (len(track) - 1) + 1)
+            points = np.column_stack([np.interp(at, np.arange(len(track)), x) for x in track.T])
+            found.append(points[np.linalg.norm(points, axis=1) <= reach])
+            count += len(found[-1]) > 0
+        return np.concatenate(found), count
+
     def mistake(self, place, origin: Sequence[float]) -> str:
         """Words on a likely mistake in coordinates that are all far away."""
         if self.degrees is None:
@@ -120,7 +135,7 @@ def origin_of(given: Any) -> Tuple[float, float, float]:
         parts = [given[key] for key in keys]
     elif not isinstance(given, (str, Mapping)) and np.shape(given) == (3,):
         parts = given
-    if parts is not None and all(isinstance(x, Real) and not isinstance(x, bool) and np.isfinite(x) for x in parts):
+    if parts is not None and all(isinstance(x, Real) and not isinstance(x, bool) and math.isfinite(x) for x in parts):
         latitude, longitude, height = map(float, parts)
         if abs(latitude) <= 90.0 and -180.0 <= longitude <= 360.0:
             return latitude, longitude, height
@@ -198,8 +213,9 @@ def read_flights(file, origin: Any = None, scene=None, species: str = "",
     return Flights(
         file, ids, of_tracks, begins, times, points, places if in_degrees else None, since_1970,
         scene if level == "ground" else None,
-        "; ".join([f"{file}: {len(ids)} tracks with {len(times)} positions: {names}",
-                   f"heights are above the {level or 'origin'}", *reader.notes]),
+        level, "\n".join([f"{file}: {len(ids)} tracks with {len(times)} positions", *(
+            line for text in (names, f"heights are above the {level or 'origin'}", *reader.notes)
+            for line in textwrap.wrap(text, 118, initial_indent="  ", subsequent_indent="    "))]),
         f"{file}: left out: {', '.join(left)}" if left else "")
 
 
