@@ -332,9 +332,9 @@ class Tables(unittest.TestCase):
         good, wrong = WRITTEN["GPX as CSV"], {
             "": "expected the names of columns", "lat lon ele time\n": "expected the names of columns", "lat,lon,ele\n1,2,3\n": "has no column for the time, but lat, lon, ele; expected",
             "lat,lon,ele,a,Zeit\n": 'has no column for the time.* or "columns": {"time": "Zeit"}', "lat,lon,time,a,Höhe\n": '"columns": {"height": "Höhe"}',
-            "a,b,time,ele\n": '"columns": {"latitude": "a", "longitude": "b"}', "easting,northing,time,ele\n": r"coordinates of a map \(UTM\) must be converted",
+            "a,Lat_N,Long_E,time,ele\n": '"columns": {"latitude": "Lat_N", "longitude": "Long_E"}', "a,b,time,ele\n": '"columns": {"latitude": "...", "longitude": "..."}', "easting,northing,time,ele\n": r"coordinates of a map \(UTM\) must be converted",
             "a,time,z\n1,2,3\n": "has no column for the position, but a, time, z; expected latitude and longitude in", "lat,time,ele\n1,2,3\n": "has no column for the longitude",
-            "lat,lon,time\n1,2,3\n": "has no column for the height", "lat,latitude,lon,ele,time\n": "columns 'lat' and 'latitude' may both be the latitude: choose one by columns",
+            "lat,lon,time\n1,2,3\n": "has no column for the height", "lat,latitude,lon,ele,time\n": "columns 'lat' and 'latitude' may both be the latitude: choose one, as in .columns.: {.latitude.: .lat.}",
             "track_id,Track ID,lat,lon,ele,time\n": "columns 'track_id' and 'Track ID' may both be the id",
             "lat,lon,ele,time,timestamp,datetime\n": "columns 'timestamp' and 'datetime' may both be the time"}
         wrong = {text: words for text, words in wrong.items()}

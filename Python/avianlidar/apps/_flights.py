@@ -264,8 +264,8 @@ def _check_metres(file: str, chosen: Dict[str, Column], places: np.ndarray, orig
             away = np.linalg.norm(placed(np.column_stack([degrees, np.full(len(places), origin[2])]), origin), axis=1)
             if np.quantile(away, 0.9) < FAR:
                 names = {first: chosen["x"].name, "latitude" if first == "longitude" else "longitude": chosen["y"].name}
-                raise Error(f"{file}: x and y look like longitude and latitude, but are metres east and north of the "
-                            f"scene's origin: set \"columns\": {json.dumps(names, ensure_ascii=False)}")
+                raise Error(f"{file}: x and y look like longitude and latitude, expected metres east and north of "
+                            f"the scene's origin: set \"columns\": {json.dumps(names, ensure_ascii=False)}")
 
 
 def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]:
@@ -283,7 +283,7 @@ def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]
             if other:
                 raise Error(f"height_reference is {wanted!r}, but the column {other.name!r} is above the {other.level} "
                             f"by its name: expected {other.level!r}, or another column, as in "
-                            "columns: {\"height\": \"...\"}")
+                            "\"columns\": {\"height\": \"...\"}")
         return column or _no_height(known), wanted
     if named["sea"]:
         return named["sea"], "sea"

@@ -152,7 +152,7 @@ class Columns:
         strange, chosen = [name for name in self.names if name and not _meaning(name, 0)[0]], {}
         for what in meanings:
             hints = [name for name in strange if any(part in name.lower() for part in HINTS.get(what, ()))]
-            chosen[what] = next(iter(hints + strange), "...")
+            chosen[what] = next(iter(hints or (strange if len(strange) == len(meanings) == 1 else ())), "...")
             strange = [name for name in strange if name != chosen[what]]
         return f"\"columns\": {json.dumps(chosen, ensure_ascii=False)}"
 
@@ -164,7 +164,7 @@ class Columns:
         best = metres if len(metres) == 1 else best
         if len(best) > 1:
             raise Error(f"the columns {best[0].name!r} and {best[1].name!r} may both be the {what}: "
-                        f"choose one by columns, as in {{\"{what}\": \"{best[0].name}\"}}")
+                        f"choose one, as in \"columns\": {json.dumps({what: best[0].name}, ensure_ascii=False)}")
         return best[0] if best else None
 
     def need(self, what: str) -> Column:
@@ -174,9 +174,9 @@ class Columns:
                         f"{', '.join(sorted(NAMES[what][0]))}, or {self.remedy(what)} with a column of the table")
         if column is None:
             on_map = any(word in name.lower() for name in self.names for word in MAP)
+            remedy = FROM_MAP if on_map else f"or {self.remedy('latitude', 'longitude')} with columns of the table"
             raise Error(f"has no column for the position, but {', '.join(self.names)}; expected latitude and longitude "
-                        "in degrees, or x and y in metres east and north of the scene's origin, or "
-                        f"{self.remedy('latitude', 'longitude')} with columns of the table{on_map * f'; {FROM_MAP}'}")
+                        f"in degrees, or x and y in metres east and north of the scene's origin; {remedy}")
         return column
 
 
