@@ -15,6 +15,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import TestSequence
 import avianlidar as al
+from avianlidar import reach
 from avianlidar._pipeline import update
 from avianlidar.apps._flights import read_flights
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
@@ -106,9 +107,10 @@ class Tables(unittest.TestCase):
 
     def test_said(self):
         """Which columns were taken, and how."""
-        self.assertIn("1 tracks with 3 positions: time is timestamp, longitude is location.long, latitude is location.lat, height is "
-                      "height.above.msl, id is individual.local.identifier; heights are above the sea; times without a zone are UTC",
-                      self.read(WRITTEN["Movebank in R"]).words)
+        words = self.read(WRITTEN["Movebank in R"]).words
+        self.assertRegex(" ".join(words.split()), "own.csv: 1 tracks with 3 positions time is timestamp, longitude is location.long, latitude is location.lat, "
+                         "height is height.above.msl, id is individual.local.identifier heights are above the sea times without a zone are UTC$")
+        self.assertEqual([line for line in words.split("\n")[1:] if len(line) > 120], [])
         self.assertIn("times are milliseconds since 1970", self.read(WRITTEN["a radar, ms, feet"].replace("TimestampMs", "timestamp")).words)
         self.assertNotIn("zone", self.read(WRITTEN["GPX as CSV"]).words)
 
@@ -197,6 +199,69 @@ class Tables(unittest.TestCase):
                                        ("hae", {"geoid_undulation": 47.0}, -17)):
             np.testing.assert_allclose(self.read(local.format(name), **settings).points[0], (5, 6, wanted))
 
+    def test_names_of_heights(self):
+        for name, size in (("Altitude (m a.s.l.)", 1), ("height a.m.s.l.", 1), ("GPSAltitude", 1), ("baro_altitude", 1), ("z_msl", 1), ("height (cm)", 0.01),
+                           ("alt_mm", 0.001), ("altitude,barometric altitude", 1)):
+            with self.subTest(name):
+                row = f",{445 / size:g}" + ",1" * name.count(",")
+                found = self.read(f"time,lat,lon,{name}\n0,47.4512,8.5523{row}\n1,47.4512,8.5523{row}\n")
+                np.testing.assert_allclose(found.points[0], closed_form(PLACES)[0], atol=1e-6)
+        self.assertRaisesRegex(al.Error, r"heights \(Height \(m a.g.l.\)\) are above the ground, but there is no scene", self.read,
+                               "time,lat,lon,Height (m a.g.l.)\n0,47,8,30\n1,47,8,30\n")
+
+    def test_impossible_heights(self):
+        rows = "".join(f"{t},47.45,8.55,{height}\n" for t, height in enumerate((440, -9999, 9999, -32768, 32767, -999, -501, 20001, -499, 19999)))
+        found = self.read("time,lat,lon,alt\n" + rows)
+        self.assertEqual(found.times.tolist(), [0, 8, 9])
+        self.assertRegex(found.warning, r"own.csv: left out: rows with an impossible height \(7\)$")
+        feet = self.read("time,lat,lon,alt_ft\n0,47.45,8.55,-9999\n1,47.45,8.55,9999\n2,47.45,8.55,1400\n3,47.45,8.55,1500\n")
+        self.assertEqual(feet.times.tolist(), [2, 3])
+        self.assertEqual(self.read("time,lat,lon,alt_mm\n0,47.45,8.55,9999\n2,47.45,8.55,9999\n").warning, "")
+
+    def test_columns_without_a_value(self):
+        """As Movebank writes heights of loggers that have one of them; beyond the first rows, too."""
+        for before in (0, 1500):
+            text = "timestamp,location-long,location-lat,x,height-above-ellipsoid,height-above-msl,id,tag\n" + "".join(
+                f"{t},8.5523,47.4512,,492,,,\n" for t in range(before + 2))
+            found = self.read(text, geoid_undulation=47.0)
+            np.testing.assert_allclose(found.points[0], closed_form(PLACES)[0], atol=1e-6)
+            self.assertEqual((found.ids, len(found.times), found.warning), (["1"], before + 2, ""))
+            self.assertIn("columns without a value are ignored: x, height-above-msl, id, tag", found.words)
+        both = text + "3000,8.5523,47.4512,,492,445,,\n3001,8.5523,47.4512,,492,445,,\n"
+        found = self.read(both)
+        self.assertEqual(found.times.tolist(), [3000, 3001])
+        self.assertRegex(found.warning, r"left out: rows without a height \(1502\)$")
+        self.assertRegex(self.read("time,lat,lon,alt\n0,47,8,\n1,47,8,\n").warning, r"left out: rows without a height \(2\)$")
+
+    def test_times(self):
+        """Of ISO 8601 in its basic form, of other hands, and of leap seconds."""
+        for text, second in (("20210504T102233Z", 37353), ("20210504T102233.5+0200", 30153.5), ("2021-05-04 9:30:00", 34200), ("2021-05-04T1022Z", 37320),
+                             ("2021-05-04T24:00:00Z", 86400), ("2021-05-04T23:59:60Z", 86400), ("2021/05/04 10:22", 37320)):
+            with self.subTest(text):
+                found = self.read(f"time,lat,lon,alt\n2021-05-04T00:00:00Z,47.45,8.55,440\n{text},47.45,8.55,440\n")
+                self.assertAlmostEqual(found.times[1] - DAY, second, places=5)
+        for text in ("2021-05-04T24:00:01Z", "2021-05-04T10:22:61Z", "2021-0504T10:22:33Z", "2021-02-29T10:22:33Z", "20210504T10223Z", "2021-05-04T25:00"):
+            with self.subTest(text), self.assertRaisesRegex(al.Error, r"line 2: time is '" + text):
+                self.read(f"time,lat,lon,alt\n{text},47.45,8.55,440\n2021-05-04T00:00:00Z,47.45,8.55,440\n")
+        for name in ("UpdateTime(UTC)", "Detection Time", "local_timestamp", "Update Time,time", "Event DateTime"):
+            with self.subTest(name):
+                found = self.read(f"lat,lon,alt,{name}\n47.45,8.55,440{',7' * (name.count(',') + 1)}\n47.45,8.55,440{',9' * (name.count(',') + 1)}\n")
+                self.assertEqual(found.times.tolist(), [7, 9])
+        self.assertRaisesRegex(al.Error, "columns 'Update Time' and 'Detection Time' may both be the time", self.read,
+                               "lat,lon,alt,Update Time,Detection Time\n1,2,3,4,5\n")
+
+    def test_degrees_in_x_and_y(self):
+        """As QGIS writes them, in both orders. Metres near the origin are metres."""
+        for head, first, second, words in (("X,Y,Z", "8.5523", "47.4512", '"columns": {"longitude": "X", "latitude": "Y"}'),
+                                           ("x,y,alt", "47.4512", "8.5523", '"columns": {"latitude": "x", "longitude": "y"}')):
+            text = f"{head},id,timestamp\n{first},{second},445,1,1\n{first},{second},445,1,2\n"
+            with self.assertRaisesRegex(al.Error, f"own.csv: x and y look like longitude and latitude, .*{words}"):
+                self.read(text)
+            found = self.read(text, columns=json.loads(words.partition(":")[2]), height_reference="sea")
+            np.testing.assert_allclose(found.points[0], closed_form(PLACES)[0], atol=1e-6)
+            self.assertEqual(self.read(text, origin=None).points[0, 0], float(first))
+        self.assertEqual(self.read("x,y,z,time\n8,12,3,1\n60,70,3,2\n").points[0].tolist(), [8, 12, 3])
+
     def test_above_the_ground_of_a_slope(self):
         """Ground that rises by one metre in ten, below a roof; level beyond."""
         corners = [(x, y, 0.1 * x) for x in (0, 1000) for y in (0, 1000)] + [(x, y, 150.0) for x in (100, 300) for y in (100, 300)]
@@ -219,7 +284,7 @@ class Tables(unittest.TestCase):
             (1, 7, "NaN", 9.5, 440, "true")))
         found = self.read(text)
         self.assertEqual((found.ids, found.times.tolist(), found.begins.tolist()), (["1", "2"], [0, 1, 2, 0, 4], [0, 3, 5]))
-        self.assertRegex(found.warning, r"own.csv: left out: rows marked as outliers \(1\), rows without a position \(2\), rows at 0, 0 degrees \(1\), "
+        self.assertRegex(found.warning, r"own.csv: left out: rows marked as outliers \(1\), rows without a position \(1\), rows without a height \(1\), rows at 0, 0 degrees \(1\), "
                          r"rows without a time \(1\), rows without an id \(1\), rows of a time that their track already has \(1\), tracks of one position \(1\)$")
         marked = "timestamp,lat,lon,height,manually-marked-outlier\n" + "".join(f"{k},47.45,8.55,440,{'true' if k == 1 else ''}\n" for k in range(3))
         self.assertEqual(self.read(marked).times.tolist(), [0, 2])
@@ -266,8 +331,10 @@ class Tables(unittest.TestCase):
     def test_bad_tables_are_named(self):
         good, wrong = WRITTEN["GPX as CSV"], {
             "": "expected the names of columns", "lat lon ele time\n": "expected the names of columns", "lat,lon,ele\n1,2,3\n": "has no column for the time, but lat, lon, ele; expected",
+            "lat,lon,ele,a,Zeit\n": 'has no column for the time.* or "columns": {"time": "Zeit"}', "lat,lon,time,a,Höhe\n": '"columns": {"height": "Höhe"}',
+            "a,Lat_N,Long_E,time,ele\n": '"columns": {"latitude": "Lat_N", "longitude": "Long_E"}', "a,b,time,ele\n": '"columns": {"latitude": "...", "longitude": "..."}', "easting,northing,time,ele\n": r"coordinates of a map \(UTM\) must be converted",
             "a,time,z\n1,2,3\n": "has no column for the position, but a, time, z; expected latitude and longitude in", "lat,time,ele\n1,2,3\n": "has no column for the longitude",
-            "lat,lon,time\n1,2,3\n": "has no column for the height", "lat,latitude,lon,ele,time\n": "columns 'lat' and 'latitude' may both be the latitude: choose one by columns",
+            "lat,lon,time\n1,2,3\n": "has no column for the height", "lat,latitude,lon,ele,time\n": "columns 'lat' and 'latitude' may both be the latitude: choose one, as in .columns.: {.latitude.: .lat.}",
             "track_id,Track ID,lat,lon,ele,time\n": "columns 'track_id' and 'Track ID' may both be the id",
             "lat,lon,ele,time,timestamp,datetime\n": "columns 'timestamp' and 'datetime' may both be the time"}
         wrong = {text: words for text, words in wrong.items()}
@@ -381,6 +448,13 @@ class Scenarios(unittest.TestCase):
         with self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: .*radar.csv: has longitudes and latitudes, but the scene has no "
                                     "origin on the Earth: expected the key origin"):
             al.Sequence(self.scenario(rows, around))
+        named = dict(zip(("latitude", "longitude", "height"), own))
+        np.testing.assert_array_equal(al.Sequence(self.scenario(rows, group={"origin": named})).flights[0].points[0], place)
+        for wrong in ([1, 2], [1, 2, 3, 4], {"latitude": 1, "longitude": 2}, {**named, "hight": 1}, "47.4, 8.5, 430", [147.45, 8.55, 3], [1, 2, None],
+                      [1, 2, True], 47, None, {**named, "height": "430"}):
+            with self.subTest(wrong), self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: origin is .*, expected latitude and longitude in "
+                                                             r'degrees and height in metres, as in \{"latitude"'):
+                al.Sequence(self.scenario(rows, group={"origin": wrong}))
 
     def test_far_birds(self):
         """One warning for each file, with distances; a guess if another reading brings birds near."""
@@ -402,7 +476,7 @@ class Scenarios(unittest.TestCase):
         metres = ((name, t, 683000 + k, 5257000, 440) for k, (name, t, *_) in enumerate(near))
         with self.said() as heard:
             al.Sequence(self.scenario(metres, head="track_id,timestamp,x,y,z"))
-        self.assertRegex(" ".join(heard), "x and y are metres east and north of the scene's origin$")
+        self.assertRegex(" ".join(heard), "x and y are metres east and north of the scene's origin; coordinates of a map .UTM. must be converted .*ogr2ogr -t_srs EPSG:4326")
         with self.said() as heard:  # inside the gate before the first scan alone
             al.Sequence(self.scenario([*self.track("A", 0, gate - 500, seconds=100)][::50], start_time=DAY + 36080))
         self.assertRegex(" ".join(heard), f"1 of 1 birds never come .*: it passes the lidar at {gate + 300:.0f} m$")
@@ -410,6 +484,33 @@ class Scenarios(unittest.TestCase):
             birds = [{"pattern": "Circles", "number_of_birds": 3, "center": [20000, 0, 0], "radius": 100}]
             al.Sequence(TestSequence.scenario_file(self.home, **{**SCENARIO, "birds": birds}))
         self.assertRegex(" ".join(heard), r"small.scenario.json: birds\[0\]: 3 of 3 birds never come within")
+
+    def test_birds_above_and_below_all_beams(self):
+        sensor = al.Sensor("Search905")
+        low, high = reach.band(sensor)
+        sea = {height: [*self.track("A", 100, 300, height)] for height in (420.0 + 3 + 20, 420.0 + 400, 20.0, 500.0)}
+        for height, words in ((443, ""), (820, rf"radar.csv: the one bird within the range gate of {sensor.range_gate:g} m stays above the beams "
+                                          rf"\({low:.1f} to {high:.1f} deg\): the lowest elevation is 4[0-9].[0-9] deg, 397 m above the lidar; check height_reference "
+                                          r"\(heights count from the sea\) and the height of the scene's origin \(420 m\)$"),
+                              (20, "the one bird .* stays below the beams .*the highest elevation is -4[0-9].[0-9] deg, 403 m below the lidar; check height_reference")):
+            with self.subTest(height), self.said() as heard:
+                al.Sequence(self.scenario(sea[height]))
+            self.assertEqual(len(heard), bool(words), heard)
+            self.assertRegex(" ".join(heard), words or "^$")
+        with self.said() as heard:  # one of two birds is at the height of the beams
+            al.Sequence(self.scenario([*sea[820], *self.track("B", 100, 300)]))
+        self.assertEqual(heard, [])
+        two = [*sea[820], *self.track("B", 50, 200, 900), *self.track("far", 0, sensor.range_gate + 900, 443)]
+        with self.said() as heard:
+            al.Sequence(self.scenario(two))
+        self.assertRegex(" ".join(heard), "1 of 3 birds never .*all 2 birds within the range gate of .* stay above the beams")
+        with self.said() as heard:  # a tilted lidar
+            al.Sequence(self.scenario(sea[820], sensor={**SCENARIO["sensor"], "orientation": [0, 40, 0]}))
+        self.assertEqual(heard, [])
+        fall = [("A", clock(36000) + "Z", 47.4527, 8.5513, 900), ("A", clock(36012) + "Z", 47.4527, 8.5513, 20)]  # passes the beams between two rows
+        with self.said() as heard:
+            al.Sequence(self.scenario(fall))
+        self.assertEqual(heard, [])
 
     def test_start(self):
         rows = [*self.track("A", 100, 150), *self.track("B", -100, 150, begin=600.0)]
@@ -434,8 +535,9 @@ class Scenarios(unittest.TestCase):
         out = self.home / "shipped"
         code, words, warned = run("sequence", pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples/sequence/radar.scenario.json", "-o", out, "--scans", "3")
         self.assertEqual(code or 0, 0, warned)
-        self.assertRegex(words, "radar.csv: 10 tracks with 412 positions: .*height is altitude_m.*heights are above the sea")
-        self.assertRegex(warned, r"left out: rows without a position \(1\)")
+        self.assertRegex(words, r"(?s)radar.csv: 10 tracks with 412 positions\n.*height is altitude_m.*\n  heights are above the sea\n.*  from 2026.* first scan at")
+        self.assertEqual([line for line in words.split("\n") if line.startswith(" ") and len(line) > 120], [])
+        self.assertRegex(warned, r"left out: rows without a height \(1\)")
         self.assertRegex(warned, "1 of [0-9]+ birds never come within the lidar's range gate of 4000 m")
         self.assertGreater(sum(row["status"] == "seen" for row in rows_of(out / "sequences/00/truth.csv")), 8)
 
@@ -444,7 +546,17 @@ class Scenarios(unittest.TestCase):
         self.assertRaisesRegex(al.Error, r"small.scenario.json: birds\[0\]: file_name is missing", al.Sequence,
                                self.scenario(rows, birds=[{"pattern": "File"}]))
         for group, words in (({"height_reference": "msl"}, "height_reference"), ({"geoid_undulation": 470}, "geoid_undulation"),
-                             ({"columns": {"hight": "z"}}, "columns"), ({"origin": [1, 2]}, "origin"), ({"height_ref": "sea"}, "height_ref"),
-                             ({"pattern": "Circles", "height_reference": "sea"}, "height_reference")):
+                             ({"columns": {"hight": "z"}}, "columns"), ({"height_ref": "sea"}, "height_ref"),
+                             ({"height_referense": "sea"}, r"birds\[0\]: key 'height_referense' is not known; did you mean 'height_reference'"),
+                             ({"geoid_undulaton": 4}, "did you mean 'geoid_undulation'"), ({"colums": {}}, "did you mean 'columns'"),
+                             ({"first_object_id": 7}, r"birds\[0\].first_object_id: is not to be given here"),
+                             ({"species": "heron"}, r"birds\[0\]: species 'heron' is not known: expected starling"),
+                             ({"pattern": "Circles", "species": "heron"}, r"birds\[0\]: .*[Ss]pecies is 'heron'"),
+                             ({"pattern": "Circles", "height_reference": "sea"}, r"birds\[0\].height_reference: is only for groups with the pattern File")):
             with self.subTest(words), self.assertRaisesRegex(al.Error, f"small.scenario.json: .*{words}"):
                 al.Sequence(self.scenario(rows, group=group))
+        with self.assertRaises(al.Error) as raised:
+            al.Sequence(self.scenario(rows, group={"zzz": 1}))
+        listed = str(raised.exception).partition("expected one of ")[2].split(", ")
+        self.assertLessEqual({"pattern", "species", "file_name", "height_reference", "geoid_undulation", "columns", "origin"}, {*listed})
+        self.assertTrue({"first_object_id", "seed", "time_range"}.isdisjoint(listed))

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import json
+import math
 import os
+import textwrap
 import warnings
+from collections.abc import Mapping
+from numbers import Real
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -20,11 +25,13 @@ from .._scene import load_scene
 from ._candidates import ground_of
 from ._geojson import placed
 from ._json import naming
-from ._logs import LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
+from ._logs import FROM_MAP, LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
 
 SCIENTIFIC = {"sturnus vulgaris": "starling", "falco tinnunculus": "kestrel", "columba livia": "pigeon",
               "corvus corone": "crow", "larus argentatus": "herring gull", "branta canadensis": "Canada goose"}
+KNOWN_SPECIES = f"{', '.join([*SCIENTIFIC.values()][:-1])} or Canada goose, or one of a table (species_file_name)"
 FAR = 5e4  # m: birds that are all farther away make one look for a mistake in their coordinates
+MAP_FROM = 1e5  # m: x and y beyond are probably coordinates of a map
 NEAR = 2e4  # m: a mistake is likely if birds without this mistake are nearer
 SETTINGS = ("file_name", "origin", "height_reference", "geoid_undulation", "columns")  # keys of a group with a file
 
@@ -41,7 +48,8 @@ class Flights:
     degrees: Optional[np.ndarray]  # longitude and latitude of the points
     since_1970: bool  # else times count from the first scan
     above: Any = None  # scene whose ground heights count from, if they do not count from the origin
-    words: str = ""  # what was read and left out, for people
+    level: str = ""  # that heights count from, of LEVELS; empty: the scene's origin
+    words: str = ""  # what was read, for people, in lines
     warning: str = ""
 
     def _under_way(self, begin: float, end: float, more: int) -> Tuple[np.ndarray, List[np.ndarray]]:
@@ -81,10 +89,24 @@ class Flights:
         time, m."""
         return np.array([least_distance(_cut(part, begin, end), place) for part in self._under_way(begin, end, 1)[1]])
 
+    def within(self, place, reach: float, end: float) -> Tuple[np.ndarray, int]:
+        """Positions (n x 3, m) about a place within its reach (m), of birds under way between the times 0 and end (s),
+        also between the positions of the table; and the number of these birds."""
+        found, count = [np.empty((0, 3))], 0
+        for part in self._under_way(0.0, end, 1)[1]:
+            track = _cut(part, 0.0, end) - np.asarray(place, float)
+            at = np.linspace(0, len(track) - 1, 20 * (len(track) - 1) + 1)
+            points = np.column_stack([np.interp(at, np.arange(len(track)), x) for x in track.T])
+            found.append(points[np.linalg.norm(points, axis=1) <= reach])
+            count += len(found[-1]) > 0
+        return np.concatenate(found), count
+
     def mistake(self, place, origin: Sequence[float]) -> str:
         """Words on a likely mistake in coordinates that are all far away."""
         if self.degrees is None:
-            return "x and y are metres east and north of the scene's origin"
+            away = np.abs(self.points[:, :2]).max(axis=1)
+            return ("x and y are metres east and north of the scene's origin" +
+                    (f"; {FROM_MAP}" if np.median(away) > MAP_FROM else ""))
         some = self.degrees[:: max(len(self.degrees) // 1000, 1)]
         for words, other in (("latitude and longitude are exchanged", some[:, ::-1]),
                              ("the longitude has the wrong sign", some * (-1, 1)),
@@ -105,6 +127,22 @@ def _cut(track: np.ndarray, begin: float, end: float) -> np.ndarray:
     return np.column_stack([np.interp(at, times, x) for x in track[:, :3].T])
 
 
+def origin_of(given: Any) -> Tuple[float, float, float]:
+    """Latitude and longitude (deg) and height (m) from an object, as in scene files, or from three numbers."""
+    keys = ("latitude", "longitude", "height")
+    parts: Any = None
+    if isinstance(given, Mapping) and {*given} - {"comment"} == {*keys}:
+        parts = [given[key] for key in keys]
+    elif not isinstance(given, (str, Mapping)) and np.shape(given) == (3,):
+        parts = given
+    if parts is not None and all(isinstance(x, Real) and not isinstance(x, bool) and math.isfinite(x) for x in parts):
+        latitude, longitude, height = map(float, parts)
+        if abs(latitude) <= 90.0 and -180.0 <= longitude <= 360.0:
+            return latitude, longitude, height
+    raise Error(f"origin is {str(given)[:80]}, expected latitude and longitude in degrees and height in metres, as in "
+                '{"latitude": 47.45, "longitude": 8.55, "height": 420} or [47.45, 8.55, 420]')
+
+
 def least_distance(points: np.ndarray, place) -> float:
     """Least distance of a line (n x 3, m) from a place, m."""
     off = points - np.asarray(place, float)
@@ -113,12 +151,13 @@ def least_distance(points: np.ndarray, place) -> float:
     return float(np.linalg.norm(np.vstack([off[:1], off[:-1] + along[:, None] * way]), axis=1).min())
 
 
-def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, species: str = "",
+def read_flights(file, origin: Any = None, scene=None, species: str = "",
                  species_file_name: str = "", height_reference: str = "", geoid_undulation: Optional[float] = None,
                  columns: Optional[Dict[str, str]] = None) -> Flights:
     """Tracks of a CSV file; `Error` names the file and what was expected.
 
-    origin             latitude, longitude (deg) and height (m) of the scene's origin; default: from the scene
+    origin             latitude, longitude (deg) and height (m) of the scene's origin, as three numbers or by these
+                       names; default: from the scene
     scene              a Scene, which heights above the ground need
     species            name of a species for tracks without a known species
     species_file_name  table of the user's species
@@ -128,12 +167,20 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     columns            names of columns by meaning
     """
     file, given = str(file), columns or {}
-    origin = scene.geodetic_origin if origin is None and scene is not None else origin
+    if origin is not None:
+        origin = origin_of(origin)
+    elif scene is not None:
+        origin = scene.geodetic_origin
+    if species and not _is_known(species, species_file_name):
+        raise Error(f"species {species!r} is not known: expected {KNOWN_SPECIES}")
     reader = Log(file)
     try:
         if height_reference not in ("", *LEVELS):
             raise Error(unknown("height_reference", height_reference, LEVELS))
         known = Columns(reader.names, given)
+        ignored = known.ignore(reader.empty)
+        if ignored:
+            reader.notes.append(f"columns without a value are ignored: {', '.join(ignored)}")
         in_degrees = ("longitude" in known.found or "latitude" in known.found) and not {"x", "y"} & {*given}
         across = ("longitude", "latitude") if in_degrees else ("x", "y")
         chosen = {what: known.need(what) for what in ("time", *across)}
@@ -149,6 +196,8 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     frame, times = frame.iloc[order], times[order]
     places, heights = frame[[*across]].to_numpy(float), frame["height"].to_numpy(float)
     above_sea = heights - (geoid_undulation or 0.0) * (level == "ellipsoid")
+    if not in_degrees and origin is not None:
+        _check_metres(file, chosen, places, origin)
     if in_degrees:
         assert origin is not None
         points = placed(np.column_stack([places, above_sea if level != "ground" else np.full(len(places), origin[2])]),
@@ -164,8 +213,9 @@ def read_flights(file, origin: Optional[Sequence[float]] = None, scene=None, spe
     return Flights(
         file, ids, of_tracks, begins, times, points, places if in_degrees else None, since_1970,
         scene if level == "ground" else None,
-        "; ".join([f"{file}: {len(ids)} tracks with {len(times)} positions: {names}",
-                   f"heights are above the {level or 'origin'}", *reader.notes]),
+        level, "\n".join([f"{file}: {len(ids)} tracks with {len(times)} positions", *(
+            line for text in (names, f"heights are above the {level or 'origin'}", *reader.notes)
+            for line in textwrap.wrap(text, 118, initial_indent="  ", subsequent_indent="    "))]),
         f"{file}: left out: {', '.join(left)}" if left else "")
 
 
@@ -205,6 +255,19 @@ def _check_level(name: str, level: str, in_degrees: bool, origin: Optional[Seque
         raise Error(f"heights ({name}) are above the ground, but there is no scene: expected scene")
 
 
+def _check_metres(file: str, chosen: Dict[str, Column], places: np.ndarray, origin: Sequence[float]) -> None:
+    """Raises an error for x and y that are longitude and latitude near the origin, or these exchanged."""
+    if not len(places) or np.abs(places).max() > 400.0:
+        return
+    for first, degrees in (("longitude", places), ("latitude", places[:, ::-1])):
+        if np.abs(degrees[:, 1]).max() <= 90.0:
+            away = np.linalg.norm(placed(np.column_stack([degrees, np.full(len(places), origin[2])]), origin), axis=1)
+            if np.quantile(away, 0.9) < FAR:
+                names = {first: chosen["x"].name, "latitude" if first == "longitude" else "longitude": chosen["y"].name}
+                raise Error(f"{file}: x and y look like longitude and latitude, expected metres east and north of "
+                            f"the scene's origin: set \"columns\": {json.dumps(names, ensure_ascii=False)}")
+
+
 def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]:
     """The column of heights, and the level that they count from: sea, ground, ellipsoid, or the scene's origin if
     empty."""
@@ -220,7 +283,7 @@ def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]
             if other:
                 raise Error(f"height_reference is {wanted!r}, but the column {other.name!r} is above the {other.level} "
                             f"by its name: expected {other.level!r}, or another column, as in "
-                            "columns: {\"height\": \"...\"}")
+                            "\"columns\": {\"height\": \"...\"}")
         return column or _no_height(known), wanted
     if named["sea"]:
         return named["sea"], "sea"
@@ -232,7 +295,7 @@ def _height(known: Columns, in_degrees: bool, wanted: str) -> Tuple[Column, str]
 
 def _no_height(known: Columns) -> Column:
     raise Error(f"has no column for the height, but {', '.join(known.names)}; expected a name such as altitude, "
-                "height-above-msl, altitude_agl or z, or the column's name in columns")
+                f"height-above-msl, altitude_agl or z, or {known.remedy('height')} with a column of the table")
 
 
 def _species_of(reader: Log, frame, begins: np.ndarray, species: str, species_file_name: str) -> List[str]:
@@ -251,9 +314,8 @@ def _species_of(reader: Log, frame, begins: np.ndarray, species: str, species_fi
     strange = [name for name, one in zip(first, found) if not one]
     if strange and not species:
         names = ", ".join(repr(name) for name in dict.fromkeys(strange))
-        raise Error(f"{reader.file}: the species {names[:200]} are not known: expected starling, kestrel, pigeon, "
-                    "crow, herring gull or Canada goose, a table of species (species_file_name), or the key species "
-                    "for such birds")
+        raise Error(f"{reader.file}: the species {names[:200]} are not known: expected {KNOWN_SPECIES}, or the "
+                    "key species for such birds")
     if strange:
         names = ", ".join(f"{name} ({strange.count(name)})" for name in dict.fromkeys(strange))
         reader.notes.append(f"tracks of unknown species fly as {species}: {names[:200]}")

@@ -8,10 +8,10 @@ from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
 from .. import vtkAvianLidar as _wrapped
 from .._files import checked_name
 from .._pipeline import Error
-from .._properties import in_snake_case
+from .._properties import in_snake_case, property_names, unknown
 from .._weather import in_weather, weather, without_air
 from . import _metar
-from ._json import check_json, load_json, naming
+from ._json import check_json, load_json, naming, packaged
 from ._on_sale import PLACE
 
 SUM = 1e-6  # allowed difference of a year's shares from the sum 1
@@ -137,8 +137,22 @@ def checked(scenario: Any, what: str) -> Dict[str, Any]:
         with naming(what):
             scenario = {**scenario, **{part: here(wrapped, scenario[part], part)
                                        for part, wrapped in PROPERTIES.items() if part in scenario}}
+        _check_groups(scenario.get("birds"), what)
     check_json(scenario, "scenario.schema.json", what)
     return scenario
+
+
+def _check_groups(groups: Any, what: str) -> None:
+    """`Error` for a key of a group of birds that is not known, or that only groups with a file have."""
+    keys = packaged("scenario.schema.json")["properties"]["birds"]["items"]["properties"]
+    names = property_names(_wrapped.vtkAvianLidarTracks)
+    known = [name for name in dict.fromkeys((*names, *keys)) if keys.get(name) != {"not": {}}]
+    for place, group in enumerate(groups if isinstance(groups, list) else ()):
+        for name in group if isinstance(group, dict) else ():
+            if name not in known and name not in keys:
+                raise Error(unknown(f"{what}: birds[{place}]: key", name, known))
+            if name in keys and name not in names and group.get("pattern", "File") != "File":
+                raise Error(f"{what}: birds[{place}].{name}: is only for groups with the pattern File")
 
 
 def with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[str, Any]:

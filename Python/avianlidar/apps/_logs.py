@@ -6,10 +6,11 @@ import contextlib
 import csv
 import datetime
 import io
+import json
 import math
 import re
 from numbers import Real
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -20,8 +21,9 @@ from .._properties import unknown
 # Words of a column's name that change nothing, and units with their size in m or s
 FILLERS = {"gps", "gnss", "location", "position", "pos", "fix", "coordinate", "coord", "decimal", "utc", "gmt"}
 UNITS = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "km": 1000.0, "ft": 0.3048, "feet": 0.3048,
-         "foot": 0.3048, "s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "millis": 1e-3,
-         "milliseconds": 1e-3, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "dd": 1.0}
+         "foot": 0.3048, "cm": 0.01, "centimetres": 0.01, "centimeters": 0.01, "mm": 1e-3, "millimetres": 1e-3,
+         "millimeters": 1e-3, "s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3,
+         "millis": 1e-3, "milliseconds": 1e-3, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "dd": 1.0}
 # The names of columns without their units. If several columns fit, the first list with a column counts.
 NAMES: Dict[str, Sequence[Set[str]]] = {
     "time": ({"timestamp", "time stamp", "datetime", "date time"},
@@ -35,16 +37,27 @@ NAMES: Dict[str, Sequence[Set[str]]] = {
            {"id", "identifier", "object id", "name"}),
     "species": ({"species", "species name"}, {"individual taxon canonical name", "taxon canonical name", "taxon",
                                               "taxon name", "scientific name", "common name"})}
-HEIGHTS = {"height", "altitude", "alt", "elevation", "ele", "elev"}
+CLOCKS = {"time", "timestamp", "datetime"}  # last words of other names of times
+HEIGHTS = {"height", "altitude", "alt", "elevation", "ele", "elev", "z"}
+PRESSURE = {"baro", "barometric"}  # such heights count if there are no others
+PLAUSIBLE = -500.0, 20000.0  # m
+UNKNOWN = (-9999, -999, 9999, 32767)  # numbers that stand for an unknown height, in metres or feet
+# Meanings of which one suffices
+ALTERNATIVES = (("longitude", "x"), ("latitude", "y"), ("height", "z"), ("time",), ("id",), ("species",))
+MAP = {"easting", "northing", "utm"}  # words in names of a map's coordinates
 LEVELS = {"sea": r"above (?:mean )?(?:sea(?: level)?|a?msl)|a?msl|asl|orthometric",
           "ground": r"above ground(?: level)?|agl",
           "ellipsoid": r"above (?:wgs ?84 )?ellipsoid|ellipsoid(?:al)?|hae|wgs ?84"}
 OUTLIERS = {f"{who} marked outlier": True for who in ("manually", "import", "algorithm")} | {"visible": False}
-ISO = re.compile(r"(\d{4})[-/](\d\d)[-/](\d\d)[T ]+(\d\d:\d\d(?::\d\d(?:[.,]\d+)?)?)\s*"
+ISO = re.compile(r"(\d{4})([-/]?)(\d\d)\2(\d\d)[T ]+(\d?\d(?=:)|\d\d):?(\d\d)(?::?(\d\d(?:[.,]\d+)?))?\s*"
                  r"(Z|UTC|GMT|([+-])(\d\d):?(\d\d)?)?", re.IGNORECASE)
 CLOCK = r"\d\d?:\d\d(?::\d\d.*)?"
 COMMENT = re.compile(rb"(?m)^[ \t]*#+([^\n]*)$")
 BEFORE_TABLE = re.compile(rb"(?:[ \t]*(?:#[^\n]*)?\n)*")
+HINTS = {"time": ("time", "zeit", "date", "utc"), "latitude": ("lat", "breit"), "longitude": ("lon", "läng"),
+         "height": ("alt", "ele", "hei", "höhe", "hoehe")}  # parts of names that may be meant
+FROM_MAP = ("coordinates of a map (UTM) must be converted to longitude and latitude, for example by "
+            "ogr2ogr -t_srs EPSG:4326 as in the guide on birds of a radar")
 ISO_EXPECTED = "2026-05-04T10:22:33Z, with or without a zone, or seconds"
 SINCE_1970, LATEST = 1e8, 8e9  # s: greater times count from 1970, and lie before the year 2223
 
@@ -59,7 +72,9 @@ class Column(NamedTuple):
 
 def _meaning(name: str, number: int) -> Tuple[str, Column]:
     """What a column holds: a key of NAMES, "height", an outlier's mark, or nothing; and the column."""
-    words = [word.lower() for word in re.findall(r"[^\W_]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))]
+    joined = re.sub(r"\b([A-Za-z])\.(?=[A-Za-z]\b)", r"\1", name)  # a.s.l.
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", joined)
+    words = [word.lower() for word in re.findall(r"[^\W_]+", apart)]
     unit = next((UNITS[word] for word in words[1:] if word in UNITS), 1.0)
     said = " ".join(word for i, word in enumerate(words) if word not in FILLERS and (i == 0 or word not in UNITS))
     for what, lists in NAMES.items():
@@ -71,8 +86,10 @@ def _meaning(name: str, number: int) -> Tuple[str, Column]:
     levels = {level: re.sub(rf"\b(?:{words})\b", "", said) for level, words in LEVELS.items()}
     level = next((level for level, rest in levels.items() if rest != said), "")
     rest = levels.get(level, said).split()
-    if not set(rest) - HEIGHTS and (rest or level):
-        return "height", Column(name, number, unit, 0, level)
+    if not set(rest) - HEIGHTS - PRESSURE and (set(rest) & HEIGHTS or level):
+        return "height", Column(name, number, unit, int(not PRESSURE.isdisjoint(rest)), level)
+    if CLOCKS & {*said.split()[-1:]}:
+        return "time", Column(name, number, unit, len(NAMES["time"]))
     return "", Column(name, number, unit, 0, level)
 
 
@@ -115,6 +132,30 @@ class Columns:
                 raise Error(f"has no column {name!r} ({what}), but {', '.join(names)}")
             self.found[what] = [_meaning(name, names.index(name))[1]]
 
+    def ignore(self, find_empty: Callable[[Sequence[Column]], Set[int]]) -> List[str]:
+        """Takes columns without a value away if others have what they lack, and empty ids; the names of these columns.
+        @param find_empty the numbers of those columns without a value"""
+        groups = [[(what, one) for what in group if what not in self.given for one in self.found.get(what, ())]
+                  for group in ALTERNATIVES]
+        empty, ignored = find_empty([one for group in groups for _, one in group]), []
+        for group in groups:
+            without = [(what, one) for what, one in group if one.number in empty]
+            if len(without) < len(group) or group and group[0][0] == "id":
+                for what, one in without:
+                    self.found[what].remove(one)
+                    ignored.append(one.name)
+        self.found = {what: columns for what, columns in self.found.items() if columns}
+        return ignored
+
+    def remedy(self, *meanings: str) -> str:
+        """The setting that names columns, for an error, with columns that may be meant."""
+        strange, chosen = [name for name in self.names if name and not _meaning(name, 0)[0]], {}
+        for what in meanings:
+            hints = [name for name in strange if any(part in name.lower() for part in HINTS.get(what, ()))]
+            chosen[what] = next(iter(hints or (strange if len(strange) == len(meanings) == 1 else ())), "...")
+            strange = [name for name in strange if name != chosen[what]]
+        return f"\"columns\": {json.dumps(chosen, ensure_ascii=False)}"
+
     def find(self, what: str, level: Optional[str] = None) -> Optional[Column]:
         """The column of a meaning. @param level of the height; None: not a height"""
         fits = [one for one in self.found.get(what, ()) if level is None or one.level == level]
@@ -123,16 +164,19 @@ class Columns:
         best = metres if len(metres) == 1 else best
         if len(best) > 1:
             raise Error(f"the columns {best[0].name!r} and {best[1].name!r} may both be the {what}: "
-                        f"choose one by columns, as in {{\"{what}\": \"{best[0].name}\"}}")
+                        f"choose one, as in \"columns\": {json.dumps({what: best[0].name}, ensure_ascii=False)}")
         return best[0] if best else None
 
     def need(self, what: str) -> Column:
         column = self.find(what)
+        if column is None and what not in ("x", "y"):
+            raise Error(f"has no column for the {what}, but {', '.join(self.names)}; expected a name such as "
+                        f"{', '.join(sorted(NAMES[what][0]))}, or {self.remedy(what)} with a column of the table")
         if column is None:
-            expected = f"a name such as {', '.join(sorted(NAMES[what][0]))}" if what not in ("x", "y") else (
-                "latitude and longitude in degrees, or x and y in metres east and north of the scene's origin")
-            raise Error(f"has no column for the {what if what not in ('x', 'y') else 'position'}, but "
-                        f"{', '.join(self.names)}; expected {expected}, or the column's name in columns")
+            on_map = any(word in name.lower() for name in self.names for word in MAP)
+            remedy = FROM_MAP if on_map else f"or {self.remedy('latitude', 'longitude')} with columns of the table"
+            raise Error(f"has no column for the position, but {', '.join(self.names)}; expected latitude and longitude "
+                        f"in degrees, or x and y in metres east and north of the scene's origin; {remedy}")
         return column
 
 
@@ -151,24 +195,28 @@ def seconds_of(moment: Any) -> float:
 
 def _iso(texts: Sequence[str]) -> Tuple[np.ndarray, bool]:
     """Seconds since 1970, and whether a text has no zone. ValueError holds the first wrong text."""
-    plain, shifts, is_local = [], [], False
+    days, seconds, is_local = [], [], False
     for text in texts:
         found = ISO.fullmatch(text) if isinstance(text, str) else None
         if not found:
             raise ValueError(text)
-        year, month, day, clock, own, sign, hours, minutes = found.groups()
-        plain.append(f"{year}-{month}-{day}T{clock.replace(',', '.')}")
-        shifts.append(0 if sign is None else int(f"{sign}1") * (int(hours) * 3600 + int(minutes or 0) * 60))
+        year, _, month, day, hour, minute, second, own, sign, hours, minutes = found.groups()
+        clock = int(hour), int(minute), float((second or "0").replace(",", "."))
+        if clock != (24, 0, 0.0) and not (clock[0] < 24 and clock[1] < 60 and clock[2] < 61.0):  # 60: a leap second
+            raise ValueError(text)
+        shift = 0 if sign is None else int(f"{sign}1") * (int(hours) * 3600 + int(minutes or 0) * 60)
+        days.append(f"{year}-{month}-{day}")
+        seconds.append(clock[0] * 3600 + clock[1] * 60 + clock[2] - shift)
         is_local |= own is None
     try:
-        times = np.array(plain, "datetime64[us]")
+        midnights = np.array(days, "datetime64[D]").astype(np.int64) * 86400.0
     except ValueError:
-        if len(plain) == 1:
+        if len(days) == 1:
             raise ValueError(texts[0]) from None
         for text in texts:  # names the wrong one
             _iso([text])
         raise
-    return times.astype(np.int64) * 1e-6 - np.array(shifts), is_local
+    return midnights + np.array(seconds), is_local
 
 
 def as_time(seconds: float) -> str:
@@ -208,16 +256,30 @@ class Log:
         lines = (number for number, text in enumerate(self.raw.split(b"\n"), 1) if text.strip())
         return next(number for k, number in enumerate(lines) if k == row + 1) + self.skipped
 
+    def _table(self, numbers: List[str], dtype: Any, **more: Any) -> Any:
+        try:
+            return self.pandas.read_csv(
+                io.BytesIO(self.raw), sep=self.separator, header=0, names=[f"{i}" for i in range(len(self.names))],
+                usecols=numbers, index_col=False, skipinitialspace=True, low_memory=False, na_values=["-", "--"],
+                dtype=dtype, **more)
+        except ValueError as error:  # also pandas' ParserError, and text that is not UTF-8
+            raise Error(f"{self.file}: is not a table that can be read ({str(error).strip()})") from None
+
+    def empty(self, columns: Sequence[Column]) -> Set[int]:
+        """The numbers of those columns without a value in any row."""
+        left, rows = [column.number for column in columns], 0
+        while left:
+            part = self._table([*map(str, left)], str, nrows=1000 if not rows else None)
+            left = [number for number in left if part[f"{number}"].isna().all()]
+            if rows or len(part) < 1000:
+                return {*left} if len(part) else set()
+            rows = len(part)
+        return set()
+
     def read(self, chosen: Dict[str, Column], texts: Set[str]) -> Any:
         """A frame of the chosen columns, by meaning; those of `texts` hold text."""
         of = {f"{column.number}": what for what, column in chosen.items()}
-        try:
-            frame = self.pandas.read_csv(
-                io.BytesIO(self.raw), sep=self.separator, header=0, names=[f"{i}" for i in range(len(self.names))],
-                usecols=[*of], index_col=False, skipinitialspace=True, low_memory=False, na_values=["-", "--"],
-                dtype={number: str for number, what in of.items() if what in texts})
-        except ValueError as error:  # also pandas' ParserError, and text that is not UTF-8
-            raise Error(f"{self.file}: is not a table that can be read ({str(error).strip()})") from None
+        frame = self._table([*of], {number: str for number, what in of.items() if what in texts})
         return frame.rename(columns=of)
 
     def numbers(self, frame, what: str, unit: float, expected: str) -> np.ndarray:
@@ -250,14 +312,19 @@ class Log:
         for what in (*across, "height"):
             expected = "degrees, as in 121.3363" if what in ("longitude", "latitude") else "a number in metres"
             frame = frame.assign(**{what: self.numbers(frame, what, chosen[what].unit, expected)})
-        frame = self.leave(frame, frame[[*across, "height"]].notna().all(axis=1), "rows without a position")
+            if what == across[1]:
+                frame = self.leave(frame, frame[[*across]].notna().all(axis=1), "rows without a position")
+        frame = self.leave(frame, frame["height"].notna(), "rows without a height")
+        heights, unit = frame["height"], chosen["height"].unit
+        known = ~(heights / unit).round(6).isin(UNKNOWN) | (unit < 0.3)
+        frame = self.leave(frame, heights.between(*PLAUSIBLE) & known, "rows with an impossible height")
         if across[0] == "longitude":
             frame = self.leave(frame, (frame[[*across]] != 0.0).any(axis=1), "rows at 0, 0 degrees")
             self.check_degrees(frame, chosen)
         frame = self.leave(frame, frame["time"].notna(), "rows without a time")
         times = frame["time"].str.strip()
         if "date" in frame and times.str.fullmatch(CLOCK).all():
-            dated = frame["date"].str.strip() + " " + times.str.replace(r"^(\d):", r"0\1:", regex=True)
+            dated = frame["date"].str.strip() + " " + times
             frame = self.leave(frame.assign(time=dated), dated.notna(), "rows without a date")
         return self.leave(frame, frame["id"].notna(), "rows without an id") if "id" in frame else frame
 

@@ -23,7 +23,7 @@ from .._scene import Scene, load_scene, mesh, mover
 from .._sensor import Sensor
 from .._weather import in_weather
 from ._air import check_received, scatters
-from ._flights import FAR, SETTINGS, Flights, least_distance, read_flights
+from ._flights import FAR, SETTINGS, Flights, least_distance, origin_of, read_flights
 from ._json import naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of
 from ._inputs import checked, read_scenario
@@ -36,6 +36,7 @@ TRUTH = ("scan", "bird", "species", "status", "subset", "time_s", "x_m", "y_m", 
          "expected_probability", "points", "clutter_distance_m", "clutter_share",
          "first_time_s", "first_x_m", "first_y_m", "first_z_m", "last_time_s", "last_x_m", "last_y_m", "last_z_m",
          "visibility_m", "rain_mm_h", "clear_probability", "track")
+SPAN = 2.0  # m, of the largest birds
 AIR = -2  # object_id of echoes of the air
 WEAK = 0.1  # probability of detection below which a bird counts as too weak
 LONGEST = 1e9  # greatest time of a route and greatest start time of an object, s
@@ -120,12 +121,12 @@ class Simulation:
         if crowns:
             self.bare = self._in_media([], others)
         self.tracks: Dict[int, str] = {}  # ids in files of the birds of the current sequence
+        sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
+        self.at_rest = Sensor(**sensor)
         self.flights = self._read_flights()
         self._moving(0, said=True)  # errors of birds and objects are raised before the work
         # Clutter without the effects that differ from scan to scan.
-        sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
         settings["noise"] = False
-        self.at_rest = Sensor(**sensor)
         with naming(f"{self.file}: scan"):
             self._still = Scan(self.scene, self.at_rest, **settings)
             self.clutter = Clutter(self._still, self.near)
@@ -158,6 +159,8 @@ class Simulation:
                     given = {name: group[name] for name in (*SETTINGS, "species", "species_file_name") if name in group}
                     if not given.get("file_name"):
                         raise Error("file_name is missing, expected a file of tracks")
+                    if "origin" in given:
+                        given["origin"] = origin_of(given["origin"])
                     found[place] = read_flights(given.pop("file_name"), scene=self.scene, **given)
         dated, end = [one for one in found.values() if one.since_1970], self.scans / self.sensor.rotation_rate
         if "start_time" in self.scenario and not dated and all(len(one.times) for one in found.values()):
@@ -178,11 +181,17 @@ class Simulation:
                 self._warn(f"{one.file}: no track is under way in the {end:.0f} s of the scans: {self.period(one)}; "
                            f"choose {'start_time or ' * one.since_1970}number_of_scans")
             elif away.min() > FAR:
-                origin = self.scenario["birds"][place].get("origin") or self.scene.geodetic_origin
+                origin = self._origin(place)
                 self._warn_of_far(one.file, away, one.mistake(self.sensor.position, origin))
             else:
                 self._warn_of_far(one.file, away)
+                self._warn_of_levels(one, end, self._origin(place))
         return found
+
+    def _origin(self, place: int) -> Any:
+        """The origin of a group with a file: latitude, longitude (deg) and height (m)."""
+        group = self.scenario["birds"][place]
+        return origin_of(group["origin"]) if "origin" in group else self.scene.geodetic_origin
 
     def period(self, flights: Flights) -> str:
         """Words on the time in which tracks of a file are under way."""
@@ -202,6 +211,26 @@ class Simulation:
             self._warn(f"{what}: {len(far)} of {len(away)} birds never come within the lidar's range gate of "
                        f"{self.sensor.range_gate:g} m: {'it passes' if len(far) == 1 else 'they pass'} the lidar at "
                        f"{least}{f' to {most}' if least != most else ''}{why and '; '}{why}")
+
+    def _warn_of_levels(self, flights: Flights, end: float, origin: Any) -> None:
+        """Warns if all birds within the range gate of a level sensor stay above or below its beams, until a time (s)."""
+        off, count = flights.within(self.sensor.position, self.sensor.range_gate, end)
+        if count == 0 or any(self.sensor.orientation[1:]):
+            return
+        from ..reach import band
+        lowest, highest = band(self.at_rest)
+        away = np.maximum(np.linalg.norm(off, axis=1), 1e-3)
+        up, size = np.degrees(np.arcsin(np.clip(off[:, 2] / away, -1.0, 1.0))), np.degrees(np.minimum(SPAN / away, 1.0))
+        for side, least, nearest in (("above", (up - size).min() - highest, up.argmin()),
+                                     ("below", lowest - (up + size).max(), up.argmax())):
+            if least > 0.0:
+                words = f" and the height of the scene's origin ({origin[2]:g} m)" if origin is not None else ""
+                self._warn(f"{flights.file}: {'the one bird' if count == 1 else f'all {count} birds'} within the range "
+                           f"gate of {self.sensor.range_gate:g} m {'stays' if count == 1 else 'stay'} {side} the beams "
+                           f"({lowest:.1f} to {highest:.1f} deg): the {'lowest' if side == 'above' else 'highest'} "
+                           f"elevation is {up[nearest]:.1f} deg, {abs(off[nearest, 2]):.0f} m "
+                           f"{'above' if off[nearest, 2] >= 0.0 else 'below'} the lidar; check height_reference (heights "
+                           f"count from the {flights.level or 'origin'}){words}")
 
     @staticmethod
     def _warn(text: str) -> None:

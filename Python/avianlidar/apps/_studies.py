@@ -65,7 +65,7 @@ def sequence(options) -> None:
             changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
     sequence = Sequence(options.scenario, threads=threads, **changes)
     for one in sequence.flights.values() if ranks.rank == 0 else ():
-        tell(f"{one.words}; {sequence.period(one)}")
+        tell(f"{one.words}\n  {sequence.period(one)}")
     done = itertools.count(1)
     what = "scans" if ranks.size == 1 else "scans of the first rank"
     with _goes_on(options.out, "sequences/[0-9]*/done.json", "whole sequences"):
