@@ -204,7 +204,7 @@ class Less(unittest.TestCase):
                           "at most 4\u00a0% more birds than this site."])
         self.assertEqual(said(site(("building heights ±2 m", 1, 0.002), ("effective area ±20 %", 2, 0.001))),
                          ["The choice is not sharp: with building heights changed by up to 2 m another site wins in 1 of 10 draws and with "
-                          "effective area changed by up to 20 % another site wins in 2 of 10 draws. The other site then detects less than "
+                          "effective areas of birds changed by up to 20 % another site wins in 2 of 10 draws. The other site then detects less than "
                           "1\u00a0% more birds than this site."])
 
     def test_why_a_height_is_never_detected(self):

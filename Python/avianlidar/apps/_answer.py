@@ -379,7 +379,8 @@ def _other_draws(site: Dict[str, Any]) -> List[str]:
 def _changed(change: str) -> str:
     """Words on a change of `Sites.changes`."""
     what, _, amount = change.partition(" ±")
-    return f"{what} changed by up to {amount}" if amount else what.replace("places", "random places")
+    what = {"effective area": "effective areas of birds", "other places": "other random places"}.get(what, what)
+    return f"{what} changed by up to {amount}" if amount else what
 
 
 def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
