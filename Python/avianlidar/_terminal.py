@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Output of the command: lines, tables, a progress bar on a terminal, and lines on long work in a log."""
 import contextlib
+import os
 import signal
 import sys
 import time
@@ -50,7 +51,8 @@ def _say_alive() -> None:
     text = f"running for {in_time(spent)}" if spent >= 1.0 else "running"
     if first < share < 1.0:
         text = f"{100.0 * share:.0f} %, about {in_time(spent * (1.0 - share) / (share - first))} left"
-    print(f"avianlidar: {_work['what']}: {text}", file=sys.stderr, flush=True)
+    # In one piece, because the next signal may come before the end of this one.
+    os.write(2, f"avianlidar: {_work['what']}: {text}\n".encode())
 
 
 @contextlib.contextmanager

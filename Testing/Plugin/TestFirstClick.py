@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 from gui_testing import PLUGIN_DIR, SOURCE_DIR, play
 
+SENSOR = os.path.join(SOURCE_DIR, "Filters", "Sensors", "VLP16.lidarsensor.json")
 SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 WINDOW = "pqClientMainWindow"
 APPLY = "propertiesDock/propertiesPanel/Accept"
@@ -77,21 +78,21 @@ class FirstClick(unittest.TestCase):
         self.assertEqual({name for name in names(state) if name.startswith(("Airport Hongqiao", "Collision tree"))}, AIRPORT)
 
     def test_surfaces_are_not_selected(self):
-        """With a new sensor or a file of echoes selected, a click scans the airport."""
+        """With a sensor or echoes of a file selected, also before Apply, a click scans the airport."""
         with tempfile.TemporaryDirectory() as folder:
             echoes = os.path.join(folder, "echoes.vtp")
             subprocess.run([sys.executable, "-m", "avianlidar", "scan", SCENE, "--sensor-set", "azimuth_step=6", "-o", echoes], check=True)
-            for first, arguments in (([click("menubar/menuSources/Avian Lidar", "AvianLidarAirport16")], ()), ([], (echoes,))):
-                state, messages = play(PARAVIEW, [*first, click(button("airport_scan"))], arguments)
+            for file in (SENSOR, echoes):
+                state, messages = play(PARAVIEW, [click(button("airport_scan"))], [file])
                 self.assertEqual(messages, [])
                 self.assertLessEqual(MACROS["airport_scan"], names(state))
 
     def test_the_filter_of_a_sensor(self):
         """The button of the filter is enabled as soon as a sensor is applied, and asks for surfaces."""
-        events = [click("menubar/menuSources/Avian Lidar", "AvianLidarAirport16"), *enabled(), click(APPLY), *enabled("filter"),
+        events = [*enabled(), click(APPLY), *enabled("filter"),
                   click(button("filter")), click("SelectInputDialog/buttonBox/1QPushButton1")]
-        state, messages = play(PARAVIEW, events)
-        self.assertEqual((messages, names(state)), ([], {"AvianLidarAirport161"}))
+        state, messages = play(PARAVIEW, events, [SENSOR])
+        self.assertEqual((messages, names(state)), ([], {os.path.basename(SENSOR)}))
 
     def test_the_macro_of_the_dialog(self):
         """As a script, with the values that Finish on the dialog's first page gives."""
