@@ -108,7 +108,7 @@ class Tables(unittest.TestCase):
     def test_said(self):
         """Which columns were taken, and how."""
         words = self.read(WRITTEN["Movebank in R"]).words
-        self.assertRegex(" ".join(words.split()), "own.csv: 1 tracks with 3 positions time is timestamp, longitude is location.long, latitude is location.lat, "
+        self.assertRegex(" ".join(words.split()), "own.csv: 1 track with 3 positions time is timestamp, longitude is location.long, latitude is location.lat, "
                          "height is height.above.msl, id is individual.local.identifier heights are above the sea times without a zone are UTC$")
         self.assertEqual([line for line in words.split("\n")[1:] if len(line) > 120], [])
         self.assertIn("times are milliseconds since 1970", self.read(WRITTEN["a radar, ms, feet"].replace("TimestampMs", "timestamp")).words)

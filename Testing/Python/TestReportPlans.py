@@ -167,6 +167,13 @@ class Less(unittest.TestCase):
                               ({"preset": "Airport16"}, "Airport16 is an idea: its sensor file names no maker.")):
             self.assertEqual(self.small(sensor=sensor).idea, words)
 
+    def test_in_short(self):
+        for share, words in ((0.0, "hardly any"), (0.09, "fewer than one in ten"), (0.3, "fewer than half"), (0.5, "more than half"), (1.0, "more than nine in ten")):
+            view = types.SimpleNamespace(name="Lidar", overall={"detection_probability": share}, mix=[1], bird="herring gull")
+            self.assertEqual(_answer.in_short(view, None, None), f"In short: Lidar detects {words} of the herring gulls by one scan.")
+            self.assertEqual(_answer.in_short(view, {"detects": True}, types.SimpleNamespace(share=share)),
+                             f"In short: Lidar, at its best site, detects {words} of the herring gulls that cross at least twice.")
+
     def test_lidars_on_sale_are_ordered_by_shares_that_are_numbers(self):
         def offer(twice, once, half):
             return {"crossing": types.SimpleNamespace(share=twice), "row": {"detection_probability": once}, "half": half}

@@ -22,6 +22,10 @@ from ._words import listed, plural
 
 LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
+# Shares in words, each up to a share.
+IN_WORDS = ((LEAST, "hardly any"), (0.1, "fewer than one in ten"), (0.25, "fewer than one in four"),
+            (0.5, "fewer than half"), (0.75, "more than half"), (0.9, "more than three in four"),
+            (math.inf, "more than nine in ten"))
 
 
 def place(position: Sequence[float]) -> str:
@@ -161,6 +165,15 @@ def _meaning(view: Plan, crossing: Optional[Crossing]) -> str:
     return (f"The share is that of one scan, which takes {takes(view)}, as a mean over {parts}, near and far. While "
             f"birds cross there at right angles at {crossing.speed:.3g}\u00a0m/s (on average for {seconds}\u00a0s, or "
             f"{scans} scans), {twice(crossing)} of them are detected at least twice.")
+
+
+def in_short(view: Plan, site: Optional[Dict[str, Any]], crossing: Optional[Crossing]) -> str:
+    """The result in one sentence without a number: for readers who read no further."""
+    share = crossing.share if crossing else view.overall["detection_probability"]
+    words = next(words for most, words in IN_WORDS if share < most)
+    best = ", at its best site," if site and site["detects"] else ""
+    how = "that cross at least twice" if crossing else "by one scan"
+    return f"In short: {view.name}{best} detects {words} of the {birds_of(view)} {how}."
 
 
 def about_idea(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
@@ -348,8 +361,11 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
         return {**found, "words": f"{ends} No tried change of the beams detects more birds from the same place."}
     now, then = (percent(row["detection_probability"], row["detection_std_error"], row["places"], bar=False)
                  for row in (advice["now"], best["then"]))
+    crosses = (f", and {twice(best['crossing'])} instead of {twice(advice['crossing'])} at least twice while they cross"
+               if best["crossing"] else "")
     return {**found, "words": (f"{ends} The best change that was tried: {best['what'].partition(' (')[0]}. From the "
-                               f"same place this lidar detects {then} instead of {now}. It costs {best['cost']}.")}
+                               f"same place one scan of this lidar detects {then} instead of {now}{crosses}. "
+                               f"It costs {best['cost']}.")}
 
 
 def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:

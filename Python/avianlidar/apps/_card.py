@@ -22,6 +22,7 @@ from ._following import FALSE, ORIGINS, STATES, VOLUMES, Input
 from ._json import load_json
 from ._scores import Value
 from ._tables import embedded, render, texts
+from ._words import counted
 
 HEIGHTS = (10.0, 30.0, 60.0)  # limits of the bands of a bird's mean height, m
 BANDS = [f"below {HEIGHTS[0]:g} m", *(f"{low:g} to {high:g} m" for low, high in zip(HEIGHTS, HEIGHTS[1:])),
@@ -172,7 +173,8 @@ def _facts(of: Input, sequences: Results, birds: Results) -> Dict[str, Any]:
 
 def _answer(name: str, of: Scores, warned: Sequence[Tuple[str, np.ndarray]]) -> str:
     """A sentence that sums up the card of an input."""
-    mean = ", ".join(f"a warning of {cell(scores.mean(seconds), 's')} before the {volume} ({len(seconds)} birds)"
+    mean = ", ".join(f"a warning of {cell(scores.mean(seconds), 's')} before the {volume} "
+                     f"({counted(len(seconds), 'bird')})"
                      for volume, seconds in warned if len(seconds) >= FEWEST)
     tracked, near, false = (cell(of[words][1], of[words][0]) for words in (
         "birds tracked", "tracked or beside a track", "false tracks an hour"))
@@ -284,5 +286,5 @@ def _draw_warnings(axes, names: Sequence[str], warned: Warned) -> None:
                 least = np.sort(seconds[seconds > 0.0])
                 shares = [np.mean(seconds > 0.0), *(np.mean(seconds >= t) for t in least)]
                 axes.step([0.0, *least], shares, where="pre", linestyle=style, color=f"C{number}",
-                          label=f"{name}, {volume} ({len(seconds)} birds)")
+                          label=f"{name}, {volume} ({counted(len(seconds), 'bird')})")
     pictures.finish(axes, ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")

@@ -26,6 +26,7 @@ from ._candidates import ground_of
 from ._geojson import placed
 from ._json import naming
 from ._logs import FROM_MAP, LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
+from ._words import counted
 
 SCIENTIFIC = {"sturnus vulgaris": "starling", "falco tinnunculus": "kestrel", "columba livia": "pigeon",
               "corvus corone": "crow", "larus argentatus": "herring gull", "branta canadensis": "Canada goose"}
@@ -213,7 +214,7 @@ def read_flights(file, origin: Any = None, scene=None, species: str = "",
     return Flights(
         file, ids, of_tracks, begins, times, points, places if in_degrees else None, since_1970,
         scene if level == "ground" else None,
-        level, "\n".join([f"{file}: {len(ids)} tracks with {len(times)} positions", *(
+        level, "\n".join([f"{file}: {counted(len(ids), 'track')} with {counted(len(times), 'position')}", *(
             line for text in (names, f"heights are above the {level or 'origin'}", *reader.notes)
             for line in textwrap.wrap(text, 118, initial_indent="  ", subsequent_indent="    "))]),
         f"{file}: left out: {', '.join(left)}" if left else "")

@@ -22,7 +22,7 @@ from ._air import gathers_light
 from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, how_sure, metres, percent, place, share_of
 from ._candidates import NOT_CHECKED
 from ._card import read_card
-from ._crossing import crossing
+from ._crossing import Crossing, crossing
 from ._geojson import to_geodetic
 from ._json import load_json, naming
 from ._maps import height_name
@@ -31,7 +31,7 @@ from ._plan import OTHER_PLACES, Plan
 from ._regions import rounded
 from ._sites import BEST, FEWEST_DRAWS, Sites
 from ._tables import embedded, render, write_table
-from ._words import listed
+from ._words import counted, listed
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # in the section on weather, m
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # rain rates, mm/h
@@ -180,7 +180,7 @@ class Report:
                 "surfaces": _sites_page.surface_sentence(sites), "draws": sites.draws,
                 "heights_varied": sites.varies_heights, "higher": sites.higher_mast,
                 "map": self._figure(folder / "sites.png", "Map of candidates",
-                                    f"{plan.name}: {len(sites.positions)} candidates, of {sites.lattice}; "
+                                    f"{plan.name}: {counted(len(sites.positions), 'candidate')}, of {sites.lattice}; "
                                     "light grey: areas where no lidar may stand"),
                 "curve": self._figure(folder / "gain.png", "Probability of one scan with the best networks",
                                       f"{plan.name}: with more sensors; bars: standard error")}
@@ -263,16 +263,18 @@ class Report:
             said += f" Over the year, by the hours of its weather, the share is {share}."
         return said
 
-    def _advice(self, view: Plan, reaches: Dict[str, Any]) -> Optional[Dict[str, Any]]:
-        """The height to which the band must reach, and the share that this band would detect."""
+    def _advice(self, view: Plan, reaches: Dict[str, Any], crosses: Optional[Crossing]) -> Optional[Dict[str, Any]]:
+        """The height to which the band must reach, and the shares that this band would detect. @param crosses the share
+        of birds that the plan's sensor detects at least twice"""
         found = reach.advice(view, max(one.to(0.5) for one in reaches["of"].values()))
         if found:
             low, high = reach.band(view.sensor)
-            found.update(name=view.title, low=low, high=high, now=view.overall)
+            found.update(name=view.title, low=low, high=high, now=view.overall, crossing=crosses)
             for way in found["ways"]:
-                tried = [(view.at(view.sensor.position, view.title, **changes).in_airs([{}])[0][-1], changes)
-                         for changes in way["changes"]]
-                way["then"], changes = max(tried, key=lambda one: one[0]["detection_probability"])
+                changed = [view.at(view.sensor.position, view.title, **changes) for changes in way["changes"]]
+                tried = [(one.in_airs([{}])[0][-1], number) for number, one in enumerate(changed)]
+                way["then"], best = max(tried, key=lambda one: one[0]["detection_probability"])
+                way["crossing"], changes = crossing(changed[best]) if view.runways else None, way["changes"][best]
                 words = ", ".join(f"{name} {value:.4g}" for name, value in changes.items())
                 way["what"] = f"{way['what'](changes)} ({words})"
             now = view.overall["detection_probability"]
@@ -311,6 +313,12 @@ class Report:
              "twice": one["crossing"].share if one["crossing"] else None,
              "twice_std_error": one["crossing"].error if one["crossing"] else None} for one in offers])
         return sorted(offers, key=_answer.merit, reverse=True)
+
+    @staticmethod
+    def _half_in_clear_air(plan: Plan) -> float:
+        """The range of `half_range` for the plan's lidar, m; nan for a target without a species."""
+        species = next(iter(plan.mix))
+        return reach.within_beams(plan.sensor, species, visibility=reach.CLEAR).to(0.5) if species else math.nan
 
     def _first_picture(self, view: Plan, folder: pathlib.Path, reaches: Dict[str, Any]) -> Dict[str, str]:
         """The airport with the sensor, the regions of the plan, and where birds are detected at each height."""
@@ -369,7 +377,7 @@ class Report:
         answers = [sentence for words, plan, view, site in zip(said, self.plans, answering, site_of)
                    for sentence in (*words, *self._besides(plan, view, site))]
         weather["words"] = [self._weather_words(views.index(view), view, weather) for view in answering]
-        advices = [self._advice(view, of) for view, of in zip(answering, reaches)]
+        advices = [self._advice(*each) for each in zip(answering, reaches, crossings)]
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "ends.csv", [{"receiver": view.title, **row} for view in views for row in view.by_end])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
@@ -381,9 +389,10 @@ class Report:
             "report.html.jinja",
             filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell,
             filter_rounded=rounded, filter_twice=_answer.twice, chance=share_of(answering[0].overall),
-            said=[*_answer.about_idea(answering[0], offers), *said[0]], offers=offers,
+            said=[" ".join([_answer.in_short(answering[0], site_of[0], crossings[0]),
+                            *_answer.about_idea(answering[0], offers)]), *said[0]], offers=offers,
             own={"name": first.name, "maker": "nobody", "takes": _answer.takes(first), "row": answering[0].overall,
-                 "crossing": crossings[0], "half": reaches[0]["of"][next(iter(first.mix)) or "target"].to(0.5)},
+                 "crossing": crossings[0], "half": self._half_in_clear_air(first)},
             ideas=[plan.idea for plan in self.plans if plan.idea], not_checked=listed(NOT_CHECKED),
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
             first=self._first_picture(answering[0], folder, reaches[0]),

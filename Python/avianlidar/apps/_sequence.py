@@ -28,6 +28,7 @@ from ._json import load_json
 from ._labels import BIRD, classes_of, configuration, relabel
 from ._inputs import with_files
 from ._simulation import STATUSES, SUBSETS, TRUTH, Simulation
+from ._words import counted
 
 DONE = "done.json"
 PART = ".part"  # suffix of a folder that is being written
@@ -191,7 +192,7 @@ class Sequence(Simulation):
             difference = _difference(known.get("inputs"), self._inputs_of(common, number))
             raise Error(f"{folder} was made from another scenario, scene or version: {difference}; {_OTHER}")
         if scans > wanted:
-            raise Error(f"{folder}: has {scans} scans, but number_of_scans is {self.scans}: {_FEWER}")
+            raise Error(f"{folder}: has {counted(scans, 'scan')}, but number_of_scans is {self.scans}: {_FEWER}")
         if scans < wanted:
             return False
 
@@ -247,7 +248,8 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
     names = [f"{number:06d}" for number in range(count)]
     for name, suffix in FOLDERS.items():
         if sorted(file.stem for file in (folder / name).glob(f"*{suffix}")) != names:
-            raise Error(f"{folder / name}: expected the files of {count} scans, 000000{suffix} and so on. {_AGAIN}")
+            raise Error(f"{folder / name}: expected the files of {counted(count, 'scan')}, 000000{suffix} and so on. "
+                        f"{_AGAIN}")
     for name in names:
         points = (folder / "velodyne" / f"{name}.bin").stat().st_size / POINT["velodyne"]
         for kind, size in POINT.items():
@@ -257,7 +259,7 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
                             f"{int(points)} points. {_AGAIN}")
     for text, columns in (("times.txt", 1), ("poses.txt", 12)):
         if len(numbers_of(folder / text, columns)) != count:
-            raise Error(f"{folder / text}: expected a line for each of {count} scans. {_AGAIN}")
+            raise Error(f"{folder / text}: expected a line for each of {counted(count, 'scan')}. {_AGAIN}")
 
 
 def _digest(folder: pathlib.Path) -> str:
@@ -281,8 +283,9 @@ def datasheet(manifest: Dict[str, Any]) -> str:
     scans, seen = (sum(part[key] for part in parts) for key in COUNTS)
     scenario = manifest["scenario"]
     classes = classes_of(scenario.get("bird_class", BIRD))
-    lines = ["# Data sheet", "", f"{scans} scans of {manifest['beams']} beams in {len(parts)} sequences; avian-lidar "
-             f"{manifest['avian_lidar_version']}. All scans are simulated; nothing was measured.", "",
+    lines = ["# Data sheet", "", f"{counted(scans, 'scan')} of {counted(manifest['beams'], 'beam')} in "
+             f"{counted(len(parts), 'sequence')}; avian-lidar {manifest['avian_lidar_version']}. All scans are "
+             "simulated; nothing was measured.", "",
              f"Scene {pathlib.Path(scenario['scene']).name}, sensor {scenario['sensor']['preset']}. Birds are seen in "
              f"{seen} scans ({100 * seen / max(scans, 1):.1f} %).", "",
              f"Weather: {in_words(scenario.get('weather', ())) or 'none, unless the settings of scan give some'}.", "",

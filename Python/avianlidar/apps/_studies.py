@@ -27,6 +27,7 @@ from ._sequence import Sequence
 from ._sites import Sites
 from ._tables import write_table
 from ._tracks import BirdTracks
+from ._words import counted
 
 
 @contextlib.contextmanager
@@ -73,7 +74,8 @@ def sequence(options) -> None:
                                   lambda *_: bar(what, next(done), sequence.scans_to_do))
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
-        tell(f"{options.out}: {sum(p['scans'] for p in parts)} scans in {len(parts)} sequences, birds seen in "
+        tell(f"{options.out}: {counted(sum(p['scans'] for p in parts), 'scan')} in "
+             f"{counted(len(parts), 'sequence')}, birds seen in "
              f"{sum(p['scans_with_birds_seen'] for p in parts)} of these scans; datasheet.md gives details")
 
 
@@ -140,7 +142,8 @@ def coverage(options) -> None:
             with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
                 count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
             row = plan.overall
-            tell(f"{folder}: {count} files; {plan.bird if any(plan.mix) else 'the target'} detected in one scan: "
+            tell(f"{folder}: {counted(count, 'file')}; "
+                 f"{plan.bird if any(plan.mix) else 'the target'} detected in one scan: "
                  f"{share_of(row)} {plan.where} (assumed: bird{', receiver' if plan.assumed else ''})")
 
 
@@ -161,7 +164,8 @@ def siting(options) -> None:
 
 def _say_sites(sites, changes) -> None:
     name = sites.plan.name
-    tell(f"{name}: {len(sites.positions)} candidates, of {sites.lattice}, for a {sites.plan.bird} {sites.plan.where}")
+    tell(f"{name}: {counted(len(sites.positions), 'candidate')}, of {sites.lattice}, for a {sites.plan.bird} "
+         f"{sites.plan.where}")
     print(f"obstacle limits: {_sites_page.kept_surfaces(sites)}")
     for row in sites.gain():
         where = "), (".join(row["sites"].replace(" ", ", ").split(";, "))

@@ -26,6 +26,7 @@ from ._json import load_json, naming
 from ._regions import Runway
 from ._inputs import read_scenario
 from ._sequence import Sequence, _identity, _short
+from ._words import counted
 
 CUTOFF = 20.0  # m: a track at this distance from a bird is not assigned to the bird
 ORDER = 2.0  # order of OSPA
@@ -146,7 +147,7 @@ class BirdTracks:
                 step: Callable[[int], Any]) -> Dict[str, Any]:
         home, count = of.folder / "sequences" / number, of.content[number]["scans"]
         if count <= self.learning:
-            raise Error(f"{home}: has {count} scans, "
+            raise Error(f"{home}: has {counted(count, 'scan')}, "
                         f"expected more than the {self.learning} scans from which only clutter is learned")
         truth, scans = read_truth(home / "truth.csv"), []
         for k, (scan, live) in enumerate(chain.follow(of.scans(number))):

@@ -13,6 +13,11 @@ def listed(words: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
+def counted(number: int, noun: str) -> str:
+    """A number and a noun, as in "1 track" and "2 tracks"."""
+    return f"{number} {noun if number == 1 else plural(noun)}"
+
+
 def plural(species: str) -> str:
     """Several birds of a species, as in "Canada geese"; "targets" without a species."""
     species = species or "target"
