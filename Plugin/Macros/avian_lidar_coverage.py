@@ -13,6 +13,8 @@ earlier scans. After an error there are no new objects, and Output Messages give
 In ParaView: select surfaces, or nothing, and click the button in the toolbar. In a script: cover(view, surfaces).
 """
 
+import math
+
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     REASONS, colour_by, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place, show,
@@ -26,6 +28,7 @@ SPECIES = "herring gull"
 REACH, CEILING = 900.0, 75.0
 SPACING = [12.0, 12.0, 7.5]
 LEVEL = 30.0
+STEP = 0.125  # of the region's bottom, m: heights of layers are then exact in binary, and the slice lies in a layer
 LIMIT = 0.5  # probability on the surface
 LEAST = 0.02  # least probability that is drawn; below, the view shows the airport
 PROBABILITY = "detection_probability"
@@ -100,7 +103,7 @@ def cover(view=None, surfaces=None):
     view = start(view)
     scene, tree = surfaces_and_tree(surfaces)
     place = lidar_place(tree)
-    ground = ground_below(place, tree)
+    ground = STEP * math.floor(ground_below(place, tree) / STEP)
     beams = simple.AvianLidarSearch905(registrationName=free_name("Search 905"), Position=place)
     simple.SetActiveSource(None)  # an active source would become the input Places
     coverage = simple.AvianLidarCoverage(registrationName=free_name("Coverage map"), Beams=beams, Surfaces=tree,
