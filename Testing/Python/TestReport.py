@@ -75,7 +75,7 @@ class Page(unittest.TestCase):
     def test_the_first_page_says_what_nobody_sells_and_what_makers_sell(self):
         """In the first paragraph and in a table, whose numbers are those of coverage at the best site."""
         first = self.browser.run("return document.querySelector('#answer p').textContent")
-        self.assertRegex(first, "^In short: Search905, at its best site, detects [a-z ]+ of the targets that cross at least twice. Search905 is an idea: nobody sells this lidar. At the same place, each of 2 lidars on sale detects under "
+        self.assertRegex(first, "^In short: Search905, at its best site, detects [a-z ]+ of the crossing targets at least twice. Search905 is an idea: nobody sells this lidar. At the same place, each of 2 lidars on sale detects under "
                          "[0-9.]+.% of the same birds by one scan, and under [0-9.]+.% at least twice while they cross.$")
         shown = self.browser.run("return [...document.querySelectorAll('#offers tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
         self.assertEqual([row[1] for row in shown], ["nobody", "Velodyne", "Velodyne"])

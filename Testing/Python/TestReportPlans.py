@@ -172,7 +172,7 @@ class Less(unittest.TestCase):
             view = types.SimpleNamespace(name="Lidar", overall={"detection_probability": share}, mix=[1], bird="herring gull")
             self.assertEqual(_answer.in_short(view, None, None), f"In short: Lidar detects {words} of the herring gulls by one scan.")
             self.assertEqual(_answer.in_short(view, {"detects": True}, types.SimpleNamespace(share=share)),
-                             f"In short: Lidar, at its best site, detects {words} of the herring gulls that cross at least twice.")
+                             f"In short: Lidar, at its best site, detects {words} of the crossing herring gulls at least twice.")
 
     def test_lidars_on_sale_are_ordered_by_shares_that_are_numbers(self):
         def offer(twice, once, half):

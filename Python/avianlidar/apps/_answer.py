@@ -172,8 +172,8 @@ def in_short(view: Plan, site: Optional[Dict[str, Any]], crossing: Optional[Cros
     share = crossing.share if crossing else view.overall["detection_probability"]
     words = next(words for most, words in IN_WORDS if share < most)
     best = ", at its best site," if site and site["detects"] else ""
-    how = "that cross at least twice" if crossing else "by one scan"
-    return f"In short: {view.name}{best} detects {words} of the {birds_of(view)} {how}."
+    birds = f"crossing {birds_of(view)} at least twice" if crossing else f"{birds_of(view)} by one scan"
+    return f"In short: {view.name}{best} detects {words} of the {birds}."
 
 
 def about_idea(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
