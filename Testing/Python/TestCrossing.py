@@ -82,6 +82,22 @@ class Crossings(unittest.TestCase):
                 self.assertGreater(np.ptp(left), 0.9)
                 np.testing.assert_allclose(left, right, atol=error, err_msg=f"{gliding} {line}")
 
+    def test_places_that_are_too_far_away_are_not_computed(self):
+        """The same as if all were computed, for a lidar that sees 700 m and for one that sees 60 m."""
+        for sensor, most in (("Search905", 0.95), ("OS2_128", 0.3)):
+            asked = wanted(sensor={"preset": sensor, "position": [-60, 2900, 3]}, places=60, heights=[3, 15])
+            _, positions, headings = _crossing.flights(asked, SPEED, np.random.default_rng(3))
+            places, ways = np.concatenate(positions)[::7], np.repeat(headings, [len(of) for of in positions])[::7]
+            cover = asked.regions.set(species="herring gull", all_species=False, pose_probabilities=True)
+            every = _crossing._seen(cover, places, ways)
+            computed = []
+            seen = _crossing._seen
+            with unittest.mock.patch.object(_crossing, "PROBED", 100), \
+                    unittest.mock.patch.object(_crossing, "_seen", lambda cover, places, ways: computed.append(len(places)) or seen(cover, places, ways)):
+                np.testing.assert_array_equal(_crossing._seen_near(cover, places, ways), np.where(every > 1e-5, every, _crossing._seen_near(cover, places, ways)))
+            self.assertGreater(every.max(), 0.01)
+            self.assertLess(sum(computed) / 2 / len(places), most)
+
     def test_the_coverage_is_as_before_after_ctrl_c(self):
         asked = wanted(places=10)
         names = ("places", "species", "all_species", "pose_probabilities")

@@ -39,16 +39,26 @@ def plan(runways, kinds):
 
 
 class Labels(unittest.TestCase):
-    def written(self, extent, labels, marks=()):
+    def written(self, extent, labels, marks=(), lines=()):
         """Labels on a map of an extent. @return axes, labels that are left out, and the boxes of the others in pixels"""
         figure = Figure(_pictures.map_size(extent, 5.9, 0.0, 0.5), dpi=_pictures.PIXELS, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots()
         axes.set(xlim=extent[:2], ylim=extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
-        left_out = place_labels(axes, labels, marks)
+        left_out = place_labels(axes, labels, marks, lines)
         figure.canvas.draw()  # as the picture is written
         found = [one for one in axes.texts if isinstance(one, Annotation)]
         return axes, left_out, {one.get_text(): Text.get_window_extent(one) for one in found}
+
+    def test_covers_no_line_if_there_is_other_room(self):
+        a = np.linspace(0.0, 2.0 * np.pi, 400)
+        for radius in (150.0, 400.0, 900.0):
+            ring = radius * np.column_stack([np.cos(a), np.sin(a)])
+            axes, left_out, boxes = self.written((-1000, 1000, -1000, 1000), [Label("a lidar", (0.0, 0.0)), Label("on the ring", ring[7])], [], ring)
+            self.assertEqual(left_out, [])
+            pixels = axes.transData.transform(ring)
+            for words, box in boxes.items():
+                self.assertFalse(((pixels > box.min) & (pixels < box.max)).all(axis=1).any(), (radius, words))
 
     def test_none_covers_another_or_leaves_the_map(self):
         for (name, runways), kinds in itertools.product(LAYOUTS.items(), (["strips"], ["approaches"], ["strips", "approaches"])):

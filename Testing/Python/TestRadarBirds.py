@@ -64,6 +64,7 @@ WRITTEN = {
     "UvA-BiTS": table("device_info_serial,date_time,latitude,longitude,altitude,altitude_agl", lambda lat, lon, h, s: f"Emma #3,{clock(s, ' ')},{lat},{lon},{h},25"),
     "Ornitela": table("device_id,UTC_datetime,UTC_date,UTC_time,datatype,satcount,Latitude,Longitude,MSL_altitude_m",
                       lambda lat, lon, h, s: f"Emma #3,{clock(s, ' ')},2021-05-04,{clock(s)[11:]},GPS,8,{lat},{lon},{h}"),
+    "a time in one word": table("GPStime,lat,lon,alt", lambda lat, lon, h, s: f"{clock(s)}Z,{lat},{lon},{h}"),
     "GPX as CSV": table("lat,lon,ele,time", lambda lat, lon, h, s: f"{lat},{lon},{h},{clock(s)}Z"),
     "a logger with date and time": table("Date,Time,Latitude,Longitude,Altitude(m),Speed", lambda lat, lon, h, s: f"2021/05/04,{clock(s)[11:]},{lat},{lon},{h},3"),
     "a radar, ms, feet": table("TrackID,TimestampMs,Latitude (deg),Longitude (deg),Altitude AMSL (ft),RCS [dBm2]",
@@ -463,7 +464,7 @@ class Scenarios(unittest.TestCase):
         cases = (
             ([*near, *far], {}, rf"radar.csv: 2 of 3 birds never come within the lidar's range gate of {gate:g} m: they pass the lidar at "
              rf"{gate + 500:.0f} m to {gate + 2880:.0f} m$"),
-            (self.track("A", 100, 150, swap=True), {}, r"1 of 1 birds .*: it passes the lidar at 5,\d\d\d km; probably latitude and longitude are exchanged: "
+            (self.track("A", 100, 150, swap=True), {}, r"the bird never comes .*: it passes the lidar at 5,\d\d\d km; probably latitude and longitude are exchanged: "
              "corrected, the nearest bird is 18[0-9] m away$"),
             (((name, t, lat, -lon, h) for name, t, lat, lon, h in near), {}, "probably the longitude has the wrong sign"),
             (((name, t, -lat, lon, h) for name, t, lat, lon, h in near), {}, "probably the latitude has the wrong sign"),
@@ -479,7 +480,7 @@ class Scenarios(unittest.TestCase):
         self.assertRegex(" ".join(heard), "x and y are metres east and north of the scene's origin; coordinates of a map .UTM. must be converted .*ogr2ogr -t_srs EPSG:4326")
         with self.said() as heard:  # inside the gate before the first scan alone
             al.Sequence(self.scenario([*self.track("A", 0, gate - 500, seconds=100)][::50], start_time=DAY + 36080))
-        self.assertRegex(" ".join(heard), f"1 of 1 birds never come .*: it passes the lidar at {gate + 300:.0f} m$")
+        self.assertRegex(" ".join(heard), f"the bird never comes .*: it passes the lidar at {gate + 300:.0f} m$")
         with self.said() as heard:  # a pattern, too
             birds = [{"pattern": "Circles", "number_of_birds": 3, "center": [20000, 0, 0], "radius": 100}]
             al.Sequence(TestSequence.scenario_file(self.home, **{**SCENARIO, "birds": birds}))

@@ -164,7 +164,7 @@ class Less(unittest.TestCase):
                               ({"preset": "OS2_128", "RangeGate": 90, "pulse_energy": 1.0, "Position": [0, 0, 3]},
                                "OS2_128 changed is an idea: its range_gate and pulse_energy differ from those of the lidar on sale."),
                               ({"preset": "Search1550"}, "Search1550 is an idea: nobody sells this lidar."),
-                              ({"preset": "Airport16"}, "Airport16 is an idea: its sensor file names no maker.")):
+                              ({"preset": "Airport16"}, "Airport16 is an idea: nobody sells this lidar.")):
             self.assertEqual(self.small(sensor=sensor).idea, words)
 
     def test_in_short(self):

@@ -25,7 +25,7 @@ def quick(pictures=False):
         changed.enter_context(unittest.mock.patch.multiple(_report, VISIBILITIES=(_report.ANSWERED,), RAINS=(0.0,)))
         changed.enter_context(unittest.mock.patch.object(reach, "RANGES", 12))
         changed.enter_context(unittest.mock.patch.object(_report, "on_sale", lambda: ON_SALE))
-        changed.enter_context(unittest.mock.patch.object(_crossing, "POSITIONS", 4000))
+        changed.enter_context(unittest.mock.patch.multiple(_crossing, BIRDS=200, PROBED=2000))
         if not pictures:
             pixel = unittest.mock.patch.object(_pictures, "draw", lambda file, *_: pathlib.Path(file).write_bytes(PIXEL))
             changed.enter_context(pixel)

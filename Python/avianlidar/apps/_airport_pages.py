@@ -25,6 +25,7 @@ PARTS = {"grass": ("#c7ffb3", 1), "water": ("#8abfce", 2), "parking": ("#9b9b9b"
          "tree": ("#004c23", 8), "terminal": ("#c2140e", 8), "hangar": ("#8e44ad", 8), "tower": ("#fd7f0b", 8),
          "mast": ("#f5d000", 8), "pole": ("#ff2dce", 8), "fence": ("#000000", 8), "structure": ("#8e6d4f", 8),
          "building": ("#a0522d", 8), "house": ("#db9763", 8)}
+SMALL = {"mast", "pole"}  # drawn with a wider line
 
 
 def draw(axes, found: AirportScene, place: Place) -> None:
@@ -43,13 +44,13 @@ def draw(axes, found: AirportScene, place: Place) -> None:
         colour, order = PARTS.get(word, PARTS["building"])
         shown[word] = colour
         axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour,
-                                           linewidths=0.2 if order < 8 else 1.0, zorder=order))
-    axes.plot(*place.position[:2], "r^", markersize=8, zorder=20)
+                                           linewidths=0.2 if order < 8 else 2.5 if word in SMALL else 1.0, zorder=order))
+    axes.plot(*place.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=20)
     axes.legend(handles=[Patch(color=colour, label=word) for word, colour in shown.items()],
                 loc="upper left").set_zorder(30)
     west_east, south_north = found.map.rectangle[:2], found.map.rectangle[2:]
     axes.set(xlim=west_east, ylim=south_north, aspect="equal", xlabel="m east", ylabel="m north",
-             title=f"{found.map.name}: the scene from above; red: the lidar")
+             title=f"{found.map.name}: the scene from above; red triangle: the lidar")
     place_labels(axes, [Label(name, end, way)
                         for runway, names in zip(found.sides, end_names(found.sides))
                         for name, (end, way) in zip(names, runway.ends())], [place.position[:2]])

@@ -23,7 +23,8 @@ from ._words import listed, plural
 LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
 # Shares in words, each up to a share.
-IN_WORDS = ((LEAST, "hardly any"), (0.1, "fewer than one in ten"), (0.25, "fewer than one in four"),
+IN_WORDS = ((LEAST, "hardly any"), (0.002, "fewer than one in 500"), (0.01, "fewer than one in 100"),
+            (0.03, "fewer than one in 30"), (0.1, "fewer than one in ten"), (0.25, "fewer than one in four"),
             (0.5, "fewer than half"), (0.75, "more than half"), (0.9, "more than three in four"),
             (math.inf, "more than nine in ten"))
 
@@ -300,6 +301,11 @@ def command(view: Plan, verb: str, out: str, **settings: str) -> str:
     return shlex.join(words + (["--threads", str(view.threads)] if view.threads else []))
 
 
+def detects(way: Dict[str, Any]) -> Tuple[float, float]:
+    """What changes of the beams are ordered by: the share detected at least twice, if it is known, and by one scan."""
+    return (way["crossing"].share if way["crossing"] else 0.0, way["then"]["detection_probability"])
+
+
 def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]],
                offers: Sequence[Dict[str, Any]]) -> List[Dict[str, str]]:
     """The next steps: for each a head, words, an anchor of the page, and a command, which may be empty. @param offers
@@ -339,12 +345,13 @@ def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, 
 def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     """The step that compares networks with one lidar."""
     words = {2: "two", 3: "three"}
-    one, *more = [percent(row["value"], row["std_error"], view.count, bar=False) for row in site["gain"]]
+    one, *more = [percent(row["value of the same birds"], row["std_error"], view.count, bar=False)
+                  for row in site["gain"]]
     counts = [words.get(row["sensors"], row["sensors"]) for row in site["gain"][1:]]
     together = listed([f"{count} detect {share}" for count, share in zip(counts, more)])
     return {"head": "Weigh a second lidar.", "more": "#sites", "command": "",
             "words": (f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, "
-                      f"{together}, if each misses birds independently.")}
+                      f"{together}. Lidars miss a bird of a heading and a size independently.")}
 
 
 def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
@@ -356,7 +363,8 @@ def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
                 "words": "At the heights of the plan no bird is near enough, whatever the elevation of the beams."}
     ends = (f"The beams end at {advice['high']:.1f}°. "
             f"For all heights of the plan they should reach {advice['needed']:.1f}°.")
-    best = max(advice["ways"], key=lambda way: way["then"]["detection_probability"], default=None)
+    better = [way for way in advice["ways"] if detects(way) > detects({**advice, "then": advice["now"]})]
+    best = max(better, key=detects, default=None)
     if best is None:
         return {**found, "words": f"{ends} No tried change of the beams detects more birds from the same place."}
     now, then = (percent(row["detection_probability"], row["detection_std_error"], row["places"], bar=False)

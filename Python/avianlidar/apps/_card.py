@@ -103,7 +103,7 @@ def cell(value: Value, unit: str = "", words: Optional[str] = None) -> str:
         return "–"
     digits = min(max(1 - math.floor(math.log10(error)), 0), 2) if error > 0.0 else 1
     of = (f"\u00a0{unit}" if unit else "") if words is None else words
-    return f"{number:.{digits}f}{'' if math.isnan(error) else f' ± {error:.{digits}f}'}{of}"
+    return f"{number:.{digits}f}{f' ± {error:.{digits}f}' if error > 0.0 else ''}{of}"
 
 
 def _rows(of: Sequence[Scores]) -> List[Dict[str, Any]]:

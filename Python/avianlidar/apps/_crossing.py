@@ -26,7 +26,10 @@ from ._regions import APPROACH_HALF_WIDTH, STRIP_HALF_WIDTH, region_names
 from ._scores import weighted
 
 TWICE = 2  # detections
-BIRDS, POSITIONS = 2000, 100_000  # greatest numbers of birds and of their positions in scans
+BIRDS = 2000  # greatest number of birds
+PROBED = 30_000  # positions in scans that show how far birds are detected
+SURELY = 1.25  # beyond this multiple of the greatest distance at which a bird is detected, no bird is
+LEAST = 1e-5  # probability that counts as none: of two detections in 400 scans then below 1e-5
 SPEED = 15.0  # speed of a target without a species, m/s; assumed
 FLIGHTS = 400  # flights from which the speed of a species is taken
 HEADINGS = 16  # headings of each phase of flapping wings: BirdHeadings of Filters/Kernel/Targets/BirdViews.h
@@ -96,7 +99,7 @@ def flights(plan: Plan, speed: float, random: np.random.Generator) -> Tuple[np.n
         along = (plan.points[members, :2] - begin) @ axis
         half[members], across[members] = width + more * np.abs(along), side
         middle[members] = begin + along[:, None] * axis
-    count = max(min(BIRDS, len(half), int(POSITIONS * step / (2.0 * half.mean() + step))), 2)
+    count = max(min(BIRDS, len(half)), 2)
     chosen = np.sort(random.choice(len(half), count, replace=False))
     way = across[chosen] * random.choice([-1.0, 1.0], count)[:, None]
     first = random.uniform(0.0, step, count)
@@ -119,7 +122,7 @@ def crossing(plan: Plan) -> Crossing:
             chosen, positions, headings = flights(plan, speed, np.random.default_rng(plan.seed))
             cover.species = species
             counts = np.array([len(of) for of in positions])
-            found = _seen(cover, np.concatenate(positions), np.repeat(headings, counts))
+            found = _seen_near(cover, np.concatenate(positions), np.repeat(headings, counts))
             probabilities = np.zeros((len(chosen), counts.max(initial=1)))
             probabilities[np.arange(counts.max(initial=1)) < counts[:, None]] = found
             share, error, _ = weighted(detected_at_least(TWICE, probabilities), weights[number, chosen])
@@ -127,6 +130,20 @@ def crossing(plan: Plan) -> Crossing:
             total += mixed * np.array([speed, counts.mean(), counts.mean() / plan.sensor.rotation_rate])
     share, error = np.sum([part[:2] for part in parts], axis=0).tolist()
     return Crossing(share, error, min(part[2] for part in parts), *total.tolist())
+
+
+def _seen_near(cover: Coverage, places: np.ndarray, headings: np.ndarray) -> np.ndarray:
+    """The same as `_seen`, where most places are too far away. Some places show how far birds are detected. Places
+    beyond this range are not computed, unless they are nearer than the nearest of these."""
+    away = np.linalg.norm(places - cover.sensor.position, axis=1)
+    some = np.arange(0, len(places), max(len(places) // PROBED, 1))
+    found = np.zeros(len(places))
+    found[some] = _seen(cover, places[some], headings[some])
+    detected = some[found[some] > LEAST]
+    limit = SURELY * max(away[some].min(initial=math.inf), away[detected].max(initial=0.0))
+    rest = np.setdiff1d(np.flatnonzero(away <= limit), some)
+    found[rest] = _seen(cover, places[rest], headings[rest])
+    return found
 
 
 def _seen(cover: Coverage, places: np.ndarray, headings: np.ndarray) -> np.ndarray:

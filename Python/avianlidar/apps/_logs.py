@@ -37,7 +37,7 @@ NAMES: Dict[str, Sequence[Set[str]]] = {
            {"id", "identifier", "object id", "name"}),
     "species": ({"species", "species name"}, {"individual taxon canonical name", "taxon canonical name", "taxon",
                                               "taxon name", "scientific name", "common name"})}
-CLOCKS = {"time", "timestamp", "datetime"}  # last words of other names of times
+CLOCKS = "time", "timestamp"  # ends of other names of times
 HEIGHTS = {"height", "altitude", "alt", "elevation", "ele", "elev", "z"}
 PRESSURE = {"baro", "barometric"}  # such heights count if there are no others
 PLAUSIBLE = -500.0, 20000.0  # m
@@ -88,7 +88,7 @@ def _meaning(name: str, number: int) -> Tuple[str, Column]:
     rest = levels.get(level, said).split()
     if not set(rest) - HEIGHTS - PRESSURE and (set(rest) & HEIGHTS or level):
         return "height", Column(name, number, unit, int(not PRESSURE.isdisjoint(rest)), level)
-    if CLOCKS & {*said.split()[-1:]}:
+    if said.endswith(CLOCKS):
         return "time", Column(name, number, unit, len(NAMES["time"]))
     return "", Column(name, number, unit, 0, level)
 

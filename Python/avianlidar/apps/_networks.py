@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-from typing import Any, List, Mapping, Sequence, Tuple
+from typing import Any, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -57,12 +57,13 @@ def _missed(found, weights, sites) -> np.ndarray:
     return left
 
 
-def greedy(found: np.ndarray, weights: np.ndarray, count: int) -> List[Network]:
-    """Networks of 1 to `count` sites; each is the one before with the site that adds most."""
+def greedy(found: np.ndarray, weights: np.ndarray, count: int, spots: Optional[np.ndarray] = None) -> List[Network]:
+    """Networks of 1 to `count` sites; each is the one before with the site that adds most. @param spots as in
+    `search`"""
     chosen: List[Network] = []
     sites: Tuple[int, ...] = ()
     for _ in range(_count(found, weights, count)):
-        sites += (int(np.argmax(_gains(found, weights, sites))),)
+        sites += (int(np.argmax(_gains(found, weights, sites, spots))),)
         chosen.append(Network(sites, value_of(found, weights, sites)))
     return chosen
 
@@ -80,30 +81,33 @@ def _count(found, weights, count) -> int:
     return count
 
 
-def _gains(found, weights, sites) -> np.ndarray:
-    """The share that each site would add to the given sites; negative for the given sites themselves."""
+def _gains(found, weights, sites, spots) -> np.ndarray:
+    """The share that each site would add to the given sites; negative for the spots of the given sites."""
+    spots = np.arange(len(found)) if spots is None else spots
     gains = found.reshape(len(found), -1) @ _missed(found, weights, sites).astype(found.dtype).ravel()
-    gains[list(sites)] = -1.0
+    gains[np.isin(spots, spots[list(sites)])] = -1.0
     return gains
 
 
-def exchange(found: np.ndarray, weights: np.ndarray, network: Network) -> Network:
-    """A network that no exchange of one site improves, at least as good as the given network."""
+def exchange(found: np.ndarray, weights: np.ndarray, network: Network, spots: Optional[np.ndarray] = None) -> Network:
+    """A network that no exchange of one site improves, at least as good as the given network. @param spots as in
+    `search`"""
     best = network
     while True:
         tried = [best.sites[:k] + best.sites[k + 1:] for k in range(len(best.sites))]
-        swapped = [(*rest, int(np.argmax(_gains(found, weights, rest)))) for rest in tried]
+        swapped = [(*rest, int(np.argmax(_gains(found, weights, rest, spots)))) for rest in tried]
         value, sites = max((value_of(found, weights, sites), sites) for sites in swapped)
         if not value > best.value + 1e-9:
             return best
         best = Network(sites, value)
 
 
-def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
-    """The best of all networks of one, two or three sites."""
+def exhaustive(found: np.ndarray, weights: np.ndarray, count: int, spots: Optional[np.ndarray] = None) -> Network:
+    """The best of all networks of one, two or three sites. @param spots as in `search`"""
     if _count(found, weights, count) > 3:
         raise ValueError(f"count is {count}, expected at most 3: larger networks are too many")
     n = len(found)
+    spots = np.arange(n) if spots is None else spots
     missed = 1.0 - found.reshape(n, -1).astype(float)
     least = np.inf
     sites: Tuple[int, ...] = ()
@@ -115,6 +119,9 @@ def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
         else:
             table = left @ missed[first:].T
             table[np.tril_indices(len(table))] = np.inf
+            table[spots[first:, None] == spots[first:]] = np.inf
+            taken = np.isin(spots[first:], spots[list(others)])
+            table[taken] = table[:, taken] = np.inf
         if table.size and table.min() < least:
             least = table.min()
             pair = np.unravel_index(np.argmin(table), table.shape)[:min(count, 2)]
@@ -122,15 +129,20 @@ def exhaustive(found: np.ndarray, weights: np.ndarray, count: int) -> Network:
     return Network(sites, value_of(found, weights, sites))
 
 
-def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60) -> List[Network]:
+def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60,
+           spots: Optional[np.ndarray] = None) -> List[Network]:
     """The best networks of 1 to `count` sites. The search is exhaustive for one site, and for up to three of at most
     `largest` sites. Otherwise the greedy network is improved by exchange.
 
     found    sites x species x places, from look
     weights  species x places, from weights_of
+    spots    a number for each site: a network has at most one of the sites with equal numbers, such as masts at one
+             place. Default: all sites may work together. Ignored if there are fewer than `count` different numbers
     """
-    return [exhaustive(found, weights, n) if n == 1 or (n <= 3 and len(found) <= largest) else
-            exchange(found, weights, start) for n, start in enumerate(greedy(found, weights, count), 1)]
+    if spots is not None and len(np.unique(spots)) < count:
+        spots = None
+    return [exhaustive(found, weights, n, spots) if n == 1 or (n <= 3 and len(found) <= largest) else
+            exchange(found, weights, start, spots) for n, start in enumerate(greedy(found, weights, count, spots), 1)]
 
 
 def rank_correlation(a, b) -> float:

@@ -28,8 +28,8 @@ def idea(name: str, sensor: Sensor, given: Iterable[str] = ()) -> str:
     are set, `range_gate` or `RangeGate`"""
     changed = [one for one in map(snake, given) if one not in CHOSEN]
     if not sensor.on_sale:
-        named = "maker" in sensor.description
-        return f"{name} is an idea: {'nobody sells this lidar' if named else 'its sensor file names no maker'}."
+        ours = name in Sensor.presets()
+        return f"{name} is an idea: {'nobody sells this lidar' if ours else 'its sensor file names no maker'}."
     differs = "differs from that" if len(changed) == 1 else "differ from those"
     return f"{name} is an idea: its {listed(changed)} {differs} of the lidar on sale." if changed else ""
 

@@ -174,13 +174,15 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
     from matplotlib import colormaps, patches
     x0, x1, y0, y1 = extent
     legend = []
+    lines = [np.linspace(runway.start, runway.end, 50) for runway in plan.runways]
     for number, (height, classes) in enumerate(found):
         colour = colormaps["viridis"](0.9 * number / max(len(found) - 1, 1))
         here = (np.linspace(x0, x1, classes.shape[1]), np.linspace(y0, y1, classes.shape[0]))
         for limit in (1, 2):
             if min(classes.shape) > 1 and classes.min() < limit <= classes.max():
-                axes.contour(*here, classes, [limit - 0.5], colors=[colour], linewidths=1.0,
-                             linestyles="--" if limit == 1 else "-")
+                outlines = axes.contour(*here, classes, [limit - 0.5], colors=[colour], linewidths=1.0,
+                                        linestyles="--" if limit == 1 else "-")
+                lines += [part for level in outlines.allsegs for part in level]
         if min(classes.shape) > 1 and (classes == 2).any():
             axes.contourf(*here, classes, [1.5, 2.5], colors=[colour], alpha=0.45)
         words = {2: "", 1: ": nowhere half", 0: ": nowhere a tenth"}[int(classes.max(initial=0))]
@@ -195,7 +197,7 @@ def draw_answer(axes, plan: Plan, found: Sequence[Tuple[float, np.ndarray]], ext
     axes.plot(*place, "r^", markersize=11, markeredgecolor="white", zorder=5)
     axes.legend(handles=legend, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, frameon=False, title_fontsize=8,
                 title="filled: one scan detects half or more of the birds; dashed: a tenth or more")
-    return place_labels(axes, labels_of(plan, shares), [place])
+    return place_labels(axes, labels_of(plan, shares), [place], np.concatenate([np.empty((0, 2)), *lines]))
 
 
 def labels_of(plan: Plan, shares: Mapping[str, str]) -> List[Label]:

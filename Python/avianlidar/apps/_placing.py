@@ -21,9 +21,10 @@ class Label(NamedTuple):
     style: Any = {}
 
 
-def place_labels(axes, labels: Sequence[Label], keep_free: Any = ()) -> List[str]:
+def place_labels(axes, labels: Sequence[Label], keep_free: Any = (), lines: Any = ()) -> List[str]:
     """Writes labels beside their places: each at the nearest free position, in the given order. Limits and size of the
-    axes must not change later. @param keep_free places of marks, m, that labels do not cover @return words of the
+    axes must not change later. @param keep_free places of marks, m, that labels do not cover @param lines places on
+    lines, m, that labels cover only if there is no other room @return words of the
     labels without a free position, which are not written"""
     from matplotlib.text import Text
     from matplotlib.transforms import Bbox
@@ -31,7 +32,7 @@ def place_labels(axes, labels: Sequence[Label], keep_free: Any = ()) -> List[str
         axes.figure.draw_without_rendering()
     scale = axes.figure.dpi / 72.0  # pixels in a point
     inside = axes.get_window_extent()
-    marks = axes.transData.transform(np.reshape(keep_free, (-1, 2)))
+    marks, drawn = (axes.transData.transform(np.reshape(of, (-1, 2))) for of in (keep_free, lines))
     taken = [Bbox.from_bounds(*(mark - 6.0 * scale), 12.0 * scale, 12.0 * scale) for mark in marks]
     if axes.get_legend():
         taken.append(axes.get_legend().get_window_extent())
@@ -55,15 +56,17 @@ def place_labels(axes, labels: Sequence[Label], keep_free: Any = ()) -> List[str
             way = np.array([np.cos(angle), np.sin(angle)])
             return way * away * scale + np.clip(way * 1.5, -1.0, 1.0) * half
 
-        def fits(away: float, angle: float, nearest: bool) -> bool:
+        def fits(away: float, angle: float, nearest: bool, clear: bool) -> bool:
             middle = anchor + offset(away, angle)
             here = Bbox([middle - half - GAP * scale, middle + half + GAP * scale])
             apart = np.linalg.norm(anchors - middle, axis=1)
             return bool((middle - half >= inside.min).all() and (middle + half <= inside.max).all()
                         and not here.count_overlaps(taken)
+                        and not (clear and (np.abs(drawn - middle) <= half).all(axis=1).any())
                         and (not nearest or np.hypot(*(anchor - middle)) <= apart.min() + 1e-6))
-        # If possible, no place of another label is nearer.
-        found = next((one for nearest in (True, False) for one in places if fits(*one, nearest)), None)
+        # If possible, the label covers no line, and no place of another label is nearer.
+        found = next((one for clear in (True, False) for nearest in (True, False) for one in places
+                      if fits(*one, nearest, clear)), None)
         if found is None:
             text.remove()
             left_out.append(label.words)

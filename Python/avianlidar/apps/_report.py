@@ -272,13 +272,14 @@ class Report:
             found.update(name=view.title, low=low, high=high, now=view.overall, crossing=crosses)
             for way in found["ways"]:
                 changed = [view.at(view.sensor.position, view.title, **changes) for changes in way["changes"]]
-                tried = [(one.in_airs([{}])[0][-1], number) for number, one in enumerate(changed)]
-                way["then"], best = max(tried, key=lambda one: one[0]["detection_probability"])
-                way["crossing"], changes = crossing(changed[best]) if view.runways else None, way["changes"][best]
+                tried = [{"then": one.in_airs([{}])[0][-1], "crossing": crossing(one) if view.runways else None,
+                          "changes": changes} for one, changes in zip(changed, way["changes"])]
+                way.update(max(tried, key=_answer.detects))
+                changes = way["changes"]
                 words = ", ".join(f"{name} {value:.4g}" for name, value in changes.items())
                 way["what"] = f"{way['what'](changes)} ({words})"
-            now = view.overall["detection_probability"]
-            found["ways"] = [way for way in found["ways"] if way["then"]["detection_probability"] > now]
+            now = _answer.detects({"then": view.overall, "crossing": crosses})
+            found["ways"] = [way for way in found["ways"] if any(np.greater(_answer.detects(way), now))]
         return found
 
     def _besides(self, plan: Plan, view: Plan, site: Optional[Dict[str, Any]]) -> List[str]:

@@ -208,7 +208,8 @@ class Simulation:
         far = away[away > self.sensor.range_gate]
         if len(far):
             least, most = (f"{x:.0f} m" if x < 9999.5 else f"{x / 1000:,.0f} km" for x in (far.min(), far.max()))
-            self._warn(f"{what}: {len(far)} of {len(away)} birds never come within the lidar's range gate of "
+            who = "the bird never comes" if len(away) == 1 else f"{len(far)} of {len(away)} birds never come"
+            self._warn(f"{what}: {who} within the lidar's range gate of "
                        f"{self.sensor.range_gate:g} m: {'it passes' if len(far) == 1 else 'they pass'} the lidar at "
                        f"{least}{f' to {most}' if least != most else ''}{why and '; '}{why}")
 

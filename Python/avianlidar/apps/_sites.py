@@ -174,7 +174,7 @@ class Sites:
             self.found = every[:, :, self.counting].reshape(len(self.positions), -1, every.shape[-1])
         self.values = values_of(self.found, self.weights)
         self.order = np.argsort(-self.values, kind="stable")
-        first = search(self.found, self.weights, min(self.count, len(self.positions)))
+        first = search(self.found, self.weights, min(self.count, len(self.positions)), spots=self._spots())
         members = [site for network in first for site in network.sites]
         self.near = np.array(list(dict.fromkeys([*self.order[:NEAR], *members])))
         self.networks = self._search(self.found[self.near], self.weights, first)
@@ -229,9 +229,13 @@ class Sites:
                      **{**self.settings, **settings})
         return found, weights.reshape(-1, len(points)), by_kind(ends)
 
+    def _spots(self) -> np.ndarray:
+        """A number for each candidate; masts at one place have one number."""
+        return np.unique(self.positions[:, :2], axis=0, return_inverse=True)[1].ravel()
+
     def _search(self, found, weights, known=()) -> List[Network]:
         """The best networks of the near candidates."""
-        best = search(found, weights, min(self.count, len(self.near)), 2 * NEAR)
+        best = search(found, weights, min(self.count, len(self.near)), 2 * NEAR, self._spots()[self.near])
         own = [Network(tuple(int(self.near[i]) for i in network.sites), network.value) for network in best]
         return [max(pair, key=lambda network: network.value) for pair in zip(own, known or own)]
 

@@ -172,8 +172,10 @@ def _say_sites(sites, changes) -> None:
         print(f"{row['sensors']} of {name}: {percent(row['value'], row['std_error'], sites.plan.count)} at ({where}) m")
     rows = sites.robustness(changes)
     for row in rows:
-        print(f"{row['change']}, {row['sensors']} {'sensors' if row['sensors'] > 1 else 'sensor'}: another winner in "
-              f"{row['another winner']} of {row['draws']} draws, better by at most {100 * row['gain at most']:.1f} %")
+        other = (f"another winner in {row['another winner']} of {row['draws']} draws, better by at most "
+                 f"{100 * row['gain at most']:.1f} %" if row["another winner"] else
+                 f"the same winner in all {row['draws']} draws")
+        print(f"{row['change']}, {counted(row['sensors'], 'sensor')}: {other}")
     if not rows:
         print("how sure the winner is was not computed, because the plan has too few draws")
 
