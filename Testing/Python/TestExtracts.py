@@ -193,6 +193,25 @@ class Formats(unittest.TestCase):
                     got = things(file)
                     self.assertEqual(len(got), len(expected) + (number > 0 and "start_date" not in properties), (properties, shape))
 
+    def test_single_features_that_end_nothing(self):
+        """Found by random features: lines of one corner alone and among others, areas with such rings, a corner at 0 N 0 E, features on the far side of the Earth."""
+        whole = ta.FOLDER / "single.geojson"
+        gdal.VectorTranslate(str(whole), str(runway(ta.Map()).write("single.osm")), layers=["lines"])
+        text = json.loads(whole.read_text(encoding="utf-8"))
+        a, b, c, zero, pole = [13.301, 53.603], [13.302, 53.603], [13.302, 53.604], [0, 0], [180, 90]
+        tags = ({"building": "yes"}, {"barrier": "fence"}, {"natural": "coastline"}, {"aeroway": "aerodrome"}, {"aeroway": "threshold"}, {"aeroway": "runway"}, {"natural": "tree", "location": "roof"})
+        for shape in ({"type": "LineString", "coordinates": [a]}, {"type": "MultiLineString", "coordinates": [[a], [a, b], []]}, {"type": "Polygon", "coordinates": [[a, b, c, a], [a], [a, b]]},
+                      {"type": "MultiPoint", "coordinates": [a, b]}, {"type": "Point", "coordinates": []}, {"type": "LineString", "coordinates": [a, zero]}, {"type": "Polygon", "coordinates": [[a, b, zero, a]]},
+                      {"type": "LineString", "coordinates": [pole, [180, 89.999]]}, {"type": "Point", "coordinates": pole}, {"type": "GeometryCollection", "geometries": []}, None):
+            features = [{"type": "Feature", "properties": one, "geometry": shape} for one in tags]
+            whole.write_text(json.dumps({**text, "features": [*text["features"], *features]}), encoding="utf-8")
+            with warnings.catch_warnings(), _gdal.quiet():
+                warnings.simplefilter("ignore")
+                made = AirportMap(whole)
+                made.mapped(made.chosen(made.heights()))
+            self.assertIn("09/27", {one.name for one in made.runways}, shape)
+            self.assertEqual("[0, 0]" in json.dumps(shape), extract.TOO_LONG in {one.reason for one in made.left}, shape)
+
     def test_rings_and_corners_in_wrong_places(self):
         """Holes beside their outline and far away, and coordinates that are not degrees, are counted as left out."""
         whole = ta.FOLDER / "strays.geojson"

@@ -20,12 +20,40 @@ NO_DEGREES, NO_EXTENT = "coordinates that are not degrees (longitude, latitude)"
 STRAY = "a hole outside its outline"
 NEAR_ROOF = 3e-5  # greatest distance from the outline of a roof that something stands on, degrees
 NO_ROOF = "on a roof that the scene lacks"
+EARTH, LONGEST_SIDE = 6.371e6, 50_000.0  # the Earth's radius, and the longest side that a feature may have, m
+TOO_LONG = f"a side of more than {LONGEST_SIDE / 1000.0:g} km"
 NOT = {"no", "false", "0", "none"}  # values by which a tag says that a feature is not of its kind
 
 
 def are_degrees(corners: np.ndarray) -> bool:
     """Whether corners (n x 2) are longitudes and latitudes."""
     return bool(np.all(np.abs(corners) <= (360.0, 90.0)))  # also False for nan
+
+
+def _proper(shape, form: str):
+    """Points and lines without empty parts and without lines of fewer than two corners, which GEOS refuses; areas as
+    they are. May be empty."""
+    if form == "area":
+        return shape
+    parts = [part for part in parts_of(shape) if part.GetPointCount() >= (2 if form == "line" else 1)]
+    if len(parts) == 1:
+        return parts[0].Clone()
+    kept = ogr.Geometry(ogr.wkbMultiLineString if form == "line" else ogr.wkbMultiPoint)
+    for part in parts:
+        kept.AddGeometry(part)
+    return kept
+
+
+def _longest_side(shape) -> float:
+    """The longest side of lines and areas, m, to some per cent."""
+    longest = 0.0
+    for part in parts_of(shape):
+        for line in [part.GetGeometryRef(i) for i in range(part.GetGeometryCount())] or [part]:
+            ends = np.radians(np.array(line.GetPoints() or [(0.0, 0.0)])[:, :2])
+            ways = np.diff(ends, axis=0)
+            ways[:, 0] *= np.cos(ends[1:, 1])
+            longest = max(longest, float(np.hypot(*ways.T).max(initial=0.0)) * EARTH)
+    return longest
 
 
 def has_extent(shape, corners: np.ndarray, form: str) -> bool:
@@ -114,6 +142,7 @@ class Extract:
             # a relation of outlines and parts
             areas = [solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]
             shape, form = union(areas), "area"
+        shape = _proper(shape, form) if form else shape
         one = Feature("", tags, shape)
         corners = corners_of(shape) if form else np.empty((0, 2))
         if not len(corners):
@@ -132,8 +161,12 @@ class Extract:
             one = Feature("", tags, shape)
         else:
             kinds = self._kinds(tags, form, closed)
-        if not are_degrees(corners):
-            self.leave(Feature(next(iter(kinds), ("",))[0], tags), NO_DEGREES)
+        is_coast = tags.get("natural") == COAST
+        wrong = "" if are_degrees(corners) else NO_DEGREES
+        if not wrong and form != "point" and not is_coast and _longest_side(shape) > LONGEST_SIDE:
+            wrong = TOO_LONG
+        if wrong:
+            self.leave(Feature(next(iter(kinds), ("",))[0], tags), wrong)
             return
         if self.model_tags.find(tags) is not None:
             self.models.append(one)
@@ -145,8 +178,12 @@ class Extract:
             if not outline.IsEmpty():
                 use = "aerodrome"
                 self.aerodromes.append(Feature("", tags, outline))
-        if tags.get("natural") == COAST and form != "point":
-            self._keep(Feature(COAST, tags, shape), form, corners)
+        if is_coast and form != "point":
+            shape = solid(shape) if form == "area" else shape
+            if has_extent(shape, corners, form):
+                self._keep(Feature(COAST, tags, shape), form, corners)
+            else:
+                self.leave(Feature(COAST, tags), NO_EXTENT)
             return
         if not kinds:
             self._leave_unknown(one, form, use)
@@ -156,7 +193,7 @@ class Extract:
             if not reason and taken == "area":
                 one.shape = solid(shape, functools.partial(self.leave, one, STRAY))
             elif taken != form:
-                one.shape = ogr.ForceToMultiLineString(shape)
+                one.shape = _proper(ogr.ForceToMultiLineString(shape), "line")
             if reason or not has_extent(one.shape, corners, taken):
                 self.leave(one, reason or self._broken(tags) or NO_EXTENT)
                 continue
@@ -271,7 +308,7 @@ def on_roofs(features: List[Feature], known: Dict[str, Any],
     boxes += (-NEAR_ROOF, NEAR_ROOF, -NEAR_ROOF, NEAR_ROOF)
     left: List[Feature] = []
     for one in above:
-        place = one.shape if form_of(one.shape) == "point" else one.shape.PointOnSurface()
+        place = one.shape.PointOnSurface() if form_of(one.shape) == "area" else one.shape.Centroid()
         west, east, south, north = place.GetEnvelope()
         near = (boxes[:, 0] <= west) & (boxes[:, 1] >= east) & (boxes[:, 2] <= south) & (boxes[:, 3] >= north)
         roofs = [(row["height"] + base(host.shape, place), row["height_from"]) for host, row in (

@@ -133,13 +133,30 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
             other += ("; if the ways contain the coordinates of nodes, `osmium cat FILE -o FILE.osm` writes a suitable "
                       "extract")
         raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway{other}")
-    middle = (lines + areas)[0].shape.Centroid()
+    middles = np.array([one.shape.Centroid().GetPoint_2D() for one in lines + areas])
+    middle = (lines + areas)[int(np.argmin(np.abs(middles - np.median(middles, axis=0)).sum(axis=1)))].shape.Centroid()
     local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
     to_local = osr.CoordinateTransformation(degrees(), local)
     to_degrees = osr.CoordinateTransformation(local, degrees())
 
+    def is_near(one: Feature) -> bool:
+        """Whether a feature is near enough for the local system, which does not reach the far side of the Earth."""
+        try:
+            moved(one.shape, to_local)
+        except RuntimeError:
+            return False
+        return True
+
     def points_of(shape) -> np.ndarray:
         return np.array(moved(shape, to_local).GetPoints())[:, :2]
+
+    far = [one for one in lines + areas if not is_near(one)]
+    for one in far:
+        extract.leave(one, "far from other runways")
+    extract.features = [one for one in extract.features if not any(one is other for other in far)]
+    lines, areas = ([one for one in group if not any(one is other for other in far)] for group in (lines, areas))
+    extract.aerodromes, extract.models, extract.thresholds = (
+        [one for one in group if is_near(one)] for group in (extract.aerodromes, extract.models, extract.thresholds))
 
     pieces = []
     for one in lines:
@@ -158,7 +175,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
             pieces.append(area)
             extract.features.remove(one)
     models = [moved(one.shape, to_local) for one in extract.models]
-    thresholds = [points_of(one.shape)[0] for one in extract.thresholds]
+    thresholds = [points_of(part)[0] for one in extract.thresholds for part in parts_of(one.shape)]
     runways: List[Tuple[Feature, Any]] = []  # features with their lines, m
     for one, ends, by_pieces in _joined(pieces, known):
         line = geometry("LineString", ends)
