@@ -51,7 +51,7 @@ def _longest_side(shape) -> float:
         for line in [part.GetGeometryRef(i) for i in range(part.GetGeometryCount())] or [part]:
             ends = np.radians(np.array(line.GetPoints() or [(0.0, 0.0)])[:, :2])
             ways = np.diff(ends, axis=0)
-            ways[:, 0] *= np.cos(ends[1:, 1])
+            ways[:, 0] = np.arcsin(np.sin(ways[:, 0] / 2.0)) * 2.0 * np.cos(ends[1:, 1])  # also over 180 degrees
             longest = max(longest, float(np.hypot(*ways.T).max(initial=0.0)) * EARTH)
     return longest
 

@@ -153,7 +153,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     far = [one for one in lines + areas if not is_near(one)]
     for one in far:
         extract.leave(one, "far from other runways")
-    extract.features = [one for one in extract.features if not any(one is other for other in far)]
+    extract.features[:] = [one for one in extract.features if not any(one is other for other in far)]
     lines, areas = ([one for one in group if not any(one is other for other in far)] for group in (lines, areas))
     extract.aerodromes, extract.models, extract.thresholds = (
         [one for one in group if is_near(one)] for group in (extract.aerodromes, extract.models, extract.thresholds))
