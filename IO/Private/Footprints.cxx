@@ -16,6 +16,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
+#include <memory>
+#include <string_view>
 
 namespace avianlidar::scene
 {
@@ -85,12 +88,57 @@ std::optional<std::string> FindAttribute(const OGRFeature& feature, const std::s
     : std::nullopt;
 }
 
+// Returns whether JSON gives true or false for a key. GDAL hands these values over as 1 and 0.
+bool HasTruthValue(std::string_view json, const std::string& name)
+{
+  const std::string key = '"' + name + '"';
+  for (std::size_t at = json.find(key); at != std::string_view::npos; at = json.find(key, at + 1))
+  {
+    const std::string_view blanks = " \t\r\n";
+    std::size_t value = json.find_first_not_of(blanks, at + key.size());
+    if (value == std::string_view::npos || json[value] != ':')
+    {
+      continue;
+    }
+    value = json.find_first_not_of(blanks, value + 1);
+    if (value != std::string_view::npos &&
+      (json.compare(value, 4, "true") == 0 || json.compare(value, 5, "false") == 0))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Returns the text of a length. If one feature has a list, GDAL makes lists of all values; a list
+// of one value counts as this value, and other lists and truth values give no text.
+std::string FindLengthText(const OGRFeature& feature, const std::string& name)
+{
+  const int field = name.empty() ? -1 : feature.GetFieldIndex(name.c_str());
+  if (field >= 0 && feature.IsFieldSetAndNotNull(field))
+  {
+    const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
+    const char* json = feature.GetNativeData();
+    const std::string text = feature.GetFieldAsString(field);
+    if (json && HasTruthValue(json, name))
+    {
+      return {};
+    }
+    if (type == OFTIntegerList || type == OFTInteger64List || type == OFTRealList ||
+      type == OFTStringList) // "(1:12)"
+    {
+      return text.rfind("(1:", 0) == 0 ? text.substr(3, text.size() - 4) : std::string();
+    }
+  }
+  return name.empty() ? std::string() : FindAttribute(feature, name).value_or("");
+}
+
 // Reads lengths such as "12", "12.5" and "12 m". Texts with other units, such as feet or floors,
 // give no value. `unit` is the unit of a number without a unit, m.
 std::optional<double> FindLength(
   const OGRFeature& feature, const std::string& name, double unit = 1)
 {
-  const std::string text = name.empty() ? std::string() : FindAttribute(feature, name).value_or("");
+  const std::string text = FindLengthText(feature, name);
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const std::string given(end);
@@ -203,6 +251,23 @@ bool IsCityJson(const std::string& file)
     VSIFCloseL(stream);
   }
   return start.find("\"CityJSON") != std::string::npos;
+}
+
+// Returns whether a GeoJSON file has a truth value in place of a height or a width.
+bool HasTruthValues(const std::string& file, const FootprintOptions& options)
+{
+  GByte* bytes = nullptr;
+  vsi_l_offset size = 0;
+  if (!VSIIngestFile(nullptr, VirtualName(file).c_str(), &bytes, &size, -1))
+  {
+    return false;
+  }
+  const std::unique_ptr<GByte, decltype(&VSIFree)> owner(bytes, &VSIFree);
+  const std::string_view json(reinterpret_cast<const char*>(bytes), size);
+  const std::string* const names[] = { &options.heightAttribute, &options.minHeightAttribute,
+    &options.widthAttribute };
+  return std::any_of(std::begin(names), std::end(names),
+    [&](const std::string* name) { return !name->empty() && HasTruthValue(json, *name); });
 }
 
 OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
@@ -527,8 +592,14 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   const std::string ending = vtksys::SystemTools::LowerCase(
     std::filesystem::path(UncompressedName(object.file)).extension());
   const bool isTable = ending == ".csv";
-  const GDALDatasetUniquePtr data(GDALDataset::Open(VirtualName(object.file).c_str(),
-    GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers, isTable ? columns : nullptr));
+  const bool keepsJson =
+    ending.find("json") != std::string::npos && HasTruthValues(object.file, object.footprints);
+  const char* const whole[] = { "NATIVE_DATA=YES", nullptr };
+  const GDALDatasetUniquePtr data(
+    GDALDataset::Open(VirtualName(object.file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers,
+      isTable       ? columns
+        : keepsJson ? whole
+                    : nullptr));
   failIf(!data && IsCityJson(object.file),
     "is CityJSON, which is not read: convert it to a mesh or to footprints in GeoJSON");
   failIf(!data, "GDAL cannot read it", quiet.Reason());

@@ -415,11 +415,37 @@ class Extracts(unittest.TestCase):
         row = next(row["properties"] for row in mapped["features"] if row["properties"]["kind"] == "building")
         self.assertEqual(row["height"], 8.0)
         self.assertIn("assumed: height is 'eleven'", (folder / "assumed.csv").read_text())
-        row["height"] = 0
-        (folder / "airport.geojson").write_text(json.dumps(mapped))
-        code, said = run("airport", file, "-o", folder)
-        self.assertEqual(code, 2)
-        self.assertIn("height is 0, expected metres above 0", said)
+        for edit, words in (({"height": 0}, "height is 0, expected metres above 0"), ({"height": True}, "height is True, expected metres"), ({"height": [12]}, r"height is \[12\], expected metres"),
+                            ({"height": None}, "height is None, expected metres"), ({"min_height": True}, "min_height is True, expected metres"), ({"min_height": -1}, "min_height is -1, expected metres"),
+                            ({"min_height": 9}, "min_height is 9 m, expected less than the height, 8 m")):
+            row.update({"height": 8.0, "min_height": 0, **edit})
+            (folder / "airport.geojson").write_text(json.dumps(mapped))
+            code, said = run("airport", file, "-o", folder)
+            self.assertEqual(code, 2)
+            self.assertRegex(said, rf"airport.geojson: features\[1\] \(building 8\): {words}")
+        # A record of checksums that is damaged: the remedy of the message works.
+        for text in ("[]", "{", '{"README.txt": 1}', "{}"):
+            (folder / "made.json").write_text(text)
+            code, said = run("airport", file, "-o", folder)
+            self.assertEqual(code, 2)
+            self.assertIn("choose another folder, or empty this one to have all files made again", said)
+        for path in folder.iterdir():
+            path.unlink()
+        self.assertEqual(run("airport", file, "-o", folder)[0], 0)
+
+    def test_a_long_name(self):
+        """A title of thousands of letters is wider than a picture can be."""
+        plan = crossing()
+        file = FOLDER / "long.geojson"
+        gdal.VectorTranslate(str(file), str(plan.write("long.osm")), layers=["lines"])
+        text = json.loads(file.read_text(encoding="utf-8"))
+        for properties, shape in (({"aeroway": "aerodrome", "name": 5000 * "N"}, {"type": "Point", "coordinates": [13.3, 53.6]}),
+                                  ({"man_made": "mast", "name": 5000 * "M", "height": "9"}, {"type": "Point", "coordinates": [13.301, 53.603]})):
+            text["features"].append({"type": "Feature", "properties": properties, "geometry": shape})
+        file.write_text(json.dumps(text), encoding="utf-8")
+        folder, said = made("long", file)
+        self.assertIn(f"{80 * 'N'}..., 2 runways", said)
+        self.assertTrue((folder / "airport.png").exists())
 
     def test_one_of_two_airports(self):
         plan = crossing()

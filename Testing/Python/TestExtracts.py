@@ -11,8 +11,11 @@ import warnings
 import numpy as np
 from osgeo import gdal, ogr, osr
 
+import avianlidar as al
 import TestAirport as ta
 from avianlidar import siting
+from avianlidar.apps import _airport_pages as airport_pages
+from avianlidar.apps import _aixm as aixm
 from avianlidar.apps import _extract as extract
 from avianlidar.apps import _features, _gdal, _osm
 from avianlidar.apps import _obstacles as obstacles
@@ -190,6 +193,25 @@ class Formats(unittest.TestCase):
                     got = things(file)
                     self.assertEqual(len(got), len(expected) + (number > 0 and "start_date" not in properties), (properties, shape))
 
+    def test_single_features_that_end_nothing(self):
+        """Found by random features: lines of one corner alone and among others, areas with such rings, a corner at 0 N 0 E, features on the far side of the Earth."""
+        whole = ta.FOLDER / "single.geojson"
+        gdal.VectorTranslate(str(whole), str(runway(ta.Map()).write("single.osm")), layers=["lines"])
+        text = json.loads(whole.read_text(encoding="utf-8"))
+        a, b, c, zero, pole = [13.301, 53.603], [13.302, 53.603], [13.302, 53.604], [0, 0], [180, 90]
+        tags = ({"building": "yes"}, {"barrier": "fence"}, {"natural": "coastline"}, {"aeroway": "aerodrome"}, {"aeroway": "threshold"}, {"aeroway": "runway"}, {"natural": "tree", "location": "roof"})
+        for shape in ({"type": "LineString", "coordinates": [a]}, {"type": "MultiLineString", "coordinates": [[a], [a, b], []]}, {"type": "Polygon", "coordinates": [[a, b, c, a], [a], [a, b]]},
+                      {"type": "MultiPoint", "coordinates": [a, b]}, {"type": "Point", "coordinates": []}, {"type": "LineString", "coordinates": [a, zero]}, {"type": "Polygon", "coordinates": [[a, b, zero, a]]},
+                      {"type": "LineString", "coordinates": [pole, [180, 89.999]]}, {"type": "Point", "coordinates": pole}, {"type": "GeometryCollection", "geometries": []}, None):
+            features = [{"type": "Feature", "properties": one, "geometry": shape} for one in tags]
+            whole.write_text(json.dumps({**text, "features": [*text["features"], *features]}), encoding="utf-8")
+            with warnings.catch_warnings(), _gdal.quiet():
+                warnings.simplefilter("ignore")
+                made = AirportMap(whole)
+                made.mapped(made.chosen(made.heights()))
+            self.assertIn("09/27", {one.name for one in made.runways}, shape)
+            self.assertEqual("[0, 0]" in json.dumps(shape), extract.TOO_LONG in {one.reason for one in made.left}, shape)
+
     def test_rings_and_corners_in_wrong_places(self):
         """Holes beside their outline and far away, and coordinates that are not degrees, are counted as left out."""
         whole = ta.FOLDER / "strays.geojson"
@@ -221,14 +243,49 @@ class Formats(unittest.TestCase):
                 ("none.osm", b"", "is empty"), ("page.osm", b"\n<html><body>too many requests</body></html>", "is a web page"),
                 ("own.geojson", b'{"version": 0.6, "generator": "Overpass API", "elements": []}', "is Overpass's own JSON"),
                 ("wide.osm", "<osm/>".encode("utf-16"), "is in UTF-16"), ("half.osm", whole.read_bytes()[:6000], "cannot be read to its end"),
-                *((f"node{number}.osm", re.sub(b'lat="53[^"]*"', said, whole.read_bytes(), count=1), f"node 1: lat is {words}")
-                  for number, (said, words) in enumerate(((b'lat="53,602"', "'53,602'"), (b'lat="abc"', "'abc'"), (b"", "''"), (b'lat="95"', "'95'")))),
+                ("nodes.osm", re.sub(b'lat="53[.]', b'lat="53,', whole.read_bytes()), "holds no runway.*; node 1: lat is '53,"),
                 ("system.geojson", system, "the coordinate system is 'EPSG:99999999'"),
                 ("half.osm.pbf", ta.pbf(whole).read_bytes()[:-200], "cannot be read to its end")):
             file = ta.FOLDER / name
             file.write_bytes(content)
             with self.assertRaisesRegex(RuntimeError, f"{name}: {words}.*expected"):
-                _osm.read_extract(file, KNOWN)
+                AirportMap(file)
+
+    def test_nodes_at_no_place(self):
+        """One node that no way has, and one of a fence, a wood by relation, a building and each end of a second runway."""
+        for word in ("200", "53,602", "abc", "nan", "5_3", ""):
+            plan = runway(ta.Map())
+            spare, other = plan.point(50, 50, natural="tree", height="9"), plan.way([(-800, 500), (800, 500)], aeroway="runway", ref="09R/27L")
+            fence, building, wood = plan.way([(0, 99), (50, 99), (99, 99)], barrier="fence"), plan.area((0, 300), (8, 310), building="yes"), plan.area((0, 400), (9, 410))
+            plan.relation([wood], [], natural="wood")
+            file = plan.write("nowhere.osm")
+            whole = things(file)
+            wrong = {spare, other - 1, fence - 2, building - 1, wood - 3}
+            file.write_text(re.sub(r'(<node id="(\d+)"[^>]*lat=)"[^"]*"', lambda found: f'{found[1]}"{word}"' if int(found[2]) in wrong else found[0],
+                                   file.read_text(encoding="utf-8")), encoding="utf-8")
+            found = _osm.read_extract(file, KNOWN)
+            self.assertEqual(sorted(int(one.id) for one in found.left if one.kind == "node"), sorted(wrong), word)
+            self.assertIn(f"lat is {word!r}", {one.name for one in found.left})
+            self.assertEqual({(one.kind, one.reason) for one in found.left if one.kind != "node"}, {(kind, extract.NO_DEGREES) for kind in ("way", "building", "wood")}, word)
+            self.assertEqual([row[:2] for row in things(file)], [row[:2] for row in whole if row[0] in ("runway", "fence")][:2], word)
+        plan = runway(ta.Map())
+        plan.way([(-800, 500), (0, 500), (800, 500)], aeroway="runway", ref="09R/27L")
+        file = plan.write("nowhere.osm")
+        file.write_text(file.read_text(encoding="utf-8").replace('<node id="4" version="1" lat="53', '<node id="4" version="1" lat="253'), encoding="utf-8")
+        self.assertRegex(ta.run("airport", file, "-o", ta.fresh("nowhere"))[1], "a runway has nodes with coordinates that are not degrees.*mend these nodes")
+
+    def test_values_that_are_lists(self):
+        """One list makes lists of a whole column in GDAL."""
+        whole = ta.FOLDER / "lists.geojson"
+        gdal.VectorTranslate(str(whole), str(runway(ta.Map()).write("lists.osm")), layers=["lines"])
+        text = json.loads(whole.read_text(encoding="utf-8"))
+        for values, expected in (((12, [15]), (12, 15)), ((12.5, [9, 15.5]), (12.5, 15.5)), (("12 m", ["15 m"]), (12, 15)), (("12", [15]), (12, 15)), ((12, []), (12, 8)),
+                                 ((12, {"max": 3}), (12, 8)), (([[1]], "9"), (8, 9))):
+            features = [{"type": "Feature", "properties": {"building": "yes", "height": value}, "geometry": {"type": "Polygon", "coordinates": [[
+                [13.301 + x, 53.603], [13.302 + x, 53.603], [13.302 + x, 53.604], [13.301 + x, 53.603]]]}} for x, value in zip((0, 0.01), values)]
+            whole.write_text(json.dumps({**text, "features": [*text["features"], *features]}), encoding="utf-8")
+            found = [_features.properties_of(one, KNOWN)["height"] for one in _osm.read_extract(whole, KNOWN).features if one.kind == "building"]
+            self.assertEqual(tuple(found), expected, values)
 
     def test_what_is_drawn_twice(self):
         """Parts above one another are two; of what stands in one place the higher counts, and the other is counted as left out."""
@@ -268,6 +325,11 @@ class Runways(unittest.TestCase):
         a, b, c = [(-900, 0), (-500, 0)], [(-480, 0), (200, 0.5)], [(200, 0.5), (900, 0)]
         for pieces in ((a, b, c), (c, a[::-1], b), (b[::-1], c, a), (a[::-1], b[::-1], c[::-1])):
             self.assertEqual(self.runways(*((piece, ref) for piece in pieces))[0], [("09/27", 1800, 90, "45", 0, 0)], pieces)
+        # Pieces that are named by one end each
+        for refs in (("09", "27", "09"), ("09L", "27R", ""), ("9", "27", "09/27")):
+            found, _ = self.runways(*((piece, {"ref": ref} if ref else {}) for piece, ref in zip((a, b, c), refs)))
+            self.assertEqual([row[:3] for row in found], [("09L/27R" if "L" in refs[0] else "09/27", 1800, 90)], refs)
+        self.assertEqual(len(self.runways((a, {"ref": "09L"}), (b, {"ref": "27L"}))[0]), 2)
         # Parallel runways, and one that crosses, stay themselves; the last piece has no number.
         found, _ = self.runways((a, ref), (b, ref), (c, {}), ([(-900, 210), (900, 210)], {"ref": "09L/27R"}), ([(0, 700), (0, -700)], {"ref": "18/36"}))
         self.assertEqual(found, [("09/27", 1800, 90, "45", 0, 0), ("09L/27R", 1800, 90, None, 0, 0), ("18/36", 1400, 180, None, 0, 0)])
@@ -294,6 +356,12 @@ class Runways(unittest.TestCase):
     def test_what_is_no_runway(self):
         real = ([(-800, 0), (800, 0)], {"ref": "09/27"})
         other = [(-200, 550), (200, 550)]
+        for tags, reason in (({"access": "private"}, "private (access)"), ({"abandoned": "yes"}, "out of use"), ({"runway": "disused"}, "out of use"), ({"end_date": "1999"}, "ruins, or gone"),
+                             ({"disused__aeroway": "runway"}, "out of use"), ({"proposed__aeroway": "runway"}, "not built"), ({"operational_status": "closed"}, "out of use")):
+            self.assertEqual(self.runways(real, (other, {name.replace("__", ":"): word for name, word in tags.items()}))[1], [reason], tags)
+        for prefix in ("disused", "abandoned", "closed", "was", "razed", "construction"):
+            found, out = self.runways(real, (other, {"aeroway": "", f"{prefix}:aeroway": "runway"}))
+            self.assertEqual((len(found), len(out)), (1, 1), prefix)
         for tags, reason in (({"surface": "water"}, "a runway on water"), ({"runway": "closed"}, "out of use"), ({"disused": "yes"}, "out of use"),
                              ({"sport": "model_aerodrome"}, "of a model airfield"), ({"construction": "yes"}, "not built")):
             self.assertEqual(self.runways(real, (other, tags)), ([("09/27", 1600, 90, None, 0, 0)], [reason]), tags)
@@ -334,6 +402,8 @@ class Heights(unittest.TestCase):
                 ({"building": "yes", "height": "14", "min_height": "10 m"}, ("building", 14, 10, False)),
                 ({"building__part": "yes", "building__levels": "6", "building__min_level": "2"}, ("part", 18, 6, True)),
                 ({"building": "yes", "height": "5", "min_height": "9"}, ("building", 5, None, False)),
+                ({"building": "no", "building__part": "yes", "height": "5"}, ("part", 5, None, False)),
+                ({"building": "false", "man_made": "chimney", "height": "5"}, ("chimney", 5, None, False)),
                 ({"building": "roof", "height": "8"}, ("canopy", 8, 7.5, False)),
                 ({"building__part": "yes", "min_height": "40"}, ("part", 48, 40, True)),
                 ({"aeroway": "jet_bridge", "area": "yes"}, ("jet_bridge", 7, 4, True)),
@@ -370,7 +440,7 @@ class LeftOut(unittest.TestCase):
         """Each reason takes some of the buildings and obstacles."""
         plan, x = runway(ta.Map()), 0
         for tags in ({"building": "ruins"}, {"demolished__building": "yes"}, {"building": "yes", "end_date": "2001-05-01"},
-                     {"proposed__building": "yes"}, {"building": "yes", "start_date": "2999"}, {"building": "yes", "layer": "-4"}, {"building": "yes", "location": "underground"}, {"building": "no"},
+                     {"proposed__building": "yes"}, {"building": "yes", "start_date": "2999"}, {"building": "yes", "level": "-2;-1"}, {"building": "yes", "location": "underground"}, {"building": "no"},
                      {"building": "yes"}, {"building": "yes", "height": "tall"}):
             plan.area((x, 300), (x + 8, 310), **tags)
             x += 12
@@ -412,6 +482,45 @@ class LeftOut(unittest.TestCase):
         self.assertEqual(sorted(row["width"] for row in rows(folder) if row["kind"] == "runway"), [45, 45, 45, 45, 45, 61])
 
 
+    def test_storeys_and_layers(self):
+        """`layer` orders drawings and is not a height; `level` is a storey; `indoor` is in a building. What is said not to be a building is none."""
+        for tags, reason in (({"building": "terminal", "layer": "-1"}, ""), ({"building__part": "yes", "layer": "-2"}, ""), ({"man_made": "chimney", "layer": "-1"}, ""),
+                             ({"building": "terminal", "level": "-1;0;1"}, ""), ({"building": "yes", "level": "-1"}, "below ground"), ({"building": "yes", "level": "-3--1"}, "below ground"),
+                             ({"building": "yes", "layer": "-1", "location": "underground"}, "below ground"), ({"building": "yes", "indoor": "room", "level": "1"}, "indoors"),
+                             ({"building__part": "yes", "indoor": "area"}, "indoors"), ({"building": "train_station", "indoor": "yes"}, ""), ({"man_made": "tower", "indoor": "yes"}, "indoors"),
+                             ({"building": "yes", "indoor": "no"}, ""), *(({"building": word}, "no building") for word in ("no", "No", "false", "0", "none")),
+                             ({"building": "no", "height": "9"}, "no building"), ({"building__part": "no", "building": "yes"}, "")):
+            found = extract.Extract(KNOWN)
+            found.take({key.replace("__", ":"): value for key, value in tags.items()}, ogr.CreateGeometryFromWkt("POLYGON ((0 0, 1e-3 0, 1e-3 1e-3, 0 1e-3, 0 0))"))
+            self.assertEqual([one.reason for one in found.left], [reason] if reason else [], tags)
+            self.assertEqual(len(found.done().features), not reason, tags)
+
+    def test_roofs(self):
+        """On the roof, or on the higher part below; from the ground by `min_height`; beside all roofs; also on a slope, on which the building stands on its lowest ground."""
+        plan = runway(ta.Map())
+        plan.area((0, 300), (40, 340), building="yes", height="20")
+        plan.area((20, 300), (40, 340), building__part="yes", height="30")
+        plan.area((200, 300), (240, 340), building="yes")
+        for x, tags in ((10, {"man_made": "mast", "height": "6"}), (30, {"man_made": "antenna", "height": "6"}), (5, {"man_made": "mast", "height": "26", "min_height": "20"}),
+                        (220, {"man_made": "mast"}), (-0.5, {"man_made": "mast", "height": "5"}), (100, {"man_made": "mast", "height": "5"}), (12, {"natural": "tree", "height": "4"})):
+            plan.point(x, 320, location="rooftop" if x == 30 else "roof", name=str(x), **tags)
+        plan.area((2, 302), (8, 308), power="generator", height="2", location="roof", name="solar")
+        x = np.arange(-3200, 3201, 50.0)
+        dem = ta.write_heights("roofs.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
+        for words, slope in (((), 0.0), (("--heights", dem), 0.04)):
+            folder, said = ta.made("roofs", plan.write("roofs.osm"), *words)
+            found = {row["name"]: (row.get("min_height", 0.0), row["top"]) for row in rows(folder) if "name" in row}
+            for name, low, high, at in (("10", 20, 26, 10), ("30", 30, 36, 10), ("5", 20, 26, 0), ("220", 8, 28, 20), ("-0.5", 20, 25, -0.5), ("solar", 20, 22, 5)):
+                np.testing.assert_allclose(found.pop(name), (low - slope * at, high - slope * at), atol=0.05, err_msg=name)
+            self.assertEqual(found, {})
+            self.assertIn("1 on a roof that the scene lacks", said)
+            self.assertIn("1 a plant on a roof", said)
+        mast = next(triangles for name, _, triangles in airport_pages.parts_of(al.load_scene(folder / "airport.lidarscene.json")) if name == "Mast")
+        near = mast[np.abs(mast[:, :, 0].mean(axis=1) - 10) < 1]
+        self.assertAlmostEqual(np.ptp(near[:, :, 2]), 6, delta=0.05)
+        self.assertTrue({row["min_height_from"] for row in rows(folder) if row.get("name") == "220"} == {"the roof, assumed"})
+
+
 class Holes(unittest.TestCase):
     def test_is_near(self):
         """Holes are free, with their margin: a moat around an airport, a clearing in a wood."""
@@ -449,7 +558,7 @@ class Surveyed(unittest.TestCase):
             {"id": "B", "name": "HOUSE", "type": "BUILDING", "extent": '<aixm:verticalExtent uom="M">12</aixm:verticalExtent>', "place": surface},
             {"id": "C", "name": "TOP", "type": "STACK", "extent": "", "place": point.format("urn:ogc:def:crs:OGC:1.3:CRS84", "13.305 53.603", "FT", 400)},
             {"id": "D", "name": "NOWHERE", "type": "POLE", "extent": "", "place": ""})
-        found, out = obstacles.read_obstacles(file, KNOWN)
+        found, out = obstacles.read_obstacles([file], KNOWN)
         self.assertEqual([(one.kind, one.id, _gdal.form_of(one.shape)) for one in found], [("mast", "A", "point"), ("building", "B", "area"), ("chimney", "C", "point")])
         self.assertEqual([(one.kind, one.name, one.reason) for one in out], [("pole", "NOWHERE", obstacles.NO_PLACE)])
         self.assertEqual([found[i].shape.GetPoint_2D() for i in (0, 2)], [(13.302, 53.603), (13.305, 53.603)])
@@ -470,7 +579,7 @@ class Surveyed(unittest.TestCase):
 
         def read(text):
             file.write_text(text, encoding="utf-8")
-            found, out = obstacles.read_obstacles(file, KNOWN)
+            found, out = obstacles.read_obstacles([file], KNOWN)
             return [(one.kind, *(round(c, 6) for c in one.shape.GetPoint_2D()), round(float(one.tags["height"]), 3), one.tags["height_source"]) for one in found], \
                 [one.reason for one in out]
 
@@ -484,11 +593,191 @@ class Surveyed(unittest.TestCase):
                 ("longitude,latitude,height\n13.302,53.603,45\n", [("obstacle", 13.302, 53.603, 45, said + ", m assumed")]),
                 ("OAS,LATDEC,LONDEC,TYPE,QUANTITY,AGL,AMSL\n01-1,53.603,13.302,BLDG-TWR,1,00120,00240\n", [("tower", 13.302, 53.603, 36.576, said)])):
             self.assertEqual(read(text), (expected, []), text)
+        twice = "longitude,latitude,height,unit,kind\n13.302,53.603,100,ft,mast\n13.302,53.603,30.48,m,mast\n13.302,53.603,31,m,mast\n"
+        self.assertEqual(read(twice)[1], [aixm.TWICE])
+        kinds = "longitude,latitude,height,unit,kind\n" + "".join(f"13.3{n},53.603,45,{unit},{kind}\n" for n, (unit, kind) in enumerate((
+            ("m", "mast"), ("furlong", "mast"), ("m", "BALLOON"), ("m", "Natural high point"), ("m", "URBAN"), ("km", "mast"))))
+        self.assertEqual(read(kinds)[1], ["height in 'furlong', expected m or ft", "a balloon", "a part of the ground", "a group of obstacles without places", "height above 1,000 m"])
+        with self.assertWarnsRegex(RuntimeWarning, "obstacles.csv: none of its obstacles can stand in the scene: 1 a wire"):
+            read("longitude,latitude,height,kind\n13.302,53.603,45,wire\n")
         self.assertEqual(read("longitude,latitude,height,unit,kind\n13.302,53.603,,m,mast\n13.302,,45,m,mast\n13.302,99,45,m,mast\n\n")[1], [obstacles.NO_PLACE] * 3)
-        for name, text, words in (("obstacles.csv", "a,b,c\n1,2,3\n", "expected the columns longitude"), ("obstacles.csv", "longitude,latitude,height,unit\n1,2,3,furlong\n", "row 2: the unit is 'furlong'"),
+        for name, text, words in (("obstacles.csv", "a,b,c\n1,2,3\n", "expected the columns longitude"), 
                                   ("obstacles.csv", 'longitude,latitude,height\n1,2,3\n"1,2,3\n1,2,3\n', "obstacles.csv: line 3: is not CSV"),
                                   ("obstacles.csv", 'longitude,latitude,height\n"1,2,3\n"1",2,3\n', "obstacles.csv: line 2: is not CSV"),
                                   ("bad.xml", "<a>", "cannot be read as AIXM 5.1"), ("other.xml", "<a/>", "holds no VerticalStructure"), ("x.txt", "", "is not a file of obstacles by its name")):
             (ta.FOLDER / name).write_text(text)
             with self.assertRaisesRegex(RuntimeError, words):
-                obstacles.read_obstacles(ta.FOLDER / name, KNOWN)
+                obstacles.read_obstacles([ta.FOLDER / name], KNOWN)
+
+
+def pos(lat=53.603, lon=13.302):
+    return f'<aixm:horizontalProjection_location><aixm:ElevatedPoint srsName="urn:ogc:def:crs:EPSG::4326"><gml:pos>{lat} {lon}</gml:pos>{{}}</aixm:ElevatedPoint></aixm:horizontalProjection_location>'
+
+
+def surface(ring):
+    return (f'<aixm:horizontalProjection_surfaceExtent><aixm:ElevatedSurface srsName="urn:ogc:def:crs:EPSG::4326"><gml:patches><gml:PolygonPatch><gml:exterior>{ring}'
+            '</gml:exterior></gml:PolygonPatch></gml:patches>{}</aixm:ElevatedSurface></aixm:horizontalProjection_surfaceExtent>')
+
+
+SQUARE = "53.603 13.302 53.603 13.3026 53.6033 13.3026 53.6033 13.302"
+LINEAR = f"<gml:LinearRing><gml:posList>{SQUARE} 53.603 13.302</gml:posList></gml:LinearRing>"
+LINE = ('<aixm:horizontalProjection_linearExtent><aixm:ElevatedCurve srsName="urn:ogc:def:crs:EPSG::4326"><gml:segments><gml:GeodesicString><gml:posList>53.603 13.302 53.604 13.303'
+        '</gml:posList></gml:GeodesicString></gml:segments>{}</aixm:ElevatedCurve></aixm:horizontalProjection_linearExtent>')
+LAMP = '<aixm:lighting><aixm:LightElement><aixm:type>{}</aixm:type></aixm:LightElement></aixm:lighting>'
+PERIOD = "<gml:validTime><gml:TimePeriod><gml:beginPosition>{}</gml:beginPosition><gml:endPosition>{}</gml:endPosition></gml:TimePeriod></gml:validTime>"
+
+
+def part(height="45", place=pos(), elevation="", kind="", uom="M", light="", more=""):
+    """A VerticalStructurePart. @param elevation of the top, m"""
+    place = place.format(f'<aixm:elevation uom="M">{elevation}</aixm:elevation>' if elevation else "")
+    return ("<aixm:part><aixm:VerticalStructurePart>" + (f'<aixm:verticalExtent uom="{uom}">{height}</aixm:verticalExtent>' if height else "") + (f"<aixm:type>{kind}</aixm:type>" if kind else "")
+            + more + place + (LAMP.format(light) if light else "") + "</aixm:VerticalStructurePart></aixm:part>")
+
+
+def piece(parts=part(), kind="TOWER", interpretation="BASELINE", sequence="1", correction="0", valid=("2019-01-01", ""), more="", name="x"):
+    """A time slice. @param valid first and last day, or XML of gml:validTime"""
+    valid = valid if isinstance(valid, str) else PERIOD.format(*valid)
+    return (f"<aixm:timeSlice><aixm:VerticalStructureTimeSlice>{valid}<aixm:interpretation>{interpretation}</aixm:interpretation><aixm:sequenceNumber>{sequence}</aixm:sequenceNumber>"
+            f"<aixm:correctionNumber>{correction}</aixm:correctionNumber><aixm:name>{name}</aixm:name>" + (f"<aixm:type>{kind}</aixm:type>" if kind else "")
+            + more + parts + "</aixm:VerticalStructureTimeSlice></aixm:timeSlice>")
+
+
+class Published(unittest.TestCase):
+    """What States publish in AIXM 5.1 (eTOD)."""
+
+    def read(self, *structures, more=()):
+        """What stands: kind, form, least height and height (m); and the reasons of what does not. @param structures time slices @param more structures of a second file"""
+        ta.FOLDER.mkdir(parents=True, exist_ok=True)
+        files = []
+        for name, some in (("one.xml", structures), ("two.xml", more)):
+            members = (f'<message:hasMember><aixm:VerticalStructure gml:id="{number}">{one}</aixm:VerticalStructure></message:hasMember>' for number, one in enumerate(some))
+            (ta.FOLDER / name).write_text(AIXM.format("".join(members)), encoding="utf-8")
+            files += [ta.FOLDER / name] * bool(some)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found, out = obstacles.read_obstacles(files, KNOWN)
+        return [(one.kind, _gdal.form_of(one.shape), float(one.tags.get("min_height", 0)), float(one.tags.get("height", 0))) for one in found], [one.reason for one in out]
+
+    def test_kinds(self):
+        """The type of a part, else of the structure, and never of a light; areas and lines of plants; what is not modelled."""
+        group, no_places = "<aixm:group>YES</aixm:group>", [obstacles.GROUP]
+        area, line = part(place=surface(LINEAR)), part(place=LINE)
+        for slices, expected in (
+                (piece(part(light="OTHER:FLASHING"), "ANTENNA"), "mast point"), (piece(part(place=surface(LINEAR), light="ICAO_MIA"), "BUILDING"), "building area"),
+                (piece(part(kind="OTHER:CHIMNEY"), "BUILDING"), "chimney point"), (piece(part(kind="OTHER"), "CRANE"), "crane point"), (piece(part(), "", name="WATER TOWER"), "tower point"),
+                (piece(part(), "", name="Balloon hill"), "obstacle point"), (piece(area, "VEGETATION"), "wood area"), (piece(area, "VEGETATION", more=group), "wood area"),
+                (piece(line, "TREE"), "tree line"), (piece(part(), "TREE", more=group), "tree point"), (piece(line, "FENCE"), "fence line"), (piece(line, "DAM"), "wall line"),
+                (piece(line, "BUILDING"), "wall line"), (piece(line, "OTHER:X"), "wall line"), (piece(area, "COOLING_TOWER"), "tower area"), (piece(area, "BRIDGE"), "skybridge area"),
+                (piece(part(), "WINDMILL_FARMS"), "turbine point"), (piece(part(), "ANTENNA", more=group), "mast point"), (piece(part(), "NATURAL_GAS_SYSTEM"), "obstacle point"),
+                (piece(part(), "OTHER:WINDSOCK"), "pole point"), (piece(area, "POWER_PLANT"), "building area"), (piece(area, "POWER_PLANT", more=group), no_places),
+                (piece(area, "WINDMILL_FARMS", more=group), no_places), (piece(area, "WINDMILL_FARMS"), no_places), (piece(line, "WINDMILL_FARMS"), no_places), (piece(area, "URBAN"), no_places),
+                (piece(part(), "URBAN"), no_places), (piece(line, "POLE"), [obstacles.NO_WALL]), (piece(line, "BRIDGE"), [obstacles.NO_WALL]), (piece(line, "CATENARY"), ["a wire"]),
+                (piece(part(), "NATURAL_HIGHPOINT"), ["a part of the ground"]), (piece(part("900"), "TETHERED_BALLOON"), ["a balloon"]),
+                (piece(part(more="<aixm:mobile>YES</aixm:mobile>"), "CRANE"), [aixm.MOBILE]), (piece(part(more="<aixm:mobile>NO</aixm:mobile>"), "CRANE"), "crane point")):
+            found, out = self.read(slices)
+            self.assertEqual(" ".join(found[0][:2]) if found else out, expected, slices)
+            self.assertEqual(len(found) + len(out), 1)
+
+    def test_lengths(self):
+        for slices, expected in (
+                (part("100", uom="FT"), 30.48), (part("45", uom="m"), 45), (part("4500", uom="CM"), 45), (part("1,200", uom="FT"), 365.76), (part("45", uom="FL"), "height in 'fl', expected m or ft"),
+                (part("5000"), "height above 1,000 m"), (part("45", elevation="GND"), 45), (part("0"), obstacles.NO_PLACE), (part("-5"), obstacles.NO_PLACE), (part("tall"), obstacles.NO_PLACE),
+                (part(""), obstacles.NO_PLACE), (part("", elevation="-3"), 0), (part("45", place=""), obstacles.NO_PLACE), ("", obstacles.NO_PLACE),
+                (part("45").replace(' uom="M"', ""), 45), (part("45", elevation="9").replace('elevation uom="M"', 'elevation uom="FL"'), 45)):
+            found, out = self.read(piece(slices))
+            self.assertEqual(found[0][3] if found else out[0], expected, slices)
+
+    def test_extents_of_points(self):
+        """A radius, or a length and a width, of buildings and trees are their own; that of a mast is of its wires."""
+        def extent(**lengths):
+            return "".join(f'<aixm:{name} uom="M">{length}</aixm:{name}>' for name, length in lengths.items())
+
+        for kind, lengths, area, width in (("STADIUM", {"radius": 90}, math.pi * 90**2, None), ("BUILDING", {"length": 23, "width": 12}, 276, None), ("TREE", {"radius": 4}, 0, "8.000"),
+                                           ("VEGETATION", {"radius": 200}, math.pi * 200**2, None), ("STACK", {"radius": 5}, math.pi * 25, None), ("TOWER", {"radius": 60}, 0, None),
+                                           ("ANTENNA", {"radius": 60}, 0, None), ("WINDMILL", {"radius": 50}, 0, None), ("POLE", {"radius": 9.3}, 0, None), ("BUILDING", {"length": 23}, 0, None)):
+            ta.FOLDER.mkdir(parents=True, exist_ok=True)
+            (ta.FOLDER / "extent.xml").write_text(AIXM.format(f'<aixm:VerticalStructure gml:id="a">{piece(kind=kind, more=extent(**lengths))}</aixm:VerticalStructure>'))
+            (one,), out = obstacles.read_obstacles([ta.FOLDER / "extent.xml"], KNOWN)
+            shape = one.shape.Clone()
+            shape.Transform(to_local())
+            self.assertAlmostEqual(shape.Area(), area, delta=0.01 * area, msg=(kind, lengths))
+            self.assertEqual((one.tags.get("width"), out), (width, []), (kind, lengths))
+            self.assertEqual("a disc of its extent" in one.tags["height_source"], area > 0)
+        group = piece(kind="ANTENNA", more=extent(radius=60) + "<aixm:group>YES</aixm:group>")
+        self.assertEqual(self.read(group), ([], [obstacles.GROUP]))
+
+    def test_time_slices(self):
+        """Heights of 1, 2 and 3 m in slices, and which of them is the state of today."""
+        def at(height, interpretation="BASELINE", sequence="1", correction="0", begin="2019-01-01", end="", **more):
+            return piece(part(str(height)) if height else "", interpretation=interpretation, sequence=sequence, correction=correction, valid=more.pop("valid", (begin, end)), **more)
+
+        lifetime = "<aixm:featureLifetime><gml:TimePeriod><gml:beginPosition>2009-01-01</gml:beginPosition><gml:endPosition>{}</gml:endPosition></gml:TimePeriod></aixm:featureLifetime>"
+        instant = "<gml:validTime><gml:TimeInstant><gml:timePosition>2019-01-01T00:00:00Z</gml:timePosition></gml:TimeInstant></gml:validTime>"
+        nil = '<gml:validTime xsi:nil="true" nilReason="inapplicable" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"/>'
+        now, later, delta, temporary = "2019-01-01", "2999-01-01", {"interpretation": "PERMDELTA"}, {"interpretation": "TEMPDELTA"}
+        for slices, expected in (
+                ((at(1), at(2, correction="1")), 2), ((at(2, correction="1"), at(1)), 2), ((at(1, correction="9"), at(2, correction="10")), 2),
+                ((at(1), at(2, sequence="2")), 2), ((at(1), at(2, sequence="2", begin=later)), 1), ((at(1, end="2019-06-01"), at(2, sequence="2", begin="2019-06-01")), 2),
+                ((at(1, end="2019-06-01T12:00:00Z"),), aixm.ENDED), ((at(1, end=later),), 1), ((at(1, begin=later),), aixm.FUTURE), ((at(1, end="01.06.2019"),), aixm.NO_DATE),
+                ((at(1, end="2019-06-01"), at(2, sequence="2", begin=later)), aixm.FUTURE), ((at(1, valid=instant, interpretation="SNAPSHOT", sequence="", correction=""),), 1),
+                ((at(1), at(2, valid=nil, correction="1")), aixm.ENDED), ((at(1, valid=""),), 1), ((at(1, more=lifetime.format("2019-06-01")),), aixm.ENDED),
+                ((at(1, more=lifetime.format(later)),), 1), ((at(1), at(2, **delta, sequence="2", valid=instant)), 2), ((at(2, **delta, sequence="2"), at(1)), 2),
+                ((at(1), at(2, **delta, sequence="2", begin=later)), 1), ((at(1), at(2, **delta, sequence="2"), at(3, **delta, sequence="2", correction="1")), 3),
+                ((at(1, **delta, sequence="1"), at(2, sequence="2"), at(3, **delta, sequence="2")), 2), ((at(1), at(0, **delta, sequence="2", more=lifetime.format("2019-06-01"))), aixm.ENDED),
+                ((at(1), at(0, **delta, sequence="2", kind="CRANE")), 1), ((at(1), at(2, **temporary, end=later)), 2), ((at(1), at(2, **temporary, end="2019-06-01")), 1),
+                ((at(2, **delta),), 2), ((at(0, **delta),), aixm.NO_BASELINE), ((at(2, **temporary, end="2019-06-01"),), aixm.ENDED), ((), obstacles.NO_PLACE)):
+            found, out = self.read("".join(slices))
+            self.assertEqual((found[0][3], out) if found else out, (expected, []) if found else [expected], slices)
+
+    def test_structures_in_several_files(self):
+        """Slices of one structure belong together; what is equal stands once."""
+        uuid = '<gml:identifier codeSpace="urn:uuid:">{}0c</gml:identifier>'.format
+        update = uuid("a") + piece(part("2"), interpretation="PERMDELTA", sequence="2")
+        for one, more, expected in ((uuid("a") + piece(), update, ([2], [])), (update, uuid("a") + piece(), ([2], [])), (uuid("a") + piece(), uuid("b") + piece(part("2")), ([45, 2], [])),
+                                    (uuid("a") + piece(), uuid("a") + piece(), ([45], [aixm.TWICE])), (piece(), piece(name="y"), ([45], [aixm.TWICE])),
+                                    (piece(), piece(part("147.638", uom="FT")), ([45], [aixm.TWICE])), (piece(), piece(part(place=pos(53.604))), ([45, 45], []))):
+            found, out = self.read(one, more=(more,))
+            self.assertEqual(([row[3] for row in found], out), expected, more)
+
+    def test_parts_on_parts(self):
+        """The height of a part is above its bottom, as of an antenna on a roof; two turbines stand on the ground."""
+        roof = part("20", surface(LINEAR), "70", "BUILDING")
+        for parts, expected in ((roof + part("6", pos(53.6031, 13.3022), "76", "ANTENNA"), [(0, 20), (20, 26)]), (part("6", pos(53.6031, 13.3022), "", "ANTENNA") + roof, [(20, 26), (0, 20)]),
+                                (roof + part("30", pos(53.6031, 13.3022), "80", "TOWER"), [(0, 20), (0, 30)]), (roof + part("6", pos(53.61), "76", "ANTENNA"), [(0, 20), (0, 6)]),
+                                (part("120", pos(), "170") + part("15", pos(), "185") + part("2", pos(), "187"), [(0, 120), (120, 135), (135, 137)]),
+                                (part("120", pos(), "170") + part("120", pos(53.61), "190"), [(0, 120), (0, 120)]), (roof + part("", pos(53.6031, 13.3022), "76"), [(0, 20), (0, 0)])):
+            found, out = self.read(piece(parts))
+            self.assertEqual(([row[2:] for row in found], out), (expected, []), parts)
+
+    def test_geometries(self):
+        """Rings that are open, in pieces, in three dimensions; those that cannot be read are left out alone."""
+        def ring(*posLists, segment="GeodesicString", more=""):
+            return "<gml:Ring>" + "".join(f"<gml:curveMember><gml:Curve><gml:segments><gml:{segment}>{more}<gml:posList>{one}</gml:posList></gml:{segment}></gml:segments></gml:Curve></gml:curveMember>"
+                                          for one in posLists) + "</gml:Ring>"
+
+        circle = '<gml:Ring><gml:curveMember><gml:Curve><gml:segments><gml:CircleByCenterPoint numArc="1"><gml:pos>53.603 13.302</gml:pos><gml:radius uom="M">90</gml:radius></gml:CircleByCenterPoint></gml:segments></gml:Curve></gml:curveMember></gml:Ring>'
+        sound, metres = piece(part("9", pos(53.61))), 33.4 * 39.7
+        words = SQUARE.split()
+        for one, expected in (
+                (LINEAR, metres), (ring(f"{SQUARE} 53.603 13.302"), metres), (ring(f"{SQUARE} 53.6030009 13.3020001"), metres), (ring(SQUARE), metres), (LINEAR.replace(" 53.603 13.302<", "<"), metres),
+                (ring(f"{SQUARE} 53.6030009 13.302").replace("Geodesic", "LineStringX").replace("LineStringXString", "LineStringSegment"), metres), (circle, math.pi * 90**2),
+                (ring(" ".join(words[:4]), " ".join(words[2:]) + " 53.603 13.302"), metres), (ring(" ".join(words[:4]), "53.60300001 13.3026 " + " ".join(words[4:]) + " 53.603 13.302"), metres),
+                (ring(" ".join(f"{word} 100" if number % 2 else word for number, word in enumerate(words))).replace("<gml:posList", '<gml:posList srsDimension="3"'), metres),
+                ("<gml:LinearRing>" + "".join(f"<gml:pos>{a} {b}</gml:pos>" for a, b in zip(words[::2], words[1::2])) + "</gml:LinearRing>", metres),
+                (ring("53.603 13.302 53.6033 13.3026 53.603 13.3026 53.6033 13.302"), metres / 2), (ring("53.603 13.302 53.6033 13.3026"), aixm.UNREADABLE), (ring("53.603 13.302 53.6033"), aixm.UNREADABLE),
+                (ring("53.603 13.302 53.6033 13.3026 53.603 13.302"), extract.NO_EXTENT), (ring(SQUARE.replace("53.6033", "north")), aixm.UNREADABLE), (ring(SQUARE.replace("53.6033", "nan")), (aixm.UNREADABLE, extract.NO_DEGREES)),
+                (ring(SQUARE.replace("53.6033", "253.6")), extract.NO_DEGREES), ('<gml:Ring><gml:curveMember xlink:href="#c" xmlns:xlink="http://www.w3.org/1999/xlink"/></gml:Ring>', obstacles.NO_PLACE)):
+            structures = piece(part("7", surface(one)), "BUILDING"), sound
+            found, out = self.read(*structures)
+            self.assertIn(("tower", "point", 0, 9), found, one)
+            if isinstance(expected, float):
+                self.assertEqual(out, [], one)
+                shape = obstacles.read_obstacles([ta.FOLDER / "one.xml"], KNOWN)[0][0].shape
+                shape.Transform(to_local())
+                self.assertAlmostEqual(shape.Area(), expected, delta=0.02 * expected, msg=one)
+            else:
+                self.assertEqual((len(found), len(out)), (1, 1), one)
+                self.assertIn(out[0], (expected,) if isinstance(expected, str) else expected, one)
+        for place, reason in ((pos(99), extract.NO_DEGREES), (pos("north"), aixm.UNREADABLE), (pos(53.603, ""), aixm.UNREADABLE),
+                              (pos().replace("::4326", "::99999999"), "the unknown coordinate system 'urn:ogc:def:crs:EPSG::99999999'"), (LINE.replace("53.604 13.303", "53.603 13.302"), extract.NO_EXTENT)):
+            self.assertEqual(self.read(piece(part(place=place)), sound), ([("tower", "point", 0, 9)], [reason]), place)

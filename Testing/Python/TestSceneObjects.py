@@ -239,6 +239,17 @@ class SceneObjects(unittest.TestCase):
                     self.assertAlmostEqual(area[material == 1].sum(), share * (60 + 32) * 4, places=8)
                     self.assertAlmostEqual(area[material == 3].sum(), 2 * 140, places=8)
 
+    def test_heights_that_are_no_numbers(self):
+        """One true, false or list among numbers does not spoil the others; a list of one value is this value."""
+        for wrong in (True, False, [3, 4], [], {"a": 1}, "true", None, [[5]]):
+            for right in (7, 7.5, "7.5 m"):
+                features = [("Polygon", [self.SQUARE], {"h": h, "w": False}) for h in (right, wrong)]
+                scene = self.plan("odd.geojson", *features, features="separate", height_attribute="h", height=3, name="House")
+                self.assertEqual([st.corners(b)[:, :, 2].max() for b in scene.blocks], [float(str(right).split()[0]), 3], (right, wrong))
+                self.assertIn("House: 1 features have no usable height attribute", " ".join(scene.strings("scene_report")))
+        scene = self.plan("odd.geojson", *(("Polygon", [self.SQUARE], {"h": h}) for h in (7, [9])), features="separate", height_attribute="h", height=3)
+        self.assertEqual([st.corners(b)[:, :, 2].max() for b in scene.blocks], [7, 9])
+
     def test_lines_become_strips(self):
         scene = self.plan("road.geojson", ("LineString", [[0, 0], [100, 0], [100, 50]], {"w": "8 m"}), flat=True,
                           base=0.5, width_attribute="w", width=3)

@@ -491,6 +491,34 @@ class Plans(unittest.TestCase):
         file.write_text('{"features": [{"properties": {"kind": "runway"}, "geometry": {"type": "MultiLineString", "coordinates": []}}]}')
         self.assertRaisesRegex(al.Error, "features.0.: the coordinates of a MultiLineString", siting.read_runways, file, origin)
 
+    def test_runways_that_may_be_one_or_none(self):
+        """Two of one name, or on one line, give a warning; closed and private ones are not in use."""
+        origin, file = (53.6, 13.3, 0.0), self.folder / "pieces.geojson"
+
+        def read(*rows):
+            features = [{"properties": {"aeroway": "runway", **tags}, "geometry": {"type": "LineString", "coordinates": siting.to_geodetic(
+                [(*end, 0) for end in ends], origin)[:, :2].tolist()}} for ends, tags in rows]
+            file.write_text(json.dumps({"features": features}))
+            with warnings.catch_warnings(record=True) as heard:
+                warnings.simplefilter("always")
+                found = siting.read_runways(file, origin)
+            return [one.name for one in found], "".join(str(one.message) for one in heard)
+
+        west, east, north, far = [(-900, 0), (-100, 0)], [(100, 1), (900, 1)], [(-900, 300), (900, 300)], [(9000, 0), (9900, 0)]
+        for one, other, said in (((west, {"ref": "09/27"}), (east, {"ref": "09/27"}), "pieces.geojson: 09/27 and 09/27 lie on one line, 200 m apart; .* up to 150 m apart"),
+                                 ((west, {"ref": "09"}), (east, {"ref": "27"}), "lie on one line"), ((west, {}), (east, {}), "lie on one line"),
+                                 ((west, {"ref": "09/27"}), (west[::-1], {"ref": "09/27"}), "lie on one line, 0 m apart"), ((west, {"ref": "09"}), (north, {"ref": "27"}), "09 and 27 have one name"),
+                                 ((west, {"ref": "9L"}), (far, {"ref": "27R"}), "9L and 27R have one name"), ((west, {"name": "Grass"}), (north, {"name": "grass"}), "have one name"),
+                                 ((west, {"ref": "09L"}), (north, {"ref": "09R"}), ""), ((west, {}), (north, {}), ""), ((west, {"ref": "09/27"}), (far, {"ref": "08/26"}), ""),
+                                 ((west, {"ref": "09/27"}), ([(-500, -700), (-500, 700)], {"ref": "18/36"}), "")):
+            names, heard = read(one, other)
+            self.assertEqual(len(names), 2)
+            self.assertRegex(heard, f"^{said}$" if not said else said, (one, other))
+        for tags in ({"disused": "yes"}, {"disused": True}, {"abandoned": "yes"}, {"runway": "closed"}, {"access": "private"}, {"disused:aeroway": "runway"}, {"abandoned:aeroway": "runway", "kind": "runway"},
+                     {"end_date": "1999"}, {"start_date": "2999-01-01"}, {"status": "closed"}, {"other_tags": '"access"=>"private"'}):
+            self.assertEqual(read((west, {"ref": "09/27"}), (north, {"ref": "09/27", **tags})), (["09/27"], ""), tags)
+        self.assertRaisesRegex(al.Error, "holds no runway in use .left out: private", read, (west, {"access": "private"}))
+
     def test_runways_that_gdal_writes(self):
         """GDAL's own GeoJSON of OpenStreetMap has most tags in one text. Names and widths are those that `avianlidar airport` takes."""
         ways = ({"name": "Main, \"old\"", "ref": "09/27", "width": "45"}, {"ref": "18L/36R", "width": "30 m"}, {"ref": "18R/36L", "width": "148 ft"},

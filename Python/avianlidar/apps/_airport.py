@@ -34,13 +34,17 @@ class Kept:
     def __init__(self, folder: pathlib.Path):
         self.folder, self.record = folder, folder / RECORD
         self.edited: List[str] = []
-        self.made = load_json(self.record) if self.record.exists() else {}
+        try:
+            self.made = load_json(self.record) if self.record.exists() else {}
+        except Error:
+            self.made = None
         if not isinstance(self.made, dict) or not all(isinstance(sums, (str, list)) for sums in self.made.values()):
-            raise Error(f"{self.record}: expected checksums by the names of files; "
-                        "remove this file to have all files made again")
+            raise Error(f"{self.record}: expected checksums by the names of files; choose another folder, or empty "
+                        "this one to have all files made again")
         strange = [name for name in WHAT if (folder / name).exists() and name not in self.made]
         if strange:
-            raise Error(f"{folder}: {strange[0]} exists and was not made by this command; choose another folder")
+            raise Error(f"{folder}: {strange[0]} exists and was not made by this command, as {RECORD} has no checksum of "
+                        "it; choose another folder, or empty this one to have all files made again")
 
     def put(self, name: str, make: Callable[[], bytes]) -> pathlib.Path:
         """Makes a file unless a user has edited the file, and returns its path."""
@@ -77,10 +81,15 @@ def _checked_features(file: pathlib.Path, kinds: Sequence[str]) -> List[Dict[str
         row = feature["properties"]
         if row.get("kind") not in kinds:
             raise Error(f"{file}: kind is {str(row.get('kind'))!r}, expected one of {', '.join(kinds)}")
-        for name in ("height", "top", "width"):
-            if name in row and (not isinstance(row[name], (int, float)) or not 0.0 < row[name] <= 1e4):
-                raise Error(f"{file}: features[{number}] ({row['kind']} {row.get('id', '')}): {name} is "
-                            f"{row[name]!r}, expected metres above 0")
+        what = f"{file}: features[{number}] ({row['kind']} {row.get('id', '')})"
+        for name in ("height", "top", "width", "min_height"):
+            value = row.get(name, 1.0)
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
+                    (name == "min_height" and value == 0.0) or 0.0 < value <= 1e4):
+                raise Error(f"{what}: {name} is {repr(value)[:40]}, expected metres above 0")
+        height = row.get("height", row.get("top"))
+        if height is not None and row.get("min_height", 0.0) >= height:
+            raise Error(f"{what}: min_height is {row['min_height']:g} m, expected less than the height, {height:g} m")
     return features
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from osgeo import osr
 
 from .._pipeline import Error
-from ._extract import COAST, CUT, sea, without_parts
+from ._extract import COAST, CUT, on_roofs, sea, without_parts
 from ._features import Feature, form_of, length_of, properties_of
-from ._gdal import box_of, degrees, geometry, moved, valid
+from ._gdal import box_of, corners_of, degrees, geometry, moved, valid
 from ._ground import height_at, posts_of, read_heights
 from ._json import packaged
 from ._maps import coordinate_system
@@ -22,6 +22,7 @@ from ._osm import read_extract
 from ._runways import choose_runways
 
 LOWEST, HIGHEST = -500.0, 9000.0  # heights of level ground above the sea, m
+LONGEST_NAME = 80  # characters
 FLAT_SPACING = 100.0  # spacing of a ground without a terrain, which follows the curvature of the Earth, m
 
 
@@ -61,12 +62,12 @@ class AirportMap:
         progress("extract", 1, 1)
         self.runways, aerodrome = choose_runways(self.extract, found, self.known, icao, bounds)
         self.obstacles = [pathlib.Path(file) for file in obstacles]
-        for file in self.obstacles:
-            surveyed, left = read_obstacles(file, self.known)
-            self.features += surveyed
-            self.left += left
+        surveyed, left = read_obstacles(self.obstacles, self.known)
+        self.features += surveyed
+        self.left += left
         self.tags = aerodrome.tags if aerodrome else {}
-        self.name = self.tags.get("name") or self.tags.get("icao") or self.extract.name.split(".")[0]
+        name = self.tags.get("name") or self.tags.get("icao") or self.extract.name.split(".")[0]
+        self.name = name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}..."  # pictures have this title
         self._place(bounds)
         coasts = [one for one in self.features if one.kind == COAST]
         self.features = [one for one in self.features if one.kind != COAST]
@@ -168,9 +169,19 @@ class AirportMap:
         self.left += [Feature(kind, {}, count=count, reason="outside the scene") for kind, count in outside.items()]
         found, drawn = without_parts(found, self.known)
         self.left += [one.left("drawn by its parts") for one in drawn]
-        if any(one.kind == "runway" and CUT in one.tags for one in found):
+        def height(x: float, y: float) -> float:
+            return height_at(*ground[:3], self.to_local.TransformPoint(x, y)[:2])
+
+        found, left = on_roofs(found, self.known, lambda area, point: (
+            min(height(*corner) for corner in corners_of(area).tolist()) - height(point.GetX(), point.GetY())))
+        self.left += left
+        broken = {one.tags[CUT] for one in found if one.kind == "runway" and CUT in one.tags}
+        if CUT in broken:
             warnings.warn(f"{self.extract}: a runway is {CUT}, and ends there: cut the extract wider", RuntimeWarning,
                           stacklevel=3)
+        if broken - {CUT}:
+            warnings.warn(f"{self.extract}: a runway has nodes with {', '.join(broken - {CUT})}, and is drawn without "
+                          "them: mend these nodes, which assumed.csv lists", RuntimeWarning, stacklevel=3)
         return found
 
     def mapped(self, chosen: Sequence[Feature]) -> List[Tuple[Dict[str, Any], Any]]:

@@ -124,7 +124,7 @@ def _counts_by_kind(found: AirportScene) -> str:
             lines.append(f"  {kind or 'others'}: {there[kind] + sum(out.values()):,} read, {there[kind]:,} in the "
                          f"scene; left out: {reasons_of_kind}")
     named = [f"{name} ({count:,})" for name, count in found.map.unknown.most_common(7) if name != "others"]
-    cut = collections.Counter(one.kind for one in found.chosen if CUT in one.tags)
+    cut = collections.Counter(one.kind for one in found.chosen if one.tags.get(CUT) == CUT)
     lists = {f"all {outside}": away, "among those of unknown kind": named[:6],
              f"{CUT}, and shorter than they are": [f"{count:,} {kind}" for kind, count in cut.items()]}
     lines += [f"  {words}: {', '.join(some)}" for words, some in lists.items() if some]

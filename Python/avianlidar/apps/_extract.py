@@ -4,24 +4,59 @@ from __future__ import annotations
 
 import collections
 import dataclasses
-import datetime
 import functools
 import re
-from typing import Any, Counter, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Counter, Dict, List, Optional, Set, Tuple
 
 import numpy as np
 from osgeo import ogr
 
-from ._features import HEIGHTS, Feature, Table, form_of, height_name, length_of, levels_of, properties_of
+from ._features import HEIGHTS, ON_ROOF, Feature, Reasons, Table, form_of, height_name, length_of, properties_of
 from ._gdal import corners_of, geometry, is_closed, parts_of, solid, union, valid
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
 NO_DEGREES, NO_EXTENT = "coordinates that are not degrees (longitude, latitude)", "no extent"
 STRAY = "a hole outside its outline"
+NEAR_ROOF = 3e-5  # greatest distance from the outline of a roof that something stands on, degrees
+NO_ROOF = "on a roof that the scene lacks"
+EARTH, LONGEST_SIDE = 6.371e6, 50_000.0  # the Earth's radius, and the longest side that a feature may have, m
+TOO_LONG = f"a side of more than {LONGEST_SIDE / 1000.0:g} km"
+NOT = {"no", "false", "0", "none"}  # values by which a tag says that a feature is not of its kind
 
 
-def _has_extent(shape, corners: np.ndarray, form: str) -> bool:
+def are_degrees(corners: np.ndarray) -> bool:
+    """Whether corners (n x 2) are longitudes and latitudes."""
+    return bool(np.all(np.abs(corners) <= (360.0, 90.0)))  # also False for nan
+
+
+def _proper(shape, form: str):
+    """Points and lines without empty parts and without lines of fewer than two corners, which GEOS refuses; areas as
+    they are. May be empty."""
+    if form == "area":
+        return shape
+    parts = [part for part in parts_of(shape) if part.GetPointCount() >= (2 if form == "line" else 1)]
+    if len(parts) == 1:
+        return parts[0].Clone()
+    kept = ogr.Geometry(ogr.wkbMultiLineString if form == "line" else ogr.wkbMultiPoint)
+    for part in parts:
+        kept.AddGeometry(part)
+    return kept
+
+
+def _longest_side(shape) -> float:
+    """The longest side of lines and areas, m, to some per cent."""
+    longest = 0.0
+    for part in parts_of(shape):
+        for line in [part.GetGeometryRef(i) for i in range(part.GetGeometryCount())] or [part]:
+            ends = np.radians(np.array(line.GetPoints() or [(0.0, 0.0)])[:, :2])
+            ways = np.diff(ends, axis=0)
+            ways[:, 0] = np.arcsin(np.sin(ways[:, 0] / 2.0)) * 2.0 * np.cos(ends[1:, 1])  # also over 180 degrees
+            longest = max(longest, float(np.hypot(*ways.T).max(initial=0.0)) * EARTH)
+    return longest
+
+
+def has_extent(shape, corners: np.ndarray, form: str) -> bool:
     """False for lines and areas whose nodes are missing or coincide, and for areas that enclose nothing."""
     if form == "point":
         return True
@@ -54,7 +89,8 @@ class Extract:
         kinds = known["kinds"].items()
         self.kinds = {form: Table((kind, tags) for kind, rule in kinds if form in rule["from"] for tags in rule["tags"])
                       for form in ("point", "line", "area")}
-        self.reasons = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
+        self.reasons = Reasons(known)
+        self.nouns = {*known["main"], "building:part"}
         self.lines, self.model_tags = (Table(("", tags) for tags in known[name]) for name in ("lines", "models"))
         self.features: List[Feature] = []  # after `done`
         self.aerodromes: List[Feature] = []
@@ -65,8 +101,8 @@ class Extract:
         self.unknown: Counter[str] = collections.Counter()  # by tag
         # With ranks: the greater of two alike features counts.
         self.seen: Dict[Any, List[Tuple[int, Feature]]] = collections.defaultdict(list)
-        self.today = datetime.date.today().isoformat()
         self.cut: Set[str] = set()  # ways of which nodes are missing
+        self.wrong: Set[Tuple[str, str]] = set()  # "way" or "relation", and id: objects with nodes at no place
 
     def leave(self, feature: Feature, reason: str) -> None:
         self.left.append(feature.left(reason))
@@ -78,7 +114,9 @@ class Extract:
         if part:
             self.cut.add(part[1])
         if gone:
-            self.leave(Feature(gone[1].lower(), {"id": gone[2]}), CUT if gone[3] or "missing" in words else "no nodes")
+            reason = CUT if gone[3] or "missing" in words else "no nodes"
+            kind = gone[1].lower()
+            self.leave(Feature(kind, {"id": gone[2]}), NO_DEGREES if (kind, gone[2]) in self.wrong else reason)
         elif words.startswith("Non closed ring detected"):
             self.leave(Feature("relation", {}), "unclosed")
 
@@ -104,6 +142,7 @@ class Extract:
             # a relation of outlines and parts
             areas = [solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]
             shape, form = union(areas), "area"
+        shape = _proper(shape, form) if form else shape
         one = Feature("", tags, shape)
         corners = corners_of(shape) if form else np.empty((0, 2))
         if not len(corners):
@@ -115,9 +154,19 @@ class Extract:
                 self._do_not_know(tags)
             return
         closed, use = form == "area" or is_closed(shape), ""
-        kinds = self._kinds(tags, form, closed)
-        if not np.all(np.abs(corners) <= (360.0, 90.0)):  # also False for nan
-            self.leave(Feature(next(iter(kinds), ("",))[0], tags), NO_DEGREES)
+        said = {name: word for name, word in tags.items() if name not in self.nouns or word.lower() not in NOT}
+        kinds = self._kinds(said, form, closed)
+        if {kind for kind, _ in kinds} - {"obstacle"}:
+            tags = said
+            one = Feature("", tags, shape)
+        else:
+            kinds = self._kinds(tags, form, closed)
+        is_coast = tags.get("natural") == COAST
+        wrong = "" if are_degrees(corners) else NO_DEGREES
+        if not wrong and form != "point" and not is_coast and _longest_side(shape) > LONGEST_SIDE:
+            wrong = TOO_LONG
+        if wrong:
+            self.leave(Feature(next(iter(kinds), ("",))[0], tags), wrong)
             return
         if self.model_tags.find(tags) is not None:
             self.models.append(one)
@@ -129,33 +178,26 @@ class Extract:
             if not outline.IsEmpty():
                 use = "aerodrome"
                 self.aerodromes.append(Feature("", tags, outline))
-        if tags.get("natural") == COAST and form != "point":
-            self._keep(Feature(COAST, tags, shape), form, corners)
+        if is_coast and form != "point":
+            shape = solid(shape) if form == "area" else shape
+            if has_extent(shape, corners, form):
+                self._keep(Feature(COAST, tags, shape), form, corners)
+            else:
+                self.leave(Feature(COAST, tags), NO_EXTENT)
             return
         if not kinds:
             self._leave_unknown(one, form, use)
-        reason = self._reason(tags) if kinds else None
+        reason = self.reasons.find(tags) if kinds else None
         for kind, taken in kinds:
             one = Feature(kind, tags, shape)
             if not reason and taken == "area":
                 one.shape = solid(shape, functools.partial(self.leave, one, STRAY))
             elif taken != form:
-                one.shape = ogr.ForceToMultiLineString(shape)
-            if reason or not _has_extent(one.shape, corners, taken):
-                self.leave(one, reason or (CUT if tags.get("osm_way_id") in self.cut else NO_EXTENT))
+                one.shape = _proper(ogr.ForceToMultiLineString(shape), "line")
+            if reason or not has_extent(one.shape, corners, taken):
+                self.leave(one, reason or self._broken(tags) or NO_EXTENT)
                 continue
             self._keep(one, taken, corners)
-
-    def _reason(self, tags: Dict[str, str]) -> Optional[str]:
-        """Why a feature of a known kind stands nowhere, by its tags and dates."""
-        for name, reason in (("start_date", "not built"), ("end_date", "ruins, or gone")):
-            date = re.match(r"\d{4}(?:-\d\d){0,2}$", tags.get(name, ""))
-            today = self.today[:len(date[0])] if date else ""
-            if date and (date[0] > today if name == "start_date" else date[0] < today):
-                return reason
-        underground = tags.get("building:levels") == "0" and levels_of(tags.get("building:levels:underground"))
-        below = underground and tags.keys().isdisjoint((*HEIGHTS, "roof:levels"))
-        return self.reasons.find(tags) or ("below ground" if below else None)
 
     def _leave_unknown(self, one: Feature, form: str, use: str) -> None:
         """What no rule takes: what is gone or is not there yet, what is not closed, points of what has an outline, all
@@ -168,13 +210,19 @@ class Extract:
         if was:
             self.leave(one, lifecycle[next(iter(gone.values()))[0]])
         elif "height" in self.known["kinds"].get(one.kind, ()):
-            is_cut = one.tags.get("osm_way_id") in self.cut
-            reason = "a point without an outline" if form == "point" else CUT if is_cut else "unclosed"
-            self.leave(one, self._reason(one.tags) or reason)
+            reason = "a point without an outline" if form == "point" else self._broken(one.tags) or "unclosed"
+            self.leave(one, self.reasons.find(one.tags) or reason)
         elif use:
             self.used[use] += 1
         else:
             self._do_not_know(one.tags)
+
+    def _broken(self, tags: Dict[str, str]) -> str:
+        """Why nodes of a line or an area are missing, or empty."""
+        way = tags.get("osm_way_id")
+        if (("way", way) if way else ("relation", tags.get("osm_id"))) in self.wrong:
+            return NO_DEGREES
+        return CUT if way in self.cut else ""
 
     def _do_not_know(self, tags: Dict[str, str]) -> None:
         name = next((name for name in self.known["main"] if name in tags), None)
@@ -212,11 +260,12 @@ class Extract:
     def done(self) -> Extract:
         features = [one for alike in self.seen.values() for _, one in alike]
         for one in features:
-            is_cut = one.tags.get("osm_way_id") in self.cut
-            if is_cut and form_of(one.shape) == "area":
-                self.leave(one, CUT)
+            form = form_of(one.shape)
+            broken = self._broken(one.tags) if form != "point" else ""
+            if broken and form == "area":
+                self.leave(one, broken)
             else:
-                self.features.append(dataclasses.replace(one, tags={**one.tags, **({CUT: "yes"} if is_cut else {})}))
+                self.features.append(dataclasses.replace(one, tags={**one.tags, **({CUT: broken} if broken else {})}))
         return self
 
 
@@ -242,6 +291,36 @@ def without_parts(features: List[Feature], known: Dict[str, Any]) -> Tuple[List[
             one.shape = rest
         kept.append(one)
     return kept, drawn
+
+
+def on_roofs(features: List[Feature], known: Dict[str, Any],
+             base: Callable[[Any, Any], float]) -> Tuple[List[Feature], List[Feature]]:
+    """What stands on roofs by its tags gets the height of the highest roof below it, unless a least height is given.
+    @param base height of the lowest ground below an area above the ground at a point, m
+    @return features, and features that are left out, with the reason"""
+    table = Table(("roof", tags) for tags in known["on_roofs"])
+    above = [one for one in features if "height" in known["kinds"][one.kind] and table.find(one.tags)
+             and "min_height" not in properties_of(one, known)]
+    standing = {id(one) for one in above}
+    hosts = [one for one in features if form_of(one.shape) == "area" and id(one) not in standing
+             and known["kinds"][one.kind]["class"] in known["roofs"] and "height" in known["kinds"][one.kind]]
+    boxes = np.array([host.shape.GetEnvelope() for host in hosts]).reshape(-1, 4)
+    boxes += (-NEAR_ROOF, NEAR_ROOF, -NEAR_ROOF, NEAR_ROOF)
+    left: List[Feature] = []
+    for one in above:
+        place = one.shape.PointOnSurface() if form_of(one.shape) == "area" else one.shape.Centroid()
+        west, east, south, north = place.GetEnvelope()
+        near = (boxes[:, 0] <= west) & (boxes[:, 1] >= east) & (boxes[:, 2] <= south) & (boxes[:, 3] >= north)
+        roofs = [(row["height"] + base(host.shape, place), row["height_from"]) for host, row in (
+            (hosts[i], properties_of(hosts[i], known)) for i in np.flatnonzero(near)
+            if valid(hosts[i].shape).Distance(place) <= NEAR_ROOF)]
+        if not roofs or "medium" in known["kinds"][one.kind]:
+            left.append(one.left(NO_ROOF if not roofs else "a plant on a roof"))
+            continue
+        roof, source = max(roofs)
+        one.tags = {**one.tags, ON_ROOF: f"{max(roof, 0.0):.3f}", f"{ON_ROOF}_from": f"the roof, {source}"}
+    gone = {id(one) for one in above if ON_ROOF not in one.tags}
+    return [one for one in features if id(one) not in gone], left
 
 
 def sea(features: List[Feature], box) -> List[Any]:

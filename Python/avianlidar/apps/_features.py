@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import collections
+import contextlib
 import dataclasses
+import datetime
 import json
 import re
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
@@ -16,6 +18,7 @@ TALLEST, HIGHEST = 1000.0, 200.0  # greatest plausible height, m, and number of 
 LONGEST_LENGTH = 100  # characters
 THOUSANDS = "[, \u00a0\u202f'\u2019]"  # separators between groups of three digits
 NUMBER = rf"\d{{1,3}}(?:{THOUSANDS}\d{{3}})+(?:\.\d+)?|\d+(?:[.,]\d+)?"
+DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")  # numbers that GDAL reads
 UNIT = (r"mm|cm|km|millimet\w+|centimet\w+|kilomet\w+|met(?:er|re)s?|mtrs?|mts?|m|м|метр\w*|米|"
         r"ft|foot|feet|['′]|yd|yards?|stor[ei]\w*|floors?|levels?")
 LENGTH = re.compile(rf"(?:~|<|>|≈|\+|c\.|ca\.?|circa|approx\.?|about|max\.?|up to)?\s*({NUMBER})\s*"
@@ -28,9 +31,11 @@ HEIGHTS = ("height", "building:height", "est_height", "height_m", "render_height
 LEVELS = ("building:levels", "num_floors", "levels", "floors")
 MIN_HEIGHTS = ("min_height", "building:min_height", "render_min_height")
 MIN_LEVELS = ("building:min_level", "min_level", "min_floor")
+ON_ROOF = "on_roof"  # a tag of this program: height of the roof below, m
 # texts that give no number: -1 in Microsoft's footprints, no storey above the ground, objects that begin at the ground
 NO_HEIGHT, NO_LEVEL = re.compile(r"\s*(?:-1(?:\.0*)?)?\s*"), re.compile(r"\s*0*\s*")
 NO_MIN_HEIGHT = re.compile(r"\s*(?:-\d+(?:\.\d+)?|0*\.?0*)\s*m?\s*")
+BELOW = re.compile(r"-\d+(?:\.\d+)?(?:\s*[;,-]\s*-\d+(?:\.\d+)?)*")  # storeys (`level`) that are all below the ground
 WIDTHS = ("width", "width_m", "diameter", "diameter_crown")
 TAG = re.compile(r'"((?:[^"\\]|\\.)*)"=>"((?:[^"\\]|\\.)*)"')  # a tag in hstore
 # Properties that hold several tags, as GDAL, QGIS, osmtogeojson (overpass turbo) and Overture write them
@@ -44,9 +49,19 @@ def tags_of(properties: Mapping[str, Any]) -> Dict[str, str]:
     for name, value in properties.items():
         inner = _tags_in(value) if name in (*TAGS, "names") else {name: value}
         inner = {"name": inner.get("primary")} if name == "names" else inner
-        tags.update((key, str(word)) for key, word in inner.items()
-                    if word is not None and word != "" and not isinstance(word, (dict, list)))
+        texts = ((key, _text_of(word)) for key, word in inner.items())
+        tags.update((key, text) for key, text in texts if text)
     return tags
+
+
+def _text_of(word: Any) -> str:
+    """The text of a tag: the words of a list, also of a list in JSON, with semicolons; empty for objects and nulls."""
+    if isinstance(word, str) and word.startswith("["):
+        with contextlib.suppress(ValueError, RecursionError):
+            word = json.loads(word)
+    if isinstance(word, list):
+        return "" if any(isinstance(one, (dict, list)) for one in word) else ";".join(map(_text_of, word))
+    return "" if word is None or isinstance(word, dict) else str(word)
 
 
 def _tags_in(value: Any) -> Dict[str, Any]:
@@ -161,6 +176,29 @@ class Table:
         return min((row[:2] for row in rows if fits(tags, row[2])), default=(0, None))[1]
 
 
+class Reasons:
+    """Why features stand nowhere, or are not in use, by their tags and dates."""
+
+    def __init__(self, known: Dict[str, Any]):
+        self.table = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
+        self.lifecycle = known["lifecycle"]
+        self.today = datetime.date.today().isoformat()
+
+    def find(self, tags: Dict[str, str]) -> Optional[str]:
+        """The reason, or None. A runway that is one no longer, or not yet, by a second tag is not in use."""
+        for name, reason in (("start_date", "not built"), ("end_date", "ruins, or gone")):
+            date = re.match(r"\d{4}(?:-\d\d){0,2}$", tags.get(name, ""))
+            today = self.today[:len(date[0])] if date else ""
+            if date and (date[0] > today if name == "start_date" else date[0] < today):
+                return reason
+        underground = tags.get("building:levels") == "0" and levels_of(tags.get("building:levels:underground"))
+        below = underground and tags.keys().isdisjoint((*HEIGHTS, "roof:levels"))
+        is_below = bool(below or BELOW.fullmatch(tags.get("level", "")))
+        ends = [prefix for name, word in tags.items() for prefix, _, rest in [name.partition(":")]
+                if rest == "aeroway" and word == "runway" and prefix in self.lifecycle]
+        return self.table.find(tags) or ("below ground" if is_below else self.lifecycle[ends[0]] if ends else None)
+
+
 def height_name(rule: Dict[str, Any]) -> str:
     """The property with the height: `height` for buildings, whose heights siting varies and near which no lidar stands;
     `top` for plants, fences and masts."""
@@ -226,10 +264,16 @@ def properties_of(feature: Feature, known: Dict[str, Any]) -> Dict[str, Any]:
         if under is not None and "assumed" in source and (source.startswith("assumed") or under >= height):
             height, source = under + rule.get("thickness", height), f"{source}, above {why}"
         strange = _not_understood(tags, MIN_HEIGHTS + MIN_LEVELS, NO_MIN_HEIGHT)
+        if ON_ROOF in tags and under is None:
+            under, why = float(tags[ON_ROOF]), tags.get(f"{ON_ROOF}_from", "")
+            height, source = under + height, f"{source}, above the roof"
         if under is None and "thickness" in rule and not tags.get("min_height", "").startswith("0"):
             under, why = height - rule["thickness"], "assumed"
         elif strange and not (under and under < height):
             under, why = 0.0, strange
+        if under is not None and under >= height:
+            tag = why.partition(",")[0]
+            under, why = 0.0, f"assumed: {tag} is {tags.get(tag, '')[:40]!r}, above the height"
         properties.update({name: round(float(height), 3), f"{name}_from": source})
         if under is not None and 0.0 <= under < height:
             properties.update(min_height=round(float(under), 3) or None, min_height_from=why)

@@ -2,6 +2,7 @@
 """Runways and outlines in GeoJSON files, and conversion between degrees and metres of a scene."""
 from __future__ import annotations
 
+import itertools
 import json
 import pathlib
 import re
@@ -15,9 +16,11 @@ from .._cloud import Cloud
 from .._coverage import places_of
 from .._pipeline import Error, callers_level, update
 from .._properties import set_properties
-from ._features import Table, length_of, tags_of, width_of
+from ._features import Reasons, length_of, tags_of, width_of
 from ._json import load_json, naming, packaged
-from ._regions import Runway
+from ._regions import Runway, designators
+
+NEAR_LINE = 3000.0  # greatest gap between runways on one line that may be one runway, m
 
 
 def _transformed(points, origin: Sequence[float], source: str, target: str) -> np.ndarray:
@@ -96,14 +99,18 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     """The runways of a GeoJSON file: lines whose property or tag `kind` or `aeroway` is "runway", with `name` or `ref`
     and `width`, in service, on land. @param origin of the scene: latitude, longitude (deg), height (m)"""
     path, known = pathlib.Path(file), packaged("airport.json")
-    out_of_use = Table((reason, tags) for reason, rows in known["left_out"].items() for tags in rows)
+    reasons, left = Reasons(known), []
     found: List[Runway] = []
     strange: List[str] = []
     for number, feature in enumerate(features_of(path)):
         with naming(f"{path}: features[{number}]"):
             tags, shape = tags_of(feature["properties"]), feature["geometry"]
             is_runway = "runway" in (tags.get("kind"), tags.get("aeroway", "").lower())
-            if not is_runway or shape.get("type") not in ("LineString", "MultiLineString") or out_of_use.find(tags):
+            if not is_runway or shape.get("type") not in ("LineString", "MultiLineString"):
+                continue
+            reason = reasons.find(tags)
+            if reason:
+                left.append(reason)
                 continue
             width, source = width_of(tags, "runway", known)
             for (x0, y0), (x1, y1) in (ends.tolist() for ends in _lines(shape, origin)):
@@ -119,11 +126,31 @@ def read_runways(file, origin: Sequence[float]) -> List[Runway]:
                 strange += [f"{name}: {source.partition(': ')[2]}"] if ": " in source else []
                 found.append(Runway(name, (x0, y0), (x1, y1), width, (away[0] or 0.0, away[1] or 0.0)))
     if not found:
-        raise Error(f"{path}: holds no runway, expected lines whose property kind or aeroway is runway; "
-                    "`avianlidar airport` makes such a file from any extract of a map")
+        raise Error(f"{path}: holds no runway{f' in use (left out: {left[0]})' if left else ''}, expected lines whose "
+                    "property kind or aeroway is runway; `avianlidar airport` makes such a file from any extract of a "
+                    "map")
     if strange:
         warnings.warn(f"{path}: {'; '.join(strange)}, expected metres above 0; the runway counts as "
                       f"{known['kinds']['runway']['width']:g} m wide", RuntimeWarning, stacklevel=callers_level())
+    doubtful = _doubtful(found, known)
+    if doubtful:
+        warnings.warn(f"{path}: {'; '.join(doubtful[:4])}; expected one line for each runway: `avianlidar airport` "
+                      f"joins pieces that are up to {known['runway_gap']:g} m apart", RuntimeWarning,
+                      stacklevel=callers_level())
+    return found
+
+
+def _doubtful(runways: Sequence[Runway], known: Dict[str, Any]) -> List[str]:
+    """Pairs of runways that may be pieces of one, in words: of one name, or on one line."""
+    found = []
+    for one, other in itertools.combinations(runways, 2):
+        short, long = sorted((one, other), key=lambda runway: runway.axis()[1])
+        beside, gap = long.beside(short)
+        is_line = beside <= known["runway_offset"] and gap <= NEAR_LINE
+        is_named = not any(re.fullmatch(r"runway \d+", runway.name) for runway in (one, other))
+        if is_line or (is_named and designators(one.name) & designators(other.name)):
+            found.append(f"{one.name[:40]} and {other.name[:40]} "
+                         + (f"lie on one line, {gap:.0f} m apart" if is_line else "have one name"))
     return found
 
 

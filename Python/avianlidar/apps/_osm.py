@@ -10,14 +10,14 @@ import pathlib
 import re
 import tempfile
 import xml.parsers.expat
-from typing import Any, Dict, List, Tuple
+from typing import Any, Callable, Collection, Dict, List, Set, Tuple
 from xml.etree import ElementTree
 
-from osgeo import gdal, osr
+from osgeo import gdal, ogr, osr
 
 from .._pipeline import Error
-from ._extract import Extract
-from ._features import Feature, tags_of
+from ._extract import NO_DEGREES, Extract
+from ._features import DECIMAL, Feature, tags_of
 from ._gdal import degrees, expect_file, open_file, plain, quiet
 from ._json import naming
 
@@ -45,19 +45,44 @@ def _memberless(file: pathlib.Path) -> int:
                    for one in re.finditer(rb"<relation [^>]*[^/]>(.*?)</relation>", data, re.DOTALL))
 
 
-def _check_nodes(source: pathlib.Path) -> None:
-    """Raises an error for a node of OpenStreetMap's XML whose coordinates GDAL would read as others, such as 0."""
-    def start(tag: str, own: Dict[str, str]) -> None:
-        for name, most in (("lat", 90.0), ("lon", 180.0)) if tag == "node" else ():
-            with contextlib.suppress(ValueError):
-                if abs(float(own.get(name, ""))) <= most:
-                    continue
-            raise Error(f"node {own.get('id')}: {name} is {own.get(name, '')[:40]!r}, expected degrees as in 53.602")
-
+def _each(source: pathlib.Path, hear: Callable[[str, Dict[str, str]], Any]) -> None:
+    """Calls a function with each element of OpenStreetMap's XML: its name, and its attributes."""
     parser = xml.parsers.expat.ParserCreate()
-    parser.StartElementHandler = start
+    parser.StartElementHandler = hear
     with open(source, "rb") as stream, contextlib.suppress(xml.parsers.expat.ExpatError):  # GDAL names the latter
         parser.ParseFile(stream)
+
+
+def _nodes_nowhere(source: pathlib.Path) -> Dict[str, str]:
+    """Nodes of OpenStreetMap's XML whose coordinates are not degrees, and which GDAL would read as others, such as 0:
+    by their ids, what is wrong."""
+    found: Dict[str, str] = {}
+
+    def hear(tag: str, own: Dict[str, str]) -> None:
+        for name, most in (("lat", 90.0), ("lon", 180.0)) if tag == "node" else ():
+            text = own.get(name, "").strip()
+            if DECIMAL.fullmatch(text) and abs(float(text)) <= most:
+                continue
+            found.setdefault(own.get("id", ""), f"{name} is {own.get(name, '')[:40]!r}")
+
+    _each(source, hear)
+    return found
+
+
+def _of_nodes(source: pathlib.Path, nodes: Dict[str, str]) -> Set[Tuple[str, str]]:
+    """The ways with some nodes, and the relations with such ways."""
+    found: Set[Tuple[str, str]] = set()
+    at = ("", "")
+
+    def hear(tag: str, own: Dict[str, str]) -> None:
+        nonlocal at
+        if tag in ("way", "relation"):
+            at = tag, own.get("id", "")
+        elif (tag == "nd" and own.get("ref") in nodes) or (tag == "member" and ("way", own.get("ref")) in found):
+            found.add(at)
+
+    _each(source, hear)
+    return found
 
 
 def _check_system(file: pathlib.Path) -> None:
@@ -72,8 +97,9 @@ def _check_system(file: pathlib.Path) -> None:
         raise Error(f"{file}: the coordinate system is {name[:80]!r}, expected a system of EPSG, or degrees") from None
 
 
-def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
-    """Writes a copy of XML of OpenStreetMap with nodes, then ways, then relations, each object once, by id."""
+def _in_order(file: pathlib.Path, out: pathlib.Path, without: Collection[str] = ()) -> pathlib.Path:
+    """Writes a copy of XML of OpenStreetMap with nodes, then ways, then relations, each object once, by id.
+    @param without ids of nodes that are left out"""
     found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
     places: Dict[Tuple[str, str], str] = {}
 
@@ -101,6 +127,8 @@ def _in_order(file: pathlib.Path, out: pathlib.Path) -> pathlib.Path:
         root.clear()
     with open(out, "wb") as stream:
         stream.write(b'<?xml version="1.0" encoding="UTF-8"?><osm version="0.6">\n')
+        for number in without:
+            found["node"].pop(int(number), None)
         for things in found.values():
             stream.writelines(things[number][1] for number in sorted(things))
         stream.write(b"</osm>\n")
@@ -120,8 +148,13 @@ def _expect_map(file: pathlib.Path) -> None:
                     "export it again as .osm, .osm.pbf, .geojson or .gpkg")
 
 
+LISTS = (ogr.OFTIntegerList, ogr.OFTInteger64List, ogr.OFTRealList, ogr.OFTStringList)
+
+
 def _tags(feature, names: List[str]) -> Dict[str, str]:
-    said = tags_of({name: feature.GetFieldAsString(number) for number, name in enumerate(names)
+    """Tags of a feature. GDAL makes lists of all values of a column in which one is a list."""
+    said = tags_of({name: (feature.GetField(number) if feature.GetFieldType(number) in LISTS
+                           else feature.GetFieldAsString(number)) for number, name in enumerate(names)
                     if feature.IsFieldSetAndNotNull(number)})
     return {name: value if value.isprintable() else CONTROLS.sub("", value) for name, value in said.items()}
 
@@ -142,15 +175,18 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     found, source = Extract(known), file
     with contextlib.ExitStack() as stack:
         if file.suffix.lower() == ".osm":
-            if _needs_order(file):
-                folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-                try:
-                    with naming("its nodes, ways and relations"):
-                        source = _in_order(file, folder / "in_order.osm")
-                except ElementTree.ParseError as error:
-                    raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
-            with naming(str(file)):
-                _check_nodes(source)
+            folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+            try:
+                with naming(f"{file}: its nodes, ways and relations"):
+                    source = _in_order(file, folder / "in_order.osm") if _needs_order(file) else file
+                    nowhere = _nodes_nowhere(source)
+                    if nowhere:
+                        found.wrong = _of_nodes(source, nowhere)
+                        source = _in_order(source, folder / "placed.osm", nowhere)
+            except ElementTree.ParseError as error:
+                raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
+            found.left += [Feature("node", {"id": number, "name": words}, reason=NO_DEGREES)
+                           for number, words in nowhere.items()]
             found.left += [Feature("relation", {}, reason="no ways")] * _memberless(source)
         elif driver == "GeoJSON":
             _check_system(file)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -51,6 +51,13 @@ class Runway:
         axis, _ = self.axis()
         return np.array([axis, (axis[1], -axis[0])])
 
+    def beside(self, other: Runway) -> Tuple[float, float]:
+        """How far another runway's ends lie beside this runway's line, and the gap between both along this line, m."""
+        axis, length = self.axis()
+        off = np.subtract([other.start, other.end], self.start)
+        at = off @ axis
+        return float(np.abs(off @ (-axis[1], axis[0])).max()), float(max(at.min() - length, -at.max(), 0.0))
+
     def ends(self) -> List[Tuple[np.ndarray, np.ndarray]]:
         """The start and the end, each with the unit vector away from the runway."""
         axis, _ = self.axis()
@@ -70,6 +77,16 @@ def rounded(position: Sequence[float]) -> List[str]:
 def wind(way: np.ndarray) -> str:
     """The direction (east, north) as one of eight winds."""
     return WINDS[round(math.atan2(way[0], way[1]) / (math.pi / 4)) % 8]
+
+
+def designators(name: str) -> Set[str]:
+    """The designators in a runway's name, as "09L" in "9L/27R", and those of the other ends. The words of a name
+    without designators."""
+    found: Set[str] = set()
+    for number, letter in re.findall(r"(?<![0-9A-Z])([0-9]{1,2})([A-Z]?)(?![0-9A-Z])", name.upper()):
+        other = {"L": "R", "R": "L"}.get(letter, letter)
+        found |= {f"{int(number):02d}{letter}", f"{(int(number) + 17) % 36 + 1:02d}{other}"}
+    return found or {word.strip().upper() for word in re.split(r"[/;-]", name) if word.strip()}
 
 
 def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:

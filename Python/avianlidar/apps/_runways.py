@@ -13,10 +13,11 @@ from osgeo import osr
 from scipy.sparse.csgraph import connected_components
 
 from .._pipeline import Error
-from ._extract import Extract
+from ._extract import NO_DEGREES, Extract
 from ._features import Feature, form_of
 from ._gdal import box_of, degrees, geometry, moved, parts_of
 from ._maps import coordinate_system
+from ._regions import designators
 
 NEAR_AERODROME = 3000.0  # greatest distance of a runway from its aerodrome, m
 ONE_AIRPORT = 6000.0  # greatest distance between runways of one airport in an extract without aerodromes, m
@@ -41,8 +42,8 @@ def _axis_of(hull) -> Tuple[np.ndarray, float]:
     return ends @ axis, float(sides.min())
 
 
-def _designators(tags: Dict[str, str]) -> Set[str]:
-    """The designators "09L" and "27R" in "9L/27R"."""
+def _ends(tags: Dict[str, str]) -> Set[str]:
+    """The designators in `ref`, as "09L" for "9L"."""
     words = [word.strip().upper() for word in re.split(r"[/;-]", tags.get("ref", ""))]
     return {word.zfill(3 if word[-1].isalpha() else 2) for word in words if word}
 
@@ -59,7 +60,7 @@ class _Piece:
 
     def goes_on(self, other: _Piece, known: Dict[str, Any]) -> bool:
         """Whether two ways are one runway: no contradicting numbers, one line, and at most a gap of the map."""
-        mine, theirs = _designators(self.tags), _designators(other.tags)
+        mine, theirs = designators(self.tags.get("ref", "")), designators(other.tags.get("ref", ""))
         if mine and theirs and not mine & theirs:
             return False
         long, short = (self, other) if self.length >= other.length else (other, self)
@@ -81,6 +82,9 @@ def _joined(pieces: List[_Piece], known: Dict[str, Any]) -> List[Tuple[Feature, 
     for numbers in members:
         group = sorted([pieces[i] for i in numbers], key=lambda one: one.is_displaced)  # the longest way first
         tags = {name: value for one in reversed(group) for name, value in one.tags.items() if name != "runway"}
+        ends_named = {end for one in group for end in _ends(one.tags)}
+        if len(_ends(tags)) == 1 and ends_named == designators(tags["ref"]):  # pieces are named by one end each
+            tags["ref"] = "/".join(sorted(ends_named))
         points, along, start = np.concatenate([one.points for one in group]), group[0].along, group[0].points[0]
         number = re.match(r"(\d{1,2})[LCR]?\s*/", tags.get("ref", ""))
         if number and math.cos(math.atan2(along[0], along[1]) - math.radians(10.0 * int(number[1]))) < 0.0:
@@ -118,20 +122,41 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     lines, areas = ([one for one in extract.features if one.kind == "runway" and form_of(one.shape) == form]
                     for form in ("line", "area"))
     if not lines + areas:
-        lost = sum(left.kind == "way" for left in extract.left)
+        lost = sum(left.kind == "way" and left.reason != NO_DEGREES for left in extract.left)
         nodes = f"; {lost} ways lack their nodes; `osmium sort` puts the nodes before the ways" if lost else ""
         other = next((f"; left out: {left.reason}" for left in extract.left if left.kind == "runway"), nodes)
+        nowhere = [f"node {left.id}: {left.name}" for left in extract.left if left.kind == "node"]
+        if nowhere:
+            other += f"; {nowhere[0]}, expected degrees as in 53.602"
+            other += f", as of {len(nowhere) - 1} other nodes" if nowhere[1:] else ""
         if lost and file.suffix.lower() == ".pbf":
             other += ("; if the ways contain the coordinates of nodes, `osmium cat FILE -o FILE.osm` writes a suitable "
                       "extract")
         raise Error(f"{file}: holds no runway, expected lines or areas with the tag aeroway=runway{other}")
-    middle = (lines + areas)[0].shape.Centroid()
+    middles = np.array([one.shape.Centroid().GetPoint_2D() for one in lines + areas])
+    middle = (lines + areas)[int(np.argmin(np.abs(middles - np.median(middles, axis=0)).sum(axis=1)))].shape.Centroid()
     local = coordinate_system((middle.GetY(), middle.GetX(), 0.0))
     to_local = osr.CoordinateTransformation(degrees(), local)
     to_degrees = osr.CoordinateTransformation(local, degrees())
 
+    def is_near(one: Feature) -> bool:
+        """Whether a feature is near enough for the local system, which does not reach the far side of the Earth."""
+        try:
+            moved(one.shape, to_local)
+        except RuntimeError:
+            return False
+        return True
+
     def points_of(shape) -> np.ndarray:
         return np.array(moved(shape, to_local).GetPoints())[:, :2]
+
+    far = [one for one in lines + areas if not is_near(one)]
+    for one in far:
+        extract.leave(one, "far from other runways")
+    extract.features[:] = [one for one in extract.features if not any(one is other for other in far)]
+    lines, areas = ([one for one in group if not any(one is other for other in far)] for group in (lines, areas))
+    extract.aerodromes, extract.models, extract.thresholds = (
+        [one for one in group if is_near(one)] for group in (extract.aerodromes, extract.models, extract.thresholds))
 
     pieces = []
     for one in lines:
@@ -150,7 +175,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
             pieces.append(area)
             extract.features.remove(one)
     models = [moved(one.shape, to_local) for one in extract.models]
-    thresholds = [points_of(one.shape)[0] for one in extract.thresholds]
+    thresholds = [points_of(part)[0] for one in extract.thresholds for part in parts_of(one.shape)]
     runways: List[Tuple[Feature, Any]] = []  # features with their lines, m
     for one, ends, by_pieces in _joined(pieces, known):
         line = geometry("LineString", ends)
