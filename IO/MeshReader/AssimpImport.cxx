@@ -2,6 +2,7 @@
 #include "Imports.h"
 
 #include "FormatFacts.h"
+#include "GltfFile.h"
 #include "MeshFormats.h"
 #include "Vector.h"
 
@@ -111,10 +112,33 @@ public:
   /// Returns the vector to be added to the vertices, in the unit of the file (MoveObjToOrigin()).
   const Vec3& GetOffset() const { return this->Offset; }
 
+  /// Makes Assimp read another text in place of the mesh.
+  /// @param ending file extension that tells Assimp the format of the text
+  void Replace(const std::string& ending, std::string text)
+  {
+    this->MeshName.resize(this->MeshName.size() - EndingOf(this->MeshName).size());
+    this->MeshName += ending;
+    this->Add(vtksys::SystemTools::GetFilenameName(this->MeshName), std::move(text));
+  }
+
+  /// Makes Assimp read a text in place of a file beside the mesh. @param name without a folder
+  void Add(const std::string& name, std::string text) { this->Texts[name] = std::move(text); }
+
+  /// Returns the contents of a file that a glTF file names. Throws Error if the file cannot be
+  /// read.
+  std::string Read(const std::string& uri)
+  {
+    const std::string file = vtksys::SystemTools::GetFilenamePath(this->Mesh) + '/' + uri;
+    const std::unique_ptr<Assimp::IOStream> stream(this->Open(file.c_str(), "rb"));
+    failIf(!stream, "names the file ", uri, ", which cannot be read", this->Reason);
+    std::string text(stream->FileSize(), '\0');
+    stream->Read(text.data(), 1, text.size());
+    return text;
+  }
+
   bool Exists(const char* file) const override
   {
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(this->MeshName == file ? this->Mesh : file, ignored);
+    return this->TextOf(file) != nullptr || !this->OnDisk(file).empty();
   }
 
   char getOsSeparator() const override { return '/'; }
@@ -127,8 +151,17 @@ public:
       return nullptr;
     }
     const bool isMesh = this->MeshName == file;
+    const std::string* const text = this->TextOf(file);
     std::vector<char> bytes;
-    const std::string reason = ReadAll(isMesh ? this->Mesh : file, bytes);
+    std::string reason;
+    if (text)
+    {
+      bytes.assign(text->begin(), text->end());
+    }
+    else
+    {
+      reason = ReadAll(this->OnDisk(file), bytes);
+    }
     if (!reason.empty())
     {
       this->Reason = ": " + reason;
@@ -149,8 +182,31 @@ public:
   void Close(Assimp::IOStream* stream) override { delete stream; }
 
 private:
+  /// Returns a text that was added, or null.
+  const std::string* TextOf(const std::string& file) const
+  {
+    const auto found = this->Texts.find(vtksys::SystemTools::GetFilenameName(file));
+    return found == this->Texts.end() ? nullptr : &found->second;
+  }
+
+  /// Returns the path of a file, or an empty text if the file does not exist. glTF files name other
+  /// files by URIs.
+  std::string OnDisk(const std::string& file) const
+  {
+    std::string path = this->MeshName == file ? this->Mesh : file;
+    if (this->MeshName != file && EndsWithAny(this->MeshName, { ".gltf", ".glb" }))
+    {
+      const std::string folder = vtksys::SystemTools::GetFilenamePath(file);
+      const std::string decoded = folder + PercentDecoded(path.substr(folder.size()));
+      path = vtksys::SystemTools::FileExists(decoded) ? decoded : path;
+    }
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) ? path : std::string();
+  }
+
   std::string Mesh;
   std::string MeshName;
+  std::map<std::string, std::string> Texts; ///< by the name without a folder
   std::string Reason;
   Vec3 Offset{};
 };
@@ -293,7 +349,7 @@ double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::si
     return PrintUnit(model);
   }
   static const std::map<std::string, void (*)(const std::string&)> checks{ { ".ply", CheckPly },
-    { ".off", CheckOff }, { ".nff", CheckNff }, { ".obj", CheckObj } };
+    { ".nff", CheckNff }, { ".obj", CheckObj } };
   if (const auto check = checks.find(ending); check != checks.end())
   {
     const std::string text = TextOf(files);
@@ -303,12 +359,29 @@ double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::si
     }
     return 1.0;
   }
-  static const std::set<std::string> looked{ ".gltf", ".glb", ".ifc", ".stp", ".step", ".amf",
-    ".x3d", ".ogex" };
+  static const std::set<std::string> looked{ ".off", ".gltf", ".glb", ".ifc", ".stp", ".step",
+    ".amf", ".x3d", ".ogex" };
   const std::string text = looked.count(ending) > 0 ? TextOf(files) : "";
-  if (ending == ".gltf" || ending == ".glb")
+  if (ending == ".off")
+  {
+    if (!text.empty())
+    {
+      files.Replace(".obj", OffAsObj(text));
+    }
+  }
+  else if (ending == ".gltf" || ending == ".glb")
   {
     mesh.warnings = CheckGltf(text);
+    GltfFiles changed =
+      GltfInFloats(text, [&files](const std::string& uri) { return files.Read(uri); });
+    if (!changed.json.empty())
+    {
+      files.Replace(".gltf", std::move(changed.json));
+      for (auto& [buffer, bytes] : changed.buffers)
+      {
+        files.Add(buffer, std::move(bytes));
+      }
+    }
   }
   else if (ending == ".amf")
   {
@@ -492,6 +565,11 @@ Mesh ReadAssimpMesh(const std::string& file)
     {
       reason.pop_back();
     }
+    const std::string schema = EndsWithAny(files->GetMeshName(), { ".ifc", ".stp", ".step" })
+      ? SchemaOf(TextOf(*files))
+      : std::string();
+    failIf(!schema.empty() && schema != "IFC2X3", "is written in the schema ", schema,
+      ", expected IFC2X3. Assimp cannot read it: ", reason, files->GetReason());
     fail("Assimp cannot read it: ", reason, files->GetReason());
   }
   for (unsigned int i = 0; i < scene->mNumMaterials; ++i)

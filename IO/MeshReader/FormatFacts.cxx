@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FormatFacts.h"
 
-#include "Json.h"
+#include "MeshFormats.h"
 
 #include <algorithm>
 #include <charconv>
@@ -21,76 +21,6 @@ namespace avianlidar::scene
 {
 namespace
 {
-bool StartsWith(std::string_view text, std::string_view start)
-{
-  return text.substr(0, start.size()) == start;
-}
-
-/// Returns the JSON of a glTF file. In binary files the JSON follows a header of 12 bytes, the
-/// length of the JSON and a mark.
-std::string_view JsonOf(const std::string& text)
-{
-  constexpr std::size_t header = 12, chunk = 8;
-  if (!StartsWith(text, "glTF") || text.size() < header + chunk)
-  {
-    return text;
-  }
-  std::uint32_t length = 0;
-  std::memcpy(&length, &text[header], sizeof length);
-  return std::string_view(text).substr(header + chunk, length);
-}
-
-/// Returns the value of a key or an index, or null.
-const Json& ValueIn(const Json& holder, const Json& key)
-{
-  static const Json none;
-  if (holder.is_array() && key.is_number_unsigned() && key.get<std::size_t>() < holder.size())
-  {
-    return holder[key.get<std::size_t>()];
-  }
-  const auto value = holder.is_object() && key.is_string()
-    ? holder.find(key.get_ref<const std::string&>())
-    : holder.end();
-  return value != holder.end() ? *value : none;
-}
-
-/// Returns a list of an object, or an empty list if the object has no such list.
-const Json& ListIn(const Json& object, const char* key)
-{
-  static const Json none = Json::array();
-  const Json& list = ValueIn(object, key);
-  return list.is_array() ? list : none;
-}
-
-/// Throws Error unless positions are numbers of single precision (specification, section 3.7.2.1).
-/// Assimp reads all positions as single precision.
-void CheckPositions(const Json& document, const Json& primitive)
-{
-  constexpr int single = 5126;
-  const Json& position = ValueIn(ValueIn(primitive, "attributes"), "POSITION");
-  const Json& given = ValueIn(ValueIn(ListIn(document, "accessors"), position), "componentType");
-  const int type = given.is_number() ? given.get<int>() : single;
-  failIf(type != single, "has positions of the component type ", type,
-    ", expected 5126, numbers of single precision");
-}
-
-/// Returns whether the geometry of a file that requires the extension is read right.
-bool IsKnown(const std::string& extension)
-{
-  static const char* const starts[] = { "KHR_draco_mesh_compression", "KHR_materials_",
-    "KHR_texture_", "EXT_texture_", "MSFT_texture_", "MSFT_packing_", "KHR_lights_", "EXT_lights_",
-    "KHR_xmp", "EXT_mesh_features", "EXT_instance_features", "EXT_structural_metadata" };
-  return std::any_of(std::begin(starts), std::end(starts),
-    [&](const char* start) { return StartsWith(extension, start); });
-}
-
-/// Returns whether a file that uses but does not require the extension is read wrong.
-bool ChangesGeometry(const std::string& extension)
-{
-  return extension == "EXT_mesh_gpu_instancing" || extension == "KHR_mesh_quantization" ||
-    extension == "CESIUM_RTC";
-}
-
 /// Returns a STEP file in capital letters, without comments and without the contents of strings.
 std::string WithoutComments(const std::string& file)
 {
@@ -434,51 +364,13 @@ void CheckPlyRows(const std::string& header, std::string_view rows)
 }
 }
 
-std::vector<std::string> CheckGltf(const std::string& text)
+std::string SchemaOf(const std::string& text)
 {
-  std::string json(JsonOf(text));
-  // Bytes of other encodings, which Assimp accepts in names. The names are not needed here.
-  std::replace_if(
-    json.begin(), json.end(), [](char byte) { return (byte & 0x80) != 0; }, '?');
-  json.erase(0, std::min(json.find('{'), json.size())); // byte-order mark
-  const Json document = Json::parse(json, nullptr, /*allow_exceptions=*/false);
-  for (const char* list : { "extensionsRequired", "extensionsUsed" })
-  {
-    const bool isRequired = list == std::string("extensionsRequired");
-    for (const Json& one : ListIn(document, list))
-    {
-      const std::string name = one.is_string() ? one.get<std::string>() : std::string();
-      failIf(one.is_string() && (isRequired ? !IsKnown(name) : ChangesGeometry(name)),
-        isRequired ? "requires" : "uses", " the glTF extension ", name,
-        ", which is not supported: export it without this extension");
-    }
-  }
-  for (const Json& mesh : ListIn(document, "meshes"))
-  {
-    for (const Json& primitive : ListIn(mesh, "primitives"))
-    {
-      CheckPositions(document, primitive);
-    }
-  }
-  std::vector<std::string> warnings;
-  if (ListIn(document, "skins").size() > 0)
-  {
-    warnings.push_back("it has skins, which are left out: it is read in the pose of its vertices");
-  }
-  for (const char* list : { "nodes", "meshes" })
-  {
-    for (const Json& one : ListIn(document, list))
-    {
-      const Json& weights = ListIn(one, "weights");
-      if (std::any_of(weights.begin(), weights.end(),
-            [](const Json& weight) { return weight.is_number() && weight.get<double>() != 0.0; }))
-      {
-        warnings.push_back("it has weights of morph targets, which are left out");
-        return warnings;
-      }
-    }
-  }
-  return warnings;
+  constexpr std::size_t header = 1u << 16;
+  static const std::regex named("FILE_SCHEMA\\s*\\(\\s*\\(\\s*'([^']*)'", std::regex::icase);
+  const std::string begin = text.substr(0, header);
+  std::smatch found;
+  return std::regex_search(begin, found, named) ? found[1].str() : std::string();
 }
 
 double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elements)
@@ -486,8 +378,15 @@ double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elem
   const std::string text = WithoutComments(file);
   const std::vector<Entity> entities = EntitiesOf(text);
   std::set<std::string_view> shapes;
+  static const std::set<std::string_view> later{ "IFCTRIANGULATEDFACESET", "IFCPOLYGONALFACESET",
+    "IFCTRIANGULATEDIRREGULARNETWORK", "IFCINDEXEDPOLYCURVE", "IFCADVANCEDBREP",
+    "IFCADVANCEDBREPWITHVOIDS", "IFCADVANCEDFACE", "IFCCYLINDRICALSURFACE",
+    "IFCEXTRUDEDAREASOLIDTAPERED", "IFCREVOLVEDAREASOLIDTAPERED", "IFCFIXEDREFERENCESWEPTAREASOLID",
+    "IFCSWEPTDISKSOLIDPOLYGONAL", "IFCSECTIONEDSOLIDHORIZONTAL" };
   for (const Entity& entity : entities)
   {
+    failIf(later.count(entity.type) > 0, "is written in the schema ", SchemaOf(file), " and has a ",
+      entity.type, ", which Assimp cannot read: export it as IFC2X3");
     if (entity.type == "IFCPRODUCTDEFINITIONSHAPE")
     {
       shapes.insert(entity.id);
@@ -565,25 +464,53 @@ void CheckPly(const std::string& text)
   fail("is broken: its header has no line end_header");
 }
 
-void CheckOff(const std::string& text)
+std::string OffAsObj(const std::string& text)
 {
   std::string_view rows = text;
   std::vector<std::string_view> counts = TakeRow(rows, 1);
-  if (CountOf(counts[0]) == 0)
+  if (const std::string_view type = counts[0]; type.find("OFF") != std::string_view::npos)
   {
-    counts.erase(counts.begin()); // the word OFF
-    counts = counts.empty() ? TakeRow(rows, 1) : counts;
+    failIf(type.find_first_of("4n") != std::string_view::npos, "is of the type ", type,
+      ", expected OFF with three coordinates");
+    failIf(counts.size() > 1 && counts[1] == "BINARY", "is a binary OFF file, expected text");
+    counts.erase(counts.begin());
   }
-  for (std::size_t vertex = counts.size() < 2 ? 0 : CountOf(counts[0]); vertex > 0; --vertex)
+  while (counts.size() < 3) // vertices, faces, edges
   {
-    TakeRow(rows, 3);
+    const std::vector<std::string_view> more = TakeRow(rows, 1);
+    counts.insert(counts.end(), more.begin(), more.end());
   }
-  for (std::size_t face = counts.size() < 2 ? 0 : CountOf(counts[1]); face > 0; --face)
+  std::string obj;
+  const std::size_t vertices = CountOf(counts[0]);
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex)
+  {
+    const std::vector<std::string_view> words = TakeRow(rows, 3);
+    obj += 'v';
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      const char* at = words[k].data();
+      failIf(!SkipNumber(at, at + words[k].size()), "vertex ", vertex, " has the coordinate \"",
+        words[k], "\", expected a number");
+      obj.append(1, ' ').append(words[k]);
+    }
+    obj += '\n';
+  }
+  for (std::size_t face = CountOf(counts[1]); face > 0; --face)
   {
     const std::vector<std::string_view> words = TakeRow(rows, 1);
-    failIf(words.size() < 1 + CountOf(words[0]), "is cut short or damaged: a face of ", words[0],
+    const std::size_t corners = CountOf(words[0]);
+    failIf(words.size() < 1 + corners, "is cut short or damaged: a face of ", words[0],
       " vertices has ", words.size() - 1);
+    obj += corners > 0 ? "f" : "";
+    for (std::size_t k = 1; k <= corners; ++k)
+    {
+      const std::size_t corner = CountOf(words[k]);
+      failIf(corner >= vertices, "is broken: a face has vertex ", words[k], " of ", vertices);
+      obj.append(1, ' ').append(std::to_string(corner + 1));
+    }
+    obj += '\n';
   }
+  return obj;
 }
 
 void CheckNff(const std::string& text)

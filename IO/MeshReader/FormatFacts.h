@@ -15,23 +15,17 @@
 namespace avianlidar::scene
 {
 /**
- * Refuses glTF 2.0 files whose geometry depends on extensions that Assimp does not support. Files
- * may require only Draco and the extensions (specification, section 3.12) of materials, textures,
- * lights and metadata. The function also refuses files that use instances, quantization or the
- * centre of a tile, and files with positions that are not of single precision.
- * @param text contents of the file, JSON or binary. Throws Error, which names the fault.
- * @return warnings of skins and of weights of morph targets, which are left out
- */
-std::vector<std::string> CheckGltf(const std::string& text);
-
-/**
  * Returns the unit of length of an IFC file, m, if the unit is conversion-based, such as the foot.
  * Returns 1 without a unit and for SI units, because Assimp supports the metre and its prefixes.
- * @param text contents of the file. Throws Error if the unit cannot be read.
+ * @param text contents of the file. Throws Error if the unit cannot be read, or if the file has
+ * shapes that came with IFC4, on which Assimp crashes.
  * @param elements becomes the number of elements with a shape, by type, such as "IFCWALL". Types
  * that are not solid, such as spaces, openings and annotations, are left out.
  */
 double ReadIfc(const std::string& text, std::map<std::string, std::size_t>& elements);
+
+/// Returns the schema that a STEP file names, such as "IFC4", or an empty text.
+std::string SchemaOf(const std::string& text);
 
 /// Returns the unit of length of an X3D file (version 3.3 and later), m. @param text XML
 double X3dUnit(const std::string& text);
@@ -45,9 +39,13 @@ double OpenGexUnit(const std::string& text, char& upAxis);
 /// triangles. @param text contents of the file. Throws Error.
 void CheckPly(const std::string& text);
 
-/// Refuse files that are cut short, for which Assimp invents triangles. @param text contents of the
-/// file. Throw Error.
-void CheckOff(const std::string& text);
+/// Returns an OFF file as OBJ, because Assimp reads no OFF faces of more than 9 corners. Colours,
+/// normals and texture coordinates are left out. @param text contents of the file. Throws Error if
+/// the file is cut short, binary or of four or n dimensions.
+std::string OffAsObj(const std::string& text);
+
+/// Refuses files that are cut short, for which Assimp invents triangles. @param text contents of
+/// the file. Throws Error.
 void CheckNff(const std::string& text);
 
 /// Refuses OBJ files with vertices of fewer than three numbers, which Assimp leaves out or reads

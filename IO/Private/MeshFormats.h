@@ -11,9 +11,15 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string>
+#include <string_view>
 
 namespace avianlidar::scene
 {
+inline bool StartsWith(std::string_view text, std::string_view start)
+{
+  return text.substr(0, start.size()) == start;
+}
+
 /// Returns the file extension in lower case, with the dot: ".vtp".
 inline std::string EndingOf(const std::string& file)
 {

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mesh files as other programs write them: units and extensions that a file names, coordinates of national grids, and the program that
 reads them. Expected: the corners that were written, in metres."""
+import base64
 import json
+import math
 import os
 import re
 import stat
+import struct
 import unittest
 import unittest.mock
 import zipfile
@@ -13,6 +16,8 @@ import numpy as np
 import scenetools as st
 from boxfiles import CORNERS, TRIANGLES, gltf, ifc
 from echotools import InFolder
+from scipy.spatial.distance import cdist
+from scipy.spatial.transform import Rotation
 
 SINGLE = 2**-23
 
@@ -168,6 +173,21 @@ class MeshFiles(InFolder):
         end = whole.rindex("ENDSEC;")
         self.assert_left_out(self.read("box.ifc", whole[:end] + more + whole[end:]), "elements have no triangles and are left out: 1 IFCBUILDINGELEMENTPROXY")
 
+    def test_ifc4(self):
+        """What is as in IFC 2x3 is read. A refusal names the schema and the shape."""
+        whole = self.IFC.replace("IFC2X3", "IFC4")
+        self.assert_box(self.read("box.ifc", whole), 1.0)
+        end = whole.rindex("ENDSEC;")
+        points = "#951=IFCCARTESIANPOINTLIST3D((" + ",".join("({!r},{!r},{!r})".format(*map(float, corner)) for corner in CORNERS) + "));\n"
+        for shape, item in (("IFCTRIANGULATEDFACESET", "#951,$,.T.,((1,2,3)),$"), ("IFCADVANCEDBREP", "#13")):
+            more = points + (f"#952={shape}({item});\n#901=IFCPRODUCTDEFINITIONSHAPE($,$,(#902));\n#902=IFCSHAPEREPRESENTATION(#5,'Body','Tessellation',(#952));\n"
+                             "#904=IFCWALL('0000000000000000000004',#14,'wall',$,$,#6,#901,$,.SOLIDWALL.);\n")
+            self.assert_refused(self.read("box.ifc", whole[:end] + more + whole[end:]),
+                                f"box.ifc: is written in the schema IFC4 and has a {shape}, which Assimp cannot read: export it as IFC2X3")
+        for name in ("IFC4", "IFC4X3_ADD2"):
+            self.assert_refused(self.read("box.ifc", self.IFC.replace("IFC2X3", name).replace(",#14,'site'", ",$,'site'")),
+                                f"is written in the schema {name}, expected IFC2X3. Assimp cannot read it: ")
+
     def test_units_of_x3d_and_opengex(self):
         faces = " -1 ".join(" ".join(map(str, corners)) for corners in TRIANGLES)
         points = ", ".join("{} {} {}".format(*corner) for corner in CORNERS)
@@ -207,23 +227,20 @@ class MeshFiles(InFolder):
         x_up = fbx(100).replace("\tProperties70:  {", '\tProperties70:  {\n\t\tP: "UpAxis", "int", "Integer", "",0', 1)
         self.assert_refused(self.read("triangle.fbx", x_up), "says that x points up, and not which axes point right and to the front")
 
-    def test_gltf_poses_are_warnings_and_other_numbers_refused(self):
+    def test_gltf_poses_are_warnings(self):
         document = json.loads(gltf(np.asarray(CORNERS), TRIANGLES))
         for key, value, words in (("skins", [{"joints": [0]}], "has skins, which are left out"), ("meshes", [{**document["meshes"][0], "weights": [0, 1]}],
                                                                                                   "weights of morph targets, which are left out")):
             read = self.read("box.gltf", json.dumps({**document, key: value}))
             self.assertEqual(len(self.places(read)), 8)
             self.assert_left_out(read, words)
-        accessor = document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
-        document["accessors"][accessor]["componentType"] = 5122
-        self.assert_refused(self.read("box.gltf", json.dumps(document)), "has positions of the component type 5122, expected 5126")
-        latin = json.dumps({"asset": {"version": "2.0", "generator": "X"}, "extensionsRequired": ["EXT_mesh_gpu_instancing"]}).encode()
+        latin = json.dumps({"asset": {"version": "2.0", "generator": "X"}, "extensionsRequired": ["VENDOR_unheard_of"]}).encode()
         (self.folder / "box.gltf").write_bytes(latin.replace(b'"X"', b'"\xe9"'))
-        self.assert_refused(self.read("box.gltf"), "EXT_mesh_gpu_instancing")
+        self.assert_refused(self.read("box.gltf"), "VENDOR_unheard_of")
 
     def test_gltf_extensions_that_change_geometry_are_refused_by_name(self):
-        for key, name, refused in (("Required", "KHR_mesh_quantization", True), ("Required", "VENDOR_unheard_of", True), ("Used", "EXT_mesh_gpu_instancing", True),
-                                   ("Used", "CESIUM_RTC", True), ("Used", "VENDOR_unheard_of", False), ("Required", "KHR_materials_unlit", False)):
+        for key, name, refused in (("Required", "EXT_meshopt_compression", True), ("Required", "VENDOR_unheard_of", True), ("Used", "CESIUM_RTC", True),
+                                   ("Used", "VENDOR_unheard_of", False), ("Required", "KHR_materials_unlit", False)):
             with self.subTest(key=key, name=name):
                 document = json.loads(gltf(np.asarray(CORNERS), TRIANGLES))
                 document["extensions" + key] = [name]
@@ -232,6 +249,116 @@ class MeshFiles(InFolder):
                     self.assert_refused(read, f"s the glTF extension {name}, which is not supported")
                 else:
                     self.assertEqual(len(self.places(read)), 8)
+
+    def gltf_of(self, parts, indices, nodes, form="data", **accessor):
+        """A glTF file of one mesh. @param parts an array of each accessor, the first of positions @param form where the buffer is: in the
+        JSON, in a file whose name has a blank, or in a binary file. @return its name"""
+        blob, views, accessors = b"", [], []
+        for values in (*parts, np.asarray(indices, dtype="<u2").ravel()):
+            size = 1 if values.ndim == 1 else values.shape[1]
+            step = -(-values.dtype.itemsize * size // 4) * 4 if size > 1 else values.dtype.itemsize  # elements begin at multiples of 4 bytes
+            rows = np.zeros((len(values), step), dtype=np.uint8)
+            rows[:, :values.dtype.itemsize * size] = np.ascontiguousarray(values).view(np.uint8).reshape(len(values), -1)
+            views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": rows.size, **({"byteStride": step} if size > 1 else {})})
+            accessors.append({"bufferView": len(views) - 1, "componentType": {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "f4": 5126}[values.dtype.str[1:]],
+                              "count": len(values), "type": "SCALAR" if size == 1 else f"VEC{size}"})
+            blob += rows.tobytes() + bytes(-rows.size % 4)
+        accessors[0].update(accessor)
+        document = {"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_mesh_quantization", "EXT_mesh_gpu_instancing"], "scene": 0,
+                    "scenes": [{"nodes": [0]}], "nodes": nodes, "materials": [{"name": "glänzend"}], "bufferViews": views, "accessors": accessors,
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": len(parts), "material": 0}]}],
+                    "buffers": [{"byteLength": len(blob)}]}
+        if form == "binary":
+            text = json.dumps(document).encode()
+            text += b" " * (-len(text) % 4)
+            (self.folder / "box.glb").write_bytes(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(blob), len(text), 0x4E4F534A) + text
+                                                  + struct.pack("<II", len(blob), 0x004E4942) + blob)
+            return "box.glb"
+        document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(blob).decode()
+        if form == "file":
+            (self.folder / "ein Puffer.bin").write_bytes(blob)
+            document["buffers"][0]["uri"] = "ein%20Puffer.bin"
+        (self.folder / "box.gltf").write_text(json.dumps(document), encoding="utf-8")
+        return "box.gltf"
+
+    def test_gltf_quantized_positions(self):
+        """Expected: the extension's table of what a normalized number c stands for, times the node's scale."""
+        box = np.asarray(CORNERS) / np.abs(CORNERS).max()
+        for kind, most in (("i1", 127), ("u1", 255), ("i2", 32767), ("u2", 65535)):
+            low = -1.0 if kind[0] == "i" else 0.0
+            codes = np.round((box.clip(low) * most)).astype(kind)
+            for normalized in (True, False):
+                for form in ("data", "file", "binary"):
+                    with self.subTest(kind=kind, normalized=normalized, form=form):
+                        scale = [8.0, 4.0, 2.0] if normalized else [8.0 / most, 4.0 / most, 2.0 / most]
+                        name = self.gltf_of([codes], TRIANGLES, [{"mesh": 0, "scale": scale, "translation": [0.0, 0.0, -3.0]}], form, normalized=normalized)
+                        read = self.read(name, up_axis="z")
+                        expected = codes / most * (8.0, 4.0, 2.0) - (0.0, 0.0, 3.0)
+                        np.testing.assert_allclose(self.places(read), np.unique(expected, axis=0), atol=1e-5)
+        sparse = {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0, "byteOffset": 8}}
+        codes = np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0]], dtype="i2")
+        name = self.gltf_of([codes], [0, 1, 2], [{"mesh": 0}], sparse=sparse)
+        np.testing.assert_array_equal(self.places(self.read(name, up_axis="z")), [[0, 9, 0], [9, 0, 0]])  # vertex 0 lies at vertex 1
+
+    def test_gltf_instances(self):
+        """Expected: the matrices T R S of the extension, below the matrix of the node. An instance without one of them has the identity."""
+        box = np.asarray(CORNERS, dtype="f4")
+        at = np.array([[10, 0, 0], [0, 20, 0], [0, 0, 30]], dtype="f4")
+        quarter = np.sqrt(0.5)
+        turns = np.array([[0, 0, 0, 1], [0, 0, quarter, quarter], [1, 0, 0, 0]])
+        sizes = np.array([[1, 1, 1], [2, 1, 1], [1, 3, 1]], dtype="f4")
+        for parts, turn in (({"TRANSLATION": at, "ROTATION": turns.astype("f4"), "SCALE": sizes}, turns), ({"TRANSLATION": at}, None),
+                            ({"TRANSLATION": at, "ROTATION": np.round(turns * 32767).astype("i2")}, turns)):
+            with self.subTest(sorted(parts)):
+                names = list(parts)
+                node = {"mesh": 0, "translation": [0, 0, 5], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {name: 1 + i for i, name in enumerate(names)}}}}
+                name = self.gltf_of([box, *parts.values()], TRIANGLES, [node])
+                if parts.get("ROTATION", at).dtype != "f4":
+                    document = json.loads((self.folder / name).read_text())
+                    document["accessors"][1 + names.index("ROTATION")]["normalized"] = True
+                    (self.folder / name).write_text(json.dumps(document))
+                expected = []
+                for k in range(3):
+                    corners = box * (sizes[k] if "SCALE" in parts else 1.0)
+                    corners = corners if turn is None else Rotation.from_quat(turn[k]).apply(corners)
+                    expected.append(corners + at[k] + (0, 0, 5))
+                found = self.places(self.read(name, up_axis="z"))
+                expected = np.concatenate(expected)
+                self.assertEqual(cdist(found, expected).min(axis=1).max() < 2e-3 and cdist(expected, found).min(axis=1).max() < 2e-3, True)
+
+    def test_gltf_that_is_broken(self):
+        codes = np.zeros((3, 3), dtype="i2")
+        instanced = {"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}
+        for parts, nodes, more, words in (
+                ([codes], [{"mesh": 0}], {"count": 1 << 40}, "an accessor of 1099511627776 elements reaches beyond its buffer"),
+                ([codes], [{"mesh": 0}], {"byteOffset": 999}, "reaches beyond its buffer"),
+                ([codes], [{"mesh": 0}], {"count": -3}, "count is -3, expected a whole number of 0 or more"),
+                ([codes], [{"mesh": 0}], {"componentType": 5130}, "has numbers of the component type 5130"),
+                ([codes], [{"mesh": 0}], {"type": "VEC2"}, 'is of the type "VEC2", expected "VEC3"'),
+                ([codes, codes[:, :2]], [instanced], {}, 'is of the type "VEC2", expected "VEC3"'),
+                ([codes], [{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {}}}}], {}, "instances have no TRANSLATION, ROTATION or SCALE"),
+                ([codes], [{**instanced, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"SCALE": 77}}}}], {}, "SCALE of instances is 77")):
+            with self.subTest(words):
+                self.assert_refused(self.read(self.gltf_of(parts, [0, 1, 2], nodes, **more)), words)
+        name = self.gltf_of([codes], [0, 1, 2], [{"mesh": 0}], "file")
+        (self.folder / "ein Puffer.bin").unlink()
+        self.assert_refused(self.read(name), "names the file ein%20Puffer.bin, which cannot be read")
+
+    def test_off_faces_of_many_corners(self):
+        """A disc of n corners in one face has the area n / 2 sin(2 pi / n)."""
+        for corners in (9, 10, 40, 1000):
+            for head in ("OFF\n{} 1 0\n", "{} 1 0\n", "COFF {} 1 0 # colours\n"):
+                ring = "".join(f"{math.cos(a)!r} {math.sin(a)!r} 0\n" for a in 2.0 * np.pi * np.arange(corners) / corners)
+                face = f"{corners} {' '.join(map(str, range(corners)))} 255 0 0\n"
+                read = self.read("disc.off", head.format(corners) + ring + face, up_axis="z")
+                self.places(read)
+                found = st.corners(read.block("Box"))
+                area = np.linalg.norm(np.cross(found[:, 1] - found[:, 0], found[:, 2] - found[:, 0]), axis=1).sum() / 2.0
+                self.assertAlmostEqual(area, corners / 2.0 * math.sin(2.0 * math.pi / corners), delta=1e-5)
+        for text, words in (("4OFF\n3 1 0\n", "is of the type 4OFF, expected OFF with three coordinates"), ("OFF BINARY\n", "is a binary OFF file"),
+                            ("OFF 3 1 0\n0 0 0\n1 0 x\n", 'vertex 1 has the coordinate "x", expected a number'),
+                            ("OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "a face has vertex 3 of 3")):
+            self.assert_refused(self.read("bad.off", text), words)
 
     def test_obj_keeps_coordinates_of_a_national_grid(self):
         """Two walls 0.2 m apart in UTM, where single precision keeps 0.5 m: Expected: their doubles."""
