@@ -67,7 +67,8 @@ def _check_system(file: pathlib.Path) -> None:
         name = json.loads(found[1]) if found else "CRS84"
     try:
         if not name.endswith("CRS84"):
-            osr.SpatialReference().SetFromUserInput(name)
+            with quiet():
+                osr.SpatialReference().SetFromUserInput(name)
     except RuntimeError:
         raise Error(f"{file}: the coordinate system is {name[:80]!r}, expected a system of EPSG, or degrees") from None
 
