@@ -23,6 +23,7 @@ from avianlidar.apps import _ground
 from avianlidar.apps._gdal import open_file, quiet
 from avianlidar.apps._json import packaged
 from avianlidar.apps._maps import coordinate_system
+from avianlidar.apps._osm import read_extract
 
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 AROUND = (-1000.0, 1000.0, -1000.0, 1000.0)
@@ -170,6 +171,19 @@ class Values(unittest.TestCase):
             found, heard = read(write("grid.tif", SLOPE, low=(x - 1500, y - 1500), system=system.ExportToWkt()), origin)
             self.assertRegex(heard, said or "^$")
             self.assertEqual(("accuracy" in found.words, "accuracy" in heard), (bool(said),) * 2, code)
+            # Of a map, too.
+            file = FOLDER / "grid.gpkg"
+            file.unlink(missing_ok=True)
+            base = ogr.GetDriverByName("GPKG").CreateDataSource(str(file))
+            layer = base.CreateLayer("a", system)
+            runway = ogr.Feature(layer.GetLayerDefn())
+            runway.SetGeometry(ogr.CreateGeometryFromWkt(f"LINESTRING({x} {y},{x + 900} {y})"))
+            layer.CreateFeature(runway)
+            del runway, layer, base
+            with warnings.catch_warnings(record=True) as heard:
+                warnings.simplefilter("always")
+                read_extract(file, KNOWN)
+            self.assertRegex(" ".join(str(one.message) for one in heard), said or "^$")
 
 
 class Server:
@@ -250,7 +264,6 @@ class Files(unittest.TestCase):
         # Maps, and what GDAL would do within them.
         (FOLDER / "map.geojson").write_text('{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "%s/crs"}}, "features": []}' % url)
         with self.assertRaises(al.Error):
-            from avianlidar.apps._osm import read_extract
             read_extract(FOLDER / "map.geojson", KNOWN)
         (FOLDER / "map.gpkg").unlink(missing_ok=True)
         ogr.GetDriverByName("GPKG").CreateDataSource(str(FOLDER / "map.gpkg")).CreateLayer("a")

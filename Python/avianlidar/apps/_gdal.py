@@ -15,6 +15,7 @@ from osgeo import gdal, ogr, osr
 from .._pipeline import Error, callers_level
 from ._features import form_of
 
+GRID_ACCURACY = 1.0  # m: worse accuracies of coordinates are reported
 ACCURACIES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 50.0, 100.0, 1000.0)  # m
 
 for module in (gdal, ogr, osr):
@@ -99,6 +100,18 @@ def accuracy_of(system, place: Sequence[float]) -> Optional[float]:
                 if np.isfinite(osr.CoordinateTransformation(degrees(), plan, options).TransformPoint(*place)).all():
                     return accuracy
     return None
+
+
+def accuracy_words(file: pathlib.Path, system, place: Sequence[float]) -> str:
+    """Words on the accuracy of coordinates, and a warning, if the accuracy is worse than GRID_ACCURACY or unknown.
+    @param place longitude and latitude, deg"""
+    accuracy = accuracy_of(system, place)
+    if accuracy is not None and accuracy <= GRID_ACCURACY:
+        return ""
+    name, said = system.GetName(), "unknown" if accuracy is None else f"{accuracy:g} m"
+    warnings.warn(f"{file}: the accuracy with which PROJ transforms {name} to WGS84 is {said} here; a grid of PROJ may "
+                  "be missing (`projinfo` names grids)", RuntimeWarning, stacklevel=callers_level())
+    return f"; the accuracy of the transformation from {name} to WGS84 is {said}"
 
 
 def degrees():

@@ -17,7 +17,7 @@ from osgeo import gdal, osr
 
 from .._pipeline import Error, callers_level
 from .._scene import mesh as _surface
-from ._gdal import accuracy_of, warning_of
+from ._gdal import accuracy_words, warning_of
 from ._json import naming
 from ._maps import coordinate_system
 from ._raster import MOST_PIXELS, Raster, pixels_to_read, open_raster
@@ -39,7 +39,6 @@ PREFIXES = {"": "m", "deci": "dm", "centi": "cm", "milli": "mm", "kilo": "km"}
 MOST_POSTS = 250_000  # greatest number of posts of a terrain, which takes some seconds
 MOST_CHOSEN = 0.25  # share of the posts above which all posts are taken
 FINE_SPACING = 30.0  # m: rasters with heights farther apart are taken at three times as many places in each direction
-GRID_ACCURACY = 1.0  # m: worse accuracies of coordinates are reported
 IN_CHUNK = 1 << 23  # pixels read at once
 # Words in the names of bands that hold heights, and of bands that hold something else.
 HEIGHT_WORDS = r"elev|height|altitude|\bdem\b|\bdtm\b|\bdsm\b|terrain|\bz\b|bathy|depth|h\u00f6he"
@@ -247,7 +246,6 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
         if holes:
             gdal.FillNodata(band, None, 20, 0)
             heights = _feathered(band.ReadAsArray(), spacing, known["feather"])
-        accuracy = accuracy_of(pixels.system, (origin[1], origin[0]))
     if pixels.likely:
         warnings.warn(f"{file}: says no unit of its heights, and its coordinates are in {pixels.likely}: "
                       f"the heights are read as metres, but are likely in {pixels.likely}; "
@@ -267,13 +265,7 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
     if holes > 5.0:
         warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene; "
                       "the ground is level at these places", RuntimeWarning, stacklevel=2)
-    if accuracy is None or accuracy > GRID_ACCURACY:
-        name = pixels.system.GetName()
-        said = "unknown" if accuracy is None else f"{accuracy:g} m"
-        words += f"; the accuracy of the transformation from {name} to WGS84 is {said}"
-        warnings.warn(f"{file}: the accuracy with which PROJ transforms {name} to WGS84 is {said} here; a grid of PROJ "
-                      "may be missing (`projinfo` names grids), or transform the raster first", RuntimeWarning,
-                      stacklevel=2)
+    words += accuracy_words(file, pixels.system, (origin[1], origin[0]))
     places = pixels.local(samples[:, :2])
     inside = ((places >= (west, south)) & (places <= (east, north))).all(axis=1)
     return Heights(heights, spacing, here, words, np.column_stack([places, samples[:, 2]])[inside], step)

@@ -18,7 +18,7 @@ from osgeo import gdal, osr
 from .._pipeline import Error
 from ._extract import Extract
 from ._features import Feature, tags_of
-from ._gdal import degrees, expect_file, open_file, plain, quiet
+from ._gdal import accuracy_words, degrees, expect_file, moved, open_file, plain, quiet
 from ._json import naming
 
 SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # suffixes with GDAL's drivers
@@ -174,6 +174,10 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                 names = [frame.GetFieldDefn(number).GetName() for number in range(frame.GetFieldCount())]
                 layers[layer.GetName()] = [aliases.get(name, name) for name in names], (
                     None if own is None or own.IsSame(degrees()) else osr.CoordinateTransformation(own, degrees()))
+                shape = feature.GetGeometryRef()
+                if layers[layer.GetName()][1] is not None and shape is not None and not shape.IsEmpty():
+                    place = moved(shape.Centroid(), layers[layer.GetName()][1])
+                    accuracy_words(file, own, (place.GetX(), place.GetY()))
             names, to_degrees = layers[layer.GetName()]
             tags = _tags(feature, names)
             if driver != "OSM":
