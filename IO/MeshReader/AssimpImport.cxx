@@ -4,6 +4,7 @@
 #include "FormatFacts.h"
 #include "GltfFile.h"
 #include "MeshFormats.h"
+#include "UnpackedSize.h"
 #include "Vector.h"
 
 #include <assimp/DefaultLogger.hpp>
@@ -42,7 +43,7 @@ namespace
 {
 struct Held
 {
-  std::vector<char> bytes;
+  std::shared_ptr<const std::vector<char>> bytes;
 };
 
 // Whole file in memory, because Assimp seeks and a compressed file does not allow seeking.
@@ -51,9 +52,10 @@ class MemoryStream
   , public Assimp::MemoryIOStream
 {
 public:
-  explicit MemoryStream(std::vector<char> all)
+  explicit MemoryStream(std::shared_ptr<const std::vector<char>> all)
     : Held{ std::move(all) }
-    , MemoryIOStream(reinterpret_cast<const std::uint8_t*>(this->bytes.data()), this->bytes.size())
+    , MemoryIOStream(
+        reinterpret_cast<const std::uint8_t*>(this->bytes->data()), this->bytes->size())
   {
   }
 
@@ -64,27 +66,38 @@ public:
 };
 
 /// Reads the bytes of a file, and unpacks the bytes if gzip packed them. Returns the reason if the
-/// file cannot be read, else an empty text.
+/// file cannot be read or holds too much (UnpackedSize.h), else an empty text.
 std::string ReadAll(const std::string& file, std::vector<char>& bytes)
 {
-  gzFile handle = gzopen(file.c_str(), "rb");
+  std::unique_ptr<gzFile_s, int (*)(gzFile)> handle(gzopen(file.c_str(), "rb"), gzclose);
   if (!handle)
   {
     return std::strerror(errno);
   }
   constexpr std::size_t chunk = 1u << 22;
+  std::error_code ignored;
+  const std::uintmax_t packed = std::filesystem::file_size(file, ignored);
+  const bool isPacked = gzdirect(handle.get()) == 0;
   int got = 0;
   do
   {
     const std::size_t size = bytes.size();
+    try
+    {
+      CheckUnpacked(isPacked ? size : 0, packed);
+    }
+    catch (const Error& error)
+    {
+      return error.what();
+    }
     bytes.resize(size + chunk);
-    got = gzread(handle, bytes.data() + size, chunk);
+    got = gzread(handle.get(), bytes.data() + size, chunk);
     bytes.resize(size + static_cast<std::size_t>(std::max(got, 0)));
   } while (got > 0);
   int error = Z_OK;
-  const std::string reason = gzerror(handle, &error);
-  // Only gzclose() finds some damaged archives.
-  const int closed = gzclose(handle);
+  const std::string reason = gzerror(handle.get(), &error);
+  // Only closing finds some damaged archives.
+  const int closed = gzclose(handle.release());
   return error == Z_OK && closed == Z_OK ? ""
     : !reason.empty()                    ? reason
                                          : "the compressed file ends too early";
@@ -152,6 +165,10 @@ public:
     }
     const bool isMesh = this->MeshName == file;
     const std::string* const text = this->TextOf(file);
+    if (isMesh && !text && (this->Unpacked || !this->Reason.empty()))
+    {
+      return this->Unpacked ? new MemoryStream(this->Unpacked) : nullptr;
+    }
     std::vector<char> bytes;
     std::string reason;
     if (text)
@@ -176,7 +193,12 @@ public:
       }
       this->Offset = MoveObjToOrigin(bytes);
     }
-    return new MemoryStream(std::move(bytes));
+    const auto all = std::make_shared<const std::vector<char>>(std::move(bytes));
+    if (isMesh && this->Mesh != this->MeshName)
+    {
+      this->Unpacked = all;
+    }
+    return new MemoryStream(all);
   }
 
   void Close(Assimp::IOStream* stream) override { delete stream; }
@@ -209,6 +231,8 @@ private:
   std::map<std::string, std::string> Texts; ///< by the name without a folder
   std::string Reason;
   Vec3 Offset{};
+  // Assimp opens a file of unknown format once for each format.
+  std::shared_ptr<const std::vector<char>> Unpacked;
 };
 
 // Returns a matrix in double precision. Assimp multiplies matrices in single precision.
@@ -303,8 +327,15 @@ std::string TextOf(AssimpFiles& files)
 std::string PartOf(unzFile archive, const std::string& name)
 {
   constexpr int anyCase = 2;
+  unz_file_info64 size{};
   if (unzLocateFile(archive, name.c_str(), anyCase) != UNZ_OK ||
-    unzOpenCurrentFile(archive) != UNZ_OK)
+    unzGetCurrentFileInfo64(archive, &size, nullptr, 0, nullptr, 0, nullptr, 0) != UNZ_OK)
+  {
+    return {};
+  }
+  failIf(!MayHold(size.compressed_size, size.uncompressed_size), "its part ", name, " holds ",
+    size.uncompressed_size, " bytes once decompressed, more than a mesh does");
+  if (unzOpenCurrentFile(archive) != UNZ_OK)
   {
     return {};
   }

@@ -23,6 +23,7 @@
 #include "vtkGenericDataObjectReader.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
+#include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 #include "vtkPolyData.h"
@@ -279,8 +280,8 @@ private:
   std::string Text;
 };
 
-// Throws std::bad_alloc if VTK reports that an array cannot be allocated. Debian's VTK would end
-// the process after the report.
+// Keeps VTK's first error and prints nothing. Throws std::bad_alloc if VTK reports that an array
+// cannot be allocated. Debian's VTK would end the process after the report.
 class ThrowingWindow : public vtkOutputWindow
 {
 public:
@@ -293,19 +294,23 @@ public:
       throw std::bad_alloc();
     }
     this->First = this->First.empty() ? FirstLine(text) : this->First;
-    this->Superclass::DisplayErrorText(text);
   }
 
   // The legacy reader only warns of missing values and does not initialise their memory.
   void DisplayGenericWarningText(const char* text) override
   {
     failIf(std::strstr(text, "Error reading"), "VTK cannot read it: ", FirstLine(text));
-    this->Superclass::DisplayGenericWarningText(text);
+    this->First = this->First.empty() ? FirstLine(text) : this->First;
+  }
+
+  void DisplayWarningText(const char* text) override
+  {
+    this->First = this->First.empty() ? FirstLine(text) : this->First;
   }
 
   vtkTypeMacro(ThrowingWindow, vtkOutputWindow);
 
-  std::string First; // text of the first error
+  std::string First; // text of the first error or warning
 };
 vtkStandardNewMacro(ThrowingWindow);
 
@@ -408,6 +413,7 @@ Mesh ReadVtkMesh(const std::string& file)
 {
   const vtkNew<ThrowingWindow> throwing;
   vtkOutputWindow::SetInstance(throwing);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   if (EndingOf(file).find(".vtm") == 0)
   {
     RequireRegularParts(file);
@@ -438,6 +444,10 @@ Mesh ReadVtkMesh(const std::string& file)
   }
   failIf(
     mesh.triangles.empty() && !throwing->First.empty(), "VTK cannot read it: ", throwing->First);
+  if (!throwing->First.empty())
+  {
+    mesh.warnings.push_back("VTK says: " + throwing->First);
+  }
   return mesh;
 }
 }

@@ -19,13 +19,15 @@ namespace
 {
 std::string wktOf(int code, bool ellipsoidalHeights)
 {
+  const scene::QuietGdal quiet;
   OGRSpatialReference system;
   const bool isKnown = system.importFromEPSG(code) == OGRERR_NONE &&
     (!ellipsoidalHeights || system.PromoteTo3D(nullptr) == OGRERR_NONE);
   // Without the option GDAL cannot write heights above the ellipsoid as WKT 1.
   constexpr const char* option = "ALLOW_ELLIPSOIDAL_HEIGHT_AS_VERTICAL_CRS=YES";
   const std::string wkt = isKnown ? scene::WktOf(system, "FORMAT=WKT1_GDAL", option) : "";
-  failIf(wkt.empty(), "GDAL does not know EPSG:", code, " (is PROJ's database proj.db installed?)");
+  failIf(wkt.empty(), "GDAL does not know EPSG:", code, " (is PROJ's database proj.db installed?)",
+    quiet.Reason());
   return wkt;
 }
 

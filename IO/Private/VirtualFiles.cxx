@@ -2,11 +2,16 @@
 #include "VirtualFiles.h"
 
 #include "MeshFormats.h"
+#include "UnpackedSize.h"
 
 #include <cpl_http.h>
+#include <cpl_vsi.h>
 #include <ogr_srs_api.h>
 
+#include <cstdint>
+#include <memory>
 #include <mutex>
+#include <vector>
 
 namespace avianlidar::scene
 {
@@ -52,7 +57,26 @@ void CPL_STDCALL Keep(CPLErr severity, CPLErrorNum, const char* message)
 
 std::string VirtualName(const std::string& file)
 {
-  return EndingOf(file) == ".gz" ? "/vsigzip/" + file : file;
+  if (EndingOf(file) != ".gz")
+  {
+    return file;
+  }
+  const std::string name = "/vsigzip/" + file;
+  VSIStatBufL packed;
+  VSILFILE* stream = VSIStatL(file.c_str(), &packed) == 0 ? VSIFOpenL(name.c_str(), "rb") : nullptr;
+  if (stream)
+  {
+    const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> closing(stream, &VSIFCloseL);
+    std::vector<char> chunk(1u << 20);
+    std::uint64_t unpacked = 0;
+    for (std::size_t got = chunk.size(); got == chunk.size(); unpacked += got)
+    {
+      CheckUnpacked(unpacked, static_cast<std::uint64_t>(packed.st_size));
+      got = VSIFReadL(chunk.data(), 1, chunk.size(), stream);
+    }
+    CheckUnpacked(unpacked, static_cast<std::uint64_t>(packed.st_size));
+  }
+  return name;
 }
 
 std::string WktOf(const OGRSpatialReference& system, const char* format, const char* option)

@@ -16,7 +16,7 @@
 namespace avianlidar::scene
 {
 /// Returns the name under which GDAL reads a file: "/vsigzip/..." for a name that ends in ".gz",
-/// else the name itself.
+/// else the name itself. Throws Error if a compressed file holds too much (UnpackedSize.h).
 std::string VirtualName(const std::string& file);
 
 /// Returns a system as WKT, or an empty text if GDAL cannot write it with these options.

@@ -131,6 +131,10 @@ class Parser(argparse.ArgumentParser):
         # With -5e0, which argparse would read as an option.
         self._negative_number_matcher = re.compile(r"^-\d*\.?\d+([eE][-+]?\d+)?$")
 
+    def _print_message(self, message: str, file: Any = None) -> None:
+        from ._terminal import shown
+        super()._print_message(shown(message), file)
+
     def error(self, message: str):
         self.exit(2, f"{self.prog}: {message} (see --help)\n")
 
@@ -229,8 +233,8 @@ def parser() -> Parser:
     add = verb["airport"].add_argument
     add("extract", type=pathlib.Path, help="extract of a map: .osm, .osm.pbf, .geojson, .gpkg")
     add("--heights", type=pathlib.Path, metavar="DEM",
-        help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or GDAL .vrt; or the height of level ground above "
-        "the sea, m; default: level ground at the aerodrome's elevation in the map")
+        help="heights of the ground: a GeoTIFF, ASCII grid, SRTM .hgt or mosaic (.vrt); or the height of level ground "
+        "above the sea, m; default: level ground at the aerodrome's elevation in the map")
     add("--obstacles", type=pathlib.Path, metavar="FILE", action="append", default=[], help="surveyed obstacles: AIXM "
         "5.1 (.xml), or .csv with columns longitude, latitude, height, unit, kind; may be repeated")
     which = verb["airport"].add_mutually_exclusive_group()
@@ -307,6 +311,7 @@ def main(argv: list[str] | None = None) -> int:
     from ._ranks import Ranks
     sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # daemons have no streams
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+    _terminal.names_given(sys.argv[1:] if argv is None else map(str, argv))
     options = parser().parse_args(argv)
     code, terminated = 2, []
 

@@ -21,7 +21,9 @@ from ._properties import set_properties
 from ._suffixes import PACKETS, READERS, TABLES
 from ._writers import refuse, suffixes, write
 
-LARGEST = 256 << 20  # greatest number of bytes after decompression
+# Limits of compressed files, as in UnpackedSize.h: the greatest number of bytes after decompression, and the greatest
+# growth of files larger than SMALL. Text grows 5 to 30 times.
+LARGEST, SMALL, GROWTH = 256 << 20, 16 << 20, 100
 LONGEST = 200  # bytes of a name; the names of files add suffixes
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
 _AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCompare, LAStools and spreadsheets
@@ -40,9 +42,10 @@ def checked_name(name: str, what: str) -> str:
     return name
 
 
-def read_regular(file) -> bytes:
+def read_regular(file, most: int = LARGEST) -> bytes:
     """The content of a regular file, or of a link to a regular file; gzip is decompressed. A pipe may wait for ever,
-    and a device may never end: both are an error, as in the library's RegularFile.h."""
+    and a device may never end: both are an error, as in the library's RegularFile.h. @param most greatest number of
+    bytes after decompression"""
     try:
         path = pathlib.Path(file)
         if path.exists() and not path.is_file():
@@ -53,13 +56,15 @@ def read_regular(file) -> bytes:
         raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
     if not content.startswith(b"\x1f\x8b"):
         return content
+    allowed = min(most, max(SMALL, GROWTH * len(content)))
     try:
-        content = gzip.GzipFile(fileobj=io.BytesIO(content)).read(LARGEST + 1)
+        unpacked = gzip.GzipFile(fileobj=io.BytesIO(content)).read(allowed + 1)
     except (OSError, EOFError, zlib.error) as error:
         raise Error(f"{file}: its compression by gzip is damaged ({error})") from None
-    if len(content) > LARGEST:
-        raise Error(f"{file}: holds more than {LARGEST >> 20} MiB, once decompressed")
-    return content
+    if len(unpacked) > allowed:
+        raise Error(f"{file}: holds more than {allowed >> 20} MiB, which is too much for {len(content):,} bytes of "
+                    "gzip: decompress it first")
+    return unpacked
 
 
 def _axes(names: list[str]) -> list[str]:

@@ -41,7 +41,10 @@ def text_of(value: str) -> str:
     """A text that VTK can take. ValueError for a NUL, which cuts it, and if it is not UTF-8, which ends the process."""
     if not isinstance(value, str):
         raise TypeError(f"{value!r} is not a text")
-    value.encode()
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"the text {value!r} is not in UTF-8") from None
     if "\0" in value:
         raise ValueError(f"the text {value!r} holds a NUL")
     return value

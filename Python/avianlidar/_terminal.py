@@ -2,6 +2,7 @@
 """Output of the command: lines, tables, a progress bar on a terminal, and lines on long work in a log."""
 import contextlib
 import os
+import re
 import signal
 import sys
 import time
@@ -9,8 +10,33 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 INTERVAL = 30.0  # seconds between lines on long work
+# Control characters, which a terminal would obey, marks of text direction, which disorder a line, and bytes of names
+# that are not UTF-8, which cannot be printed.
+_CONTROLS = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+_names: list[str] = []  # names with line feeds that the user has given; the line feeds of messages are spaces
 _shown: list[Any] = []  # the progress bar on the terminal
 _work: dict[str, Any] = {}  # the work that runs: its name, start (s), share at the start and completed share
+
+
+def shown(text: Any) -> str:
+    """A text with escapes in place of control characters, as \\x1b. Only line feeds remain, outside names of files."""
+    def escape(found: re.Match[str]) -> str:
+        code = ord(found[0])
+        code -= 0xDC00 if 0xDC80 <= code < 0xDD00 else 0  # Python's form of a byte
+        return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
+    text = str(text)
+    for name in _names:
+        text = text.replace(name, name.replace("\n", "\\x0a"))
+    return _CONTROLS.sub(escape, text)
+
+
+def names_given(words: Iterable[str]) -> None:
+    """Remembers names of files, because a line feed in them is not the end of a line."""
+    _names[:] = sorted({part for word in words for part in word.split("/") if "\n" in part}, key=len, reverse=True)
+
+
+def _in_line(text: str) -> str:
+    return " ".join(shown(text).split())
 
 
 def bar(what: str, done: float, total: float) -> None:
@@ -52,7 +78,7 @@ def _say_alive() -> None:
     if first < share < 1.0:
         text = f"{100.0 * share:.0f} %, about {in_time(spent * (1.0 - share) / (share - first))} left"
     # In one piece, because the next signal may come before the end of this one.
-    os.write(2, f"avianlidar: {_work['what']}: {text}\n".encode())
+    os.write(2, f"avianlidar: {_in_line(_work['what'])}: {text}\n".encode())
 
 
 @contextlib.contextmanager
@@ -74,24 +100,24 @@ def tell(*lines: Any) -> None:
     """Prints lines to the output, below the progress bar."""
     close_bar()
     if lines:
-        print(*lines, sep="\n")
+        print(*map(shown, lines), sep="\n")
 
 
 def say(text: str) -> None:
     """Prints one line to the error stream, at the end of the work."""
     close_bar(leave=False)
-    print(f"avianlidar: {' '.join(text.split())}", file=sys.stderr)
+    print(f"avianlidar: {_in_line(text)}", file=sys.stderr)
 
 
 def warn(text: str) -> None:
     """Prints one line to the error stream, above a progress bar."""
     for shown in _shown:
         shown.clear()
-    print(f"avianlidar: warning: {' '.join(text.split())}", file=sys.stderr)
+    print(f"avianlidar: warning: {_in_line(text)}", file=sys.stderr)
 
 
 def table(rows: Iterable[tuple[Any, ...]]) -> None:
     """Prints columns as wide as their words."""
-    lines = [[str(cell) for cell in row] for row in rows]
+    lines = [[shown(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*lines)]
     tell(*("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines))

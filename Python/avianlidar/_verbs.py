@@ -142,7 +142,7 @@ def _words(value: Any) -> str:
 
 
 def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
-    print(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
+    tell(f"{file}: a cloud of {cloud.number_of_points} points{_alarms(cloud)}")
     if not cloud.number_of_points:
         return
     fields = cloud.fields
@@ -187,7 +187,7 @@ def info(options) -> None:
         scene, what = Scene(file), "a scene"
         rows = _display.scene_rows(scene)
         hints = of_scene(scene.bounds) if scene.number_of_triangles else ()
-    print(f"{file}: {what}")
+    tell(f"{file}: {what}")
     table((key, _words(value)) for key, value in rows.items())
     for text in hints:
         warn(text)
@@ -239,7 +239,7 @@ def compare(options) -> None:
                 ("root mean square", "RMSE"), ("largest", "Hausdorff"),
                 ("density-aware Chamfer distance (1)", "DensityAwareChamfer"))),
             ("number of points", *(cloud.number_of_points for cloud in clouds))])
-    print(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
+    tell(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
     alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}"
               for file, cloud in zip(files, clouds) if _alarms(cloud)]
     if alarms:
@@ -248,12 +248,12 @@ def compare(options) -> None:
         if all(map(len, left)):
             distance = _compared(*map(vertices, left)).GetHausdorffDistance()
             text += f" Without these echoes the Hausdorff distance is {distance:.6g} m."
-        print(text)
-    print(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
-          f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
+        tell(text)
+    tell(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
+         f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
     if options.out:
         save(Cloud(measure.GetOutputDataObject(0)), options.out)
-        print(f"{options.out}: {a} with nearest_distance (m)")
+        tell(f"{options.out}: {a} with nearest_distance (m)")
 
 
 def convert(options) -> None:
@@ -261,13 +261,13 @@ def convert(options) -> None:
     if options.out.suffix.lower() == ".mcap":
         check_target(options.out)
         from .apps import _mcap
-        print(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
+        tell(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
         return
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file, chosen)
     save(cloud, options.out)
-    print(f"{options.out}: {cloud.number_of_points} points of {options.file}")
+    tell(f"{options.out}: {cloud.number_of_points} points of {options.file}")
 
 
 def sensors(options) -> None:
@@ -306,14 +306,14 @@ def _fit(options) -> None:
     numbers = [f"{name} {value:.4g}" for name, value in found.numbers.items()]
     if not np.isnan(found.board):
         numbers.append(f"board of the maker {found.board:.3g} m")
-    print(*numbers, sep=", ")
+    tell(", ".join(numbers))
     if found.limit:
-        print(found.limit)
-    print("the error of ranges by this receiver is unknown: no point can be left out of the fit" if np.isnan(found.bar)
-          else f"ranges by this receiver have an error of about {100 * found.bar:.0f} %")
+        tell(found.limit)
+    tell("the error of ranges by this receiver is unknown: no point can be left out of the fit" if np.isnan(found.bar)
+         else f"ranges by this receiver have an error of about {100 * found.bar:.0f} %")
     if options.out:
         _sheet.write(description, found, options.out)
-        print(options.out)
+        tell(options.out)
 
 
 def materials(_) -> None:

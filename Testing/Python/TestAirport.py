@@ -485,7 +485,7 @@ class Terrains(unittest.TestCase):
         from vtkmodules.util.numpy_support import vtk_to_numpy
         origin = (*HERE[:2], 50.0)
         self.x, self.heights = self.x[:201], self.heights[:201, :201]
-        surface = _ground.terrain(self.heights - 50.0, (-1500.0, -1500.0), 10.0, origin, 0.25)
+        surface, ground = _ground.terrain(self.heights - 50.0, (-1500.0, -1500.0), 10.0, origin, 0.25)
         x, y = np.meshgrid(self.x, self.x)
         places = np.column_stack([x.ravel(), y.ravel(), (self.heights - 50.0).ravel() - _ground.curvature(origin, x, y).ravel()])
         inner = np.abs(places[:, :2] + 500).max(axis=1) < 999
@@ -495,8 +495,12 @@ class Terrains(unittest.TestCase):
         exact = siting.to_geodetic(vertices, origin)[:, 2]
         columns, rows = (np.round((vertices[:, i] + 1500) / 10).astype(int) for i in (0, 1))
         np.testing.assert_allclose(exact, self.heights[rows, columns], atol=1e-3)
-        rough = _ground.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
+        rough, above = _ground.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
         self.assertEqual(rough.GetNumberOfPolys(), 2 * 19 * 29)  # all posts
+        # The heights of its triangles, as rays find them.
+        for mesh, at, (low, high) in ((surface, ground, ((-1490, -1490), (490, 490))), (rough, above, ((1, 1), (289, 189)))):
+            places = np.random.default_rng(2).uniform(low, high, (300, 2))
+            np.testing.assert_allclose(siting.ground_of(al.Scene(mesh, material="Wall"), places), at(places), atol=1e-6)
 
     def test_heights_of_files(self):
         """GeoTIFF and ASCII grid alike; what they do not hold is level, and fades."""
@@ -505,7 +509,7 @@ class Terrains(unittest.TestCase):
         found = []
         for name, driver in (("part.tif", "GTiff"), ("part.asc", "AAIGrid")):
             file = write_heights(name, smooth, (-1500, -1500), 10.0, driver)
-            posts, spacing, here, words = _ground.read_heights(file, HERE, rectangle, KNOWN)
+            posts, spacing, here, words, *_ = _ground.read_heights(file, HERE, rectangle, KNOWN)
             found.append(posts)
             self.assertAlmostEqual(spacing, 10.0, delta=0.01)
             self.assertAlmostEqual(here, 50.0, delta=0.01)
@@ -519,7 +523,7 @@ class Terrains(unittest.TestCase):
         np.testing.assert_allclose(found[0], found[1], atol=1e-3)
         holed = smooth.copy()
         holed[140:160, 140:160] = np.nan  # filled from around it
-        posts, spacing, here, _ = _ground.read_heights(write_heights("holed.tif", holed, (-1500, -1500), 10.0), HERE,
+        posts, spacing, here, *_ = _ground.read_heights(write_heights("holed.tif", holed, (-1500, -1500), 10.0), HERE,
                                                        (-1000.0, 1000.0, -1000.0, 1000.0), KNOWN)
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
@@ -548,7 +552,7 @@ class Terrains(unittest.TestCase):
         def above_geoid(unit, metres):
             return (f'COMPD_CS["with heights",{plain.GetProjection()},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
         units = {"ft": 0.3048, "yd": 0.9144, "Foot_US": 1200 / 3937, "decimetres": 0.1, "km": 1000.0}
-        for posts, _, here, words in (*(changed(smooth / metres, unit) for unit, metres in units.items()),
+        for posts, _, here, words, *_ in (*(changed(smooth / metres, unit) for unit, metres in units.items()),
                                       changed(np.round(1000 * (smooth - 20)), kind=gdal.GDT_Int32, Scale=0.001, Offset=20.0),
                                       changed(smooth, system=above_geoid("metre", 1.0)), changed(smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):
             np.testing.assert_allclose(posts, truth[0], atol=2e-3, err_msg=words)
@@ -558,7 +562,7 @@ class Terrains(unittest.TestCase):
                                               (np.nan, "", 1.0, {}), (30000.0, "ft", 0.3048, {})):
             holed = smooth / metres
             holed[140:160, 140:160] = value
-            posts, _, here, words = changed(holed, unit, **declared)
+            posts, _, here, words, *_ = changed(holed, unit, **declared)
             self.assertAlmostEqual(here, 50.0, delta=1.0, msg=(value, unit, declared))
             self.assertTrue(35.0 < posts.min() and posts.max() < 65.0, (value, unit, declared))
             self.assertIn("have no height in the file", words)

@@ -138,7 +138,7 @@ class Inputs(Applications):
         expected += [([verb, str(self.home), "-o", str(self.home / "out.html")], "it is a folder")
                      for verb in ("coverage", "siting", "report", "sequence")]
         expected.append((["coverage", str(self.home / "bomb.coverage.json"), "-o", str(self.home / "out")],
-                         "bomb.coverage.json: holds more than 256 MiB"))
+                         "bomb.coverage.json: holds more than 64 MiB"))
         job = child(CHILD, stdin=subprocess.PIPE)
         try:
             _, said = job.communicate("".join(json.dumps(command) + "\n" for command, _ in expected), timeout=300)

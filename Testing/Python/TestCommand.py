@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command: every verb does what the classes do, a mesh is a scene, errors are one line with exit status 2, a bar is drawn on
 a terminal and nowhere else, and manual page and completion are the parser's. Formats are tested where their readers and writers are."""
+import json
 import os
 import pathlib
 import re
@@ -261,6 +262,29 @@ class Surroundings(unittest.TestCase):
             self.assertTrue(any(re.fullmatch(f"avianlidar: {expected}", line) for line in lines), lines)
             self.assertNotIn("\r", done.stderr)
         self.assertEqual([_terminal.in_time(seconds) for seconds in (3.4, 99, 119, 5940, 7200)], ["3 s", "99 s", "2 min", "99 min", "2.0 h"])
+
+    def test_control_characters_of_names_do_not_reach_the_terminal(self):
+        """Of files, of what they name and of wrong words, whoever writes the message: Python, VTK, Assimp, GDAL, the parser."""
+        odd = "a\x1b[31m\r\x07\nb\u202e\x9bc"
+        shown = r"a\x1b[31m\x0d\x07\x0ab\u202e\x9bc"
+        folder = pathlib.Path(exampletools.OUTPUT) / "TestCommand" / odd
+        folder.mkdir(parents=True, exist_ok=True)
+        content = {".vtk": "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n", ".obj": "v 1 a\n", ".dae": "<C", ".las": "LASF", ".pcd": "#",
+                   ".lidarscene.json": "{", ".coverage.json": "{", ".csv": "x,y,z\n1,2,3\n", ".tif": "II", ".geojson": "{"}
+        for suffix, text in content.items():
+            (folder / (odd + suffix)).write_text(text)
+        (folder / "named.lidarscene.json").write_text(json.dumps({"version": 1, "objects": [{"file": odd + ".dae"}]}))
+        cases = [("info", odd + suffix) for suffix in content if suffix not in (".tif", ".geojson")]
+        cases += [("convert", odd + ".csv", odd + ".pcd"), ("compare", odd + ".csv", odd + ".csv"), ("info", "named.lidarscene.json"), ("airport", odd + ".geojson", "-o", odd),
+                  ("info", odd + ".csv", odd), ("scan", odd + ".none", "-o", "x.csv"), (odd,), ("reach", "--sensor", odd)]
+        for words in cases:
+            done = subprocess.run([sys.executable, "-m", "avianlidar", *words], cwd=folder, capture_output=True, check=False)
+            text = (done.stdout + done.stderr).decode()
+            self.assertTrue(shown.replace("\\x0a", " ") in text.replace(r"\x0a", " ") or repr(odd)[1:-1] in text, (words, text))
+            self.assertNotRegex(text, "[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e]", words)
+            if done.returncode:
+                self.assertEqual((done.returncode, text.count("\n")), (2, 1), (words, text))
+        self.assertEqual(_terminal.shown("\udcff\u2028é\n"), "\\xff\\u2028é\n")
 
     def test_streams_that_are_closed(self):
         """As of `| head`, and of daemons."""

@@ -15,8 +15,11 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import zipfile
 
+import avianlidar
 import scenetools as st
 from avianlidar import _suffixes, vtkAvianLidar as wrapped
 from echotools import InFolder, Messages
@@ -368,6 +371,36 @@ class Contents(Files):
                                   feature % (1, inner * CHAIN + square + "]}" * CHAIN))):
             self.save(f"{i}.geojson", text)
         self.assert_errors({self.scene({"footprints": f"{i}.geojson", "height": 3}): "GDAL cannot read it" for i in range(3)})
+
+    def test_compressed_files_that_hold_very_much(self):
+        """Each by its own limit, before the memory is full or a reader is busy; the same content that is not packed is read."""
+        def packed(name, unit, count, start=b"", end=b""):
+            return self.save(name, gzip.compress(start + unit * count + end, 6))
+
+        zeros, many = b"[0,0,0],", 8_000_000
+        city = b'{"type":"CityJSON","version":"1.1","CityObjects":{},"vertices":['
+        line = b'{"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":['
+        for name in ("city.json.gz", "unknown.gz"):
+            packed(name, zeros, many, city, b"[0,0,0]]}")
+        for name in ("plan2.geojson.gz", "plan2.kml.gz"):
+            packed(name, zeros, many, line, b"[0,0]]}}]}")
+        packed("points.obj.gz", b"v 0 0 0\n", many)
+        packed("wall.stl.gz", bytes(84), 600_000)
+        words = "bytes hold more than 100 times as many once decompressed"
+        start = time.monotonic()
+        self.assert_errors({**{self.scene({"footprints": name, "height": 3}): words for name in ("plan2.geojson.gz", "plan2.kml.gz", "city.json.gz")},
+                            **{self.scene({"file": name}): words for name in ("city.json.gz", "unknown.gz", "points.obj.gz", "wall.stl.gz")}})
+        with zipfile.ZipFile("bomb.3mf", "w", zipfile.ZIP_DEFLATED) as file:
+            file.writestr("3D/3dmodel.model", b"<model>" + bytes(270 << 20))
+        self.assert_errors({self.scene({"file": "bomb.3mf"}): "its part 3D/3dmodel.model holds 283115527 bytes once decompressed"})
+        self.assertLess(time.monotonic() - start, 60.0)
+        from avianlidar.apps import _inputs  # not in the processes with limits
+        for name in ("plan.coverage.json", "cloud.csv"):
+            with self.assertRaisesRegex(avianlidar.Error, name + ": holds more than [0-9]+ MiB, which is too much"):
+                (_inputs.read_plan if "json" in name else avianlidar.load_cloud)(packed(name, zeros, many, b'{"a":[', b"0]}"))
+        # 15 MiB of comments are 300 times smaller, and no bomb.
+        packed("comments.obj.gz", b"# nothing\n", 1_500_000, end=TRIANGLE.encode())
+        self.assertEqual(st.Read(self.scene({"file": "comments.obj.gz"})).errors, [])
 
     def test_compressed_files_as_they_are_now(self):
         """Damaged, mended, and edited, all under one name; nothing is written beside them."""

@@ -20,7 +20,6 @@ from ._airport_map import AirportMap
 from ._airport_plans import AirportScene, scene_file
 from ._gdal import quiet
 from ._geojson import features_of, read_runways
-from ._ground import terrain
 from ._json import load_json
 
 WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
@@ -103,7 +102,7 @@ def write(airport: AirportMap, folder) -> Tuple[Kept, AirportScene]:
     with quiet():
         chosen = airport.chosen(heights)
         mapped = put("airport.geojson", lambda: _geojson(airport.mapped(chosen)))
-    put("terrain.vtp", lambda: vtp(terrain(*heights[:3], airport.origin, heights.error)))
+    put("terrain.vtp", lambda: vtp(heights.surface))
     ground = "heights: from the edited terrain.vtp" if "terrain.vtp" in kept.edited else heights.words
     features = _checked_features(mapped, list(airport.known["kinds"]))
     rows = [feature["properties"] for feature in features]

@@ -14,7 +14,7 @@ from .._pipeline import Error
 from ._extract import COAST, CUT, on_roofs, sea, without_parts
 from ._features import Feature, form_of, length_of, properties_of
 from ._gdal import box_of, corners_of, degrees, geometry, moved, valid
-from ._ground import height_at, posts_of, read_heights
+from ._ground import difference, height_at, posts_of, read_heights, terrain
 from ._json import packaged
 from ._maps import coordinate_system
 from ._obstacles import read_obstacles
@@ -33,6 +33,7 @@ class Heights(NamedTuple):
     spacing: float             # m
     error: float               # greatest distance of the terrain's triangles from the heights, m
     words: str                 # source and error
+    surface: Any               # the terrain (vtkPolyData, m)
 
 
 class AirportMap:
@@ -141,12 +142,16 @@ class AirportMap:
             posts = np.zeros(posts_of(rectangle, spacing))
             level, why = self._level()
             self.origin = (*self.origin[:2], level)
-            words = f"heights: the ground is level at {level:.10g} m ({why}), and curves as the Earth does"
+            words, off = f"heights: the ground is level at {level:.10g} m ({why}), and curves as the Earth does", ""
+            surface, _ = terrain(posts, (west, south), spacing, self.origin, error)
         else:
-            posts, spacing, here, words = read_heights(self.dem, self.origin, rectangle, self.known)
-            self.origin, error = (*self.origin[:2], round(here, 3)), self.known["terrain_error"]
-            posts = posts - self.origin[2]
-        return Heights(posts, (west, south), spacing, error, f"{words}; triangles within {error:g} m of these heights")
+            found = read_heights(self.dem, self.origin, rectangle, self.known)
+            self.origin, error = (*self.origin[:2], round(found.here, 3)), self.known["terrain_error"]
+            posts, spacing, words = found.posts - self.origin[2], found.spacing, found.words
+            surface, ground = terrain(posts, (west, south), spacing, self.origin, error)
+            off = difference(found, self.origin[2], self.origin, ground)
+        return Heights(posts, (west, south), spacing, error,
+                       f"{words}; triangles within {error:g} m of these heights{off}", surface)
 
     def chosen(self, ground: Heights) -> List[Feature]:
         """The features of the scene on this ground; others are added to `left`, with a reason."""

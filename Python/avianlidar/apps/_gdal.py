@@ -4,48 +4,114 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import pathlib
+import warnings
 from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 from osgeo import gdal, ogr, osr
 
-from .._pipeline import Error
+from .._pipeline import Error, callers_level
 from ._features import form_of
+
+GRID_ACCURACY = 1.0  # m: worse accuracies of coordinates are reported
+ACCURACIES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 50.0, 100.0, 1000.0)  # m
 
 for module in (gdal, ogr, osr):
     module.UseExceptions()
 
 
+HARMLESS = "Non closed ring detected"  # start of a warning; all rings are closed
+# No file leads GDAL to a server: no URL is allowed, and the proxy does not exist.
+OFFLINE = {"CPL_VSIL_CURL_ALLOWED_FILENAME": "none", "GDAL_HTTP_PROXY": "127.0.0.1:1", "GDAL_HTTP_MAX_RETRY": "0"}
+
+
 @contextlib.contextmanager
 def quiet(hear: Optional[Callable[[str], Any]] = None) -> Iterator[None]:
-    """Suppresses GDAL's warnings. @param hear is called with them and with the OSM driver's messages on ways
-    and relations"""
-    before = gdal.GetConfigOption("CPL_DEBUG")
+    """Suppresses GDAL's messages, and the network of GDAL (in this thread) and of PROJ. @param hear is called with the
+    messages, and with the OSM driver's messages on ways and relations"""
+    before, online = gdal.GetConfigOption("CPL_DEBUG"), osr.GetPROJEnableNetwork()
+    own = {name: gdal.GetThreadLocalConfigOption(name) for name in OFFLINE}
     gdal.PushErrorHandler("CPLQuietErrorHandler" if hear is None else lambda _, number, words: hear(words))
     gdal.SetConfigOption("CPL_DEBUG", before if hear is None else "OSM")
+    osr.SetPROJEnableNetwork(False)
+    for name, value in OFFLINE.items():
+        gdal.SetThreadLocalConfigOption(name, value)
     try:
         yield
     finally:
+        for name, value in own.items():
+            gdal.SetThreadLocalConfigOption(name, value)
+        osr.SetPROJEnableNetwork(online)
         gdal.SetConfigOption("CPL_DEBUG", before)
         gdal.PopErrorHandler()
 
 
-def expect_file(file: pathlib.Path) -> None:
+@contextlib.contextmanager
+def warning_of(file: pathlib.Path) -> Iterator[None]:
+    """As `quiet`; GDAL's warnings on a file become one warning of Python."""
+    heard: List[str] = []
+    with quiet():
+        gdal.PushErrorHandler(lambda severity, _, words: heard.append(words) if severity == gdal.CE_Warning else None)
+        try:
+            yield
+        finally:
+            gdal.PopErrorHandler()
+    heard = [words for words in dict.fromkeys(heard) if not words.startswith(HARMLESS)]
+    if heard:
+        more = f" (and {len(heard) - 1} more of its warnings)" if heard[1:] else ""
+        warnings.warn(f"{file}: GDAL warns: {heard[0]}{more}", RuntimeWarning, stacklevel=callers_level())
+
+
+def expect_file(file: pathlib.Path, named: str = "") -> None:
+    """@param named begins the message in place of the file's name"""
     if not file.exists():
-        raise FileNotFoundError(f"no such file: {file}")
+        raise FileNotFoundError(f"{named}, which does not exist" if named else f"no such file: {file}")
     if not file.is_file():
-        raise Error(f"{file}: it is not a regular file")
+        raise Error(f"{named}, which is not a regular file" if named else f"{file}: it is not a regular file")
 
 
-def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, options: Tuple[str, ...] = ()):
-    """A regular file with one of GDAL's drivers."""
+def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, options: Tuple[str, ...] = (),
+              beside: Sequence[str] = (), content: str = ""):
+    """A regular file with one of GDAL's drivers. @param beside names of files of the same folder that belong to the
+    file @param content text that replaces the file's content"""
     expect_file(file)
-    try:
-        return gdal.OpenEx(str(file.resolve()), kind | gdal.OF_READONLY, allowed_drivers=drivers,
-                           open_options=list(options))
-    except RuntimeError as error:
-        raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
+    with warning_of(file):
+        try:
+            return gdal.OpenEx(content or os.path.abspath(file), kind | gdal.OF_READONLY, allowed_drivers=drivers,
+                               open_options=list(options), sibling_files=[file.name, *beside])
+        except RuntimeError as error:
+            raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
+
+
+def accuracy_of(system, place: Sequence[float]) -> Optional[float]:
+    """Accuracy by PROJ of the transformation from a system to WGS84 at a place, m, rounded up to one of ACCURACIES;
+    None if PROJ does not know it. @param place longitude and latitude, deg"""
+    plan = system.Clone()
+    plan.DemoteTo2D()
+    plan.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    with quiet():
+        for accuracy in ACCURACIES:
+            options = osr.CoordinateTransformationOptions()
+            options.SetDesiredAccuracy(accuracy)
+            options.SetBallparkAllowed(False)
+            with contextlib.suppress(RuntimeError):
+                if np.isfinite(osr.CoordinateTransformation(degrees(), plan, options).TransformPoint(*place)).all():
+                    return accuracy
+    return None
+
+
+def accuracy_words(file: pathlib.Path, system, place: Sequence[float]) -> str:
+    """Words on the accuracy of coordinates, and a warning, if the accuracy is worse than GRID_ACCURACY or unknown.
+    @param place longitude and latitude, deg"""
+    accuracy = accuracy_of(system, place)
+    if accuracy is not None and accuracy <= GRID_ACCURACY:
+        return ""
+    name, said = system.GetName(), "unknown" if accuracy is None else f"{accuracy:g} m"
+    warnings.warn(f"{file}: the accuracy with which PROJ transforms {name} to WGS84 is {said} here; a grid of PROJ may "
+                  "be missing (`projinfo` names grids)", RuntimeWarning, stacklevel=callers_level())
+    return f"; the accuracy of the transformation from {name} to WGS84 is {said}"
 
 
 def degrees():

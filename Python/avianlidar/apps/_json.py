@@ -16,6 +16,7 @@ from .._properties import unknown
 # kinds of files, by a key that other kinds do not have
 KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}
 SCHEMAS = {"coverage.schema.json": "a plan", "scenario.schema.json": "a scenario"}
+MOST = 64 << 20  # bytes of compressed JSON after decompression; as Python objects they take 1 GB
 LONGEST = 400  # characters of a schema's message, which may quote a whole list
 
 
@@ -41,8 +42,8 @@ def _unique(pairs: List[Tuple[str, Any]]) -> Dict[str, Any]:
 def load_json(file) -> Any:
     """The content of a JSON file, which may be compressed by gzip; `Error` names the problem. Numbers are finite."""
     try:
-        return json.loads(read_regular(file), object_pairs_hook=_unique, parse_constant=_finite, parse_float=_finite,
-                          parse_int=_integer)
+        return json.loads(read_regular(file, MOST), object_pairs_hook=_unique, parse_constant=_finite,
+                          parse_float=_finite, parse_int=_integer)
     except RecursionError:
         raise Error(f"{file}: is not JSON that can be read: nested too deeply") from None
     except ValueError as error:

@@ -18,7 +18,7 @@ from osgeo import gdal, ogr, osr
 from .._pipeline import Error
 from ._extract import NO_DEGREES, Extract
 from ._features import DECIMAL, Feature, tags_of
-from ._gdal import degrees, expect_file, open_file, plain, quiet
+from ._gdal import accuracy_words, degrees, expect_file, moved, open_file, plain, quiet
 from ._json import naming
 
 SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # suffixes with GDAL's drivers
@@ -92,7 +92,8 @@ def _check_system(file: pathlib.Path) -> None:
         name = json.loads(found[1]) if found else "CRS84"
     try:
         if not name.endswith("CRS84"):
-            osr.SpatialReference().SetFromUserInput(name)
+            with quiet():
+                osr.SpatialReference().SetFromUserInput(name)
     except RuntimeError:
         raise Error(f"{file}: the coordinate system is {name[:80]!r}, expected a system of EPSG, or degrees") from None
 
@@ -209,6 +210,10 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                 names = [frame.GetFieldDefn(number).GetName() for number in range(frame.GetFieldCount())]
                 layers[layer.GetName()] = [aliases.get(name, name) for name in names], (
                     None if own is None or own.IsSame(degrees()) else osr.CoordinateTransformation(own, degrees()))
+                shape = feature.GetGeometryRef()
+                if layers[layer.GetName()][1] is not None and shape is not None and not shape.IsEmpty():
+                    place = moved(shape.Centroid(), layers[layer.GetName()][1])
+                    accuracy_words(file, own, (place.GetX(), place.GetY()))
             names, to_degrees = layers[layer.GetName()]
             tags = _tags(feature, names)
             if driver != "OSM":

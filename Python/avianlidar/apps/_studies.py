@@ -88,7 +88,7 @@ def track(options) -> None:
         card = tracks.write(options.out, ranks, None if ranks.rank else bar)
     if ranks.rank == 0:
         table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
-        print(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
+        tell(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
 
 
 def bench(options) -> None:
@@ -113,9 +113,9 @@ def airport(options) -> None:
     if buildings and all(str(row.get("height_from")).startswith("assumed") for row in buildings):
         warn(f"{options.extract} says no height of any building: all heights are assumed by kind, "
              f"{options.out / 'assumed.csv'} lists these heights")
-    print(f"{options.out}: {extract.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
-          f"{len(buildings)} {'building' if len(buildings) == 1 else 'buildings'}; README.txt says what is assumed")
-    print(counts(made))
+    tell(f"{options.out}: {extract.name}, {len(made.sides)} {'runways' if len(made.sides) > 1 else 'runway'}, "
+         f"{len(buildings)} {'building' if len(buildings) == 1 else 'buildings'}; README.txt says what is assumed")
+    tell(counts(made))
 
 
 def _plan(options) -> Dict[str, Any]:
@@ -126,7 +126,7 @@ def _plan(options) -> Dict[str, Any]:
 
 def _say_before(plan) -> None:
     if "hours" in plan.plan:
-        print(plan.plan["hours"])
+        tell(plan.plan["hours"])
     if plan.above != "ground":
         below = ("no surface is below the sensor" if plan.ground is None else
                  f"the ground below the sensor is at z = {plan.ground:.4g} m")
@@ -166,18 +166,18 @@ def _say_sites(sites, changes) -> None:
     name = sites.plan.name
     tell(f"{name}: {counted(len(sites.positions), 'candidate')}, of {sites.lattice}, for a {sites.plan.bird} "
          f"{sites.plan.where}")
-    print(f"obstacle limits: {_sites_page.kept_surfaces(sites)}")
+    tell(f"obstacle limits: {_sites_page.kept_surfaces(sites)}")
     for row in sites.gain():
         where = "), (".join(row["sites"].replace(" ", ", ").split(";, "))
-        print(f"{row['sensors']} of {name}: {percent(row['value'], row['std_error'], sites.plan.count)} at ({where}) m")
+        tell(f"{row['sensors']} of {name}: {percent(row['value'], row['std_error'], sites.plan.count)} at ({where}) m")
     rows = sites.robustness(changes)
     for row in rows:
         other = (f"another winner in {row['another winner']} of {row['draws']} draws, better by at most "
                  f"{100 * row['gain at most']:.1f} %" if row["another winner"] else
                  f"the same winner in all {row['draws']} draws")
-        print(f"{row['change']}, {counted(row['sensors'], 'sensor')}: {other}")
+        tell(f"{row['change']}, {counted(row['sensors'], 'sensor')}: {other}")
     if not rows:
-        print("how sure the winner is was not computed, because the plan has too few draws")
+        tell("how sure the winner is was not computed, because the plan has too few draws")
 
 
 def design(options) -> None:
@@ -203,7 +203,7 @@ def reach(options) -> None:
     several = options.species or ["herring gull"]
     ideas = [idea(name, Sensor(name), dict(options.sensor_set)) for name in options.sensor]
     if any(ideas):
-        print(*filter(None, [*ideas, *map(farthest, several)]), sep="\n")
+        tell(*filter(None, [*ideas, *map(farthest, several)]))
     rows: List[Tuple[Any, ...]] = [
         ("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
     said, curve = [], []
@@ -222,12 +222,12 @@ def reach(options) -> None:
                   for row in zip(*columns.values())]
     bar("reach", len(pairs), len(pairs))
     table(rows)
-    print(*said, sep="\n")
-    print("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "
-          "In brackets: the interval that the fit of the receiver to its data sheet leaves open.")
+    tell(*said)
+    tell("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "
+         "In brackets: the interval that the fit of the receiver to its data sheet leaves open.")
     if options.out:
         write_table(options.out, curve)
-        print(f"{options.out}: the shares by range")
+        tell(f"{options.out}: the shares by range")
 
 
 def report(options) -> None:
