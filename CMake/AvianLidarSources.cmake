@@ -62,6 +62,7 @@ set(scene_sources
 
 set(private_sources
   Filters/Private/Common/JsonNode.cxx
+  Filters/Private/Common/PolygonTriangulation.cxx
   Filters/Private/Common/vtkAvianLidarArrays.cxx
   Filters/Private/Common/vtkAvianLidarContent.cxx
   Filters/Private/Common/vtkAvianLidarGather.cxx

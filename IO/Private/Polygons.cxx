@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Polygons.h"
 
+#include "PolygonTriangulation.h"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <set>
 
 namespace avianlidar::scene
 {
@@ -12,7 +14,6 @@ namespace
 {
 // Length of edges that are removed, m. Maps do not resolve such edges, which only make slivers.
 constexpr double SmallestEdge = 1e-6;
-constexpr double AreaTolerance = 1e-9;
 
 Ring WithoutRepeats(const Ring& ring)
 {
@@ -122,8 +123,8 @@ std::vector<Polygon> WidenLine(const Ring& line, double width)
 
 Sheet Triangulate(const Polygon& polygon)
 {
-  Sheet sheet;
-  std::map<Vec2, std::int64_t> index;
+  std::vector<glm::dvec3> corners;
+  std::vector<std::size_t> ends;
   for (std::size_t r = 0; r < polygon.rings.size(); ++r)
   {
     Ring ring = polygon.rings[r];
@@ -131,45 +132,53 @@ Sheet Triangulate(const Polygon& polygon)
     {
       std::reverse(ring.begin(), ring.end());
     }
-    std::vector<std::int64_t> ids;
     for (const Vec2& p : ring)
     {
-      const auto inserted = index.emplace(p, static_cast<std::int64_t>(sheet.points.size()));
-      if (inserted.second)
-      {
-        sheet.points.push_back({ p[0], p[1], 0.0 });
-      }
-      ids.push_back(inserted.first->second);
+      corners.emplace_back(p[0], p[1], 0.0);
     }
-    for (std::size_t i = 0; i < ids.size(); ++i)
-    {
-      sheet.outline.push_back({ ids[i], ids[(i + 1) % ids.size()] });
-    }
+    ends.push_back(corners.size());
   }
-  const Geos geos;
-  const Geos::Geometry geometry = geos.MakePolygon(polygon);
-  std::vector<Polygon> pieces;
-  geos.Collect(
-    geos.Own(GEOSConstrainedDelaunayTriangulation_r(geos.Get(), geometry.get())).get(), pieces);
-  double covered = 0;
-  for (const Polygon& piece : pieces)
+  PolygonTriangulation triangulation;
+  triangulation.Divide(corners, ends);
+  failIf(!triangulation.IsWhole(0.0), "a polygon of ", triangulation.GetOutlineArea(),
+    " m2 has rings that cross or overlap");
+  corners.insert(corners.end(), triangulation.GetAdded().begin(), triangulation.GetAdded().end());
+  // Rings share the vertices at which they touch.
+  Sheet sheet;
+  std::map<Vec2, std::int64_t> index;
+  std::vector<std::int64_t> ids;
+  for (const glm::dvec3& p : corners)
   {
-    Ring corners = piece.rings[0];
-    if (SignedArea(corners) < 0)
+    const auto inserted =
+      index.emplace(Vec2{ p.x, p.y }, static_cast<std::int64_t>(sheet.points.size()));
+    if (inserted.second)
     {
-      std::reverse(corners.begin(), corners.end());
+      sheet.points.push_back({ p.x, p.y, 0.0 });
     }
-    sheet.triangles.push_back(
-      { index.at(corners.at(0)), index.at(corners.at(1)), index.at(corners.at(2)) });
-    covered += SignedArea({ corners[0], corners[1], corners[2] });
+    ids.push_back(inserted.first->second);
   }
-  const double area = Area(polygon);
-  // The products that make the area of a long narrow polygon are far larger than the area. Their
-  // rounding is as large.
-  const double rounding =
-    4 * std::numeric_limits<double>::epsilon() * std::pow(Perimeter(polygon), 2);
-  failIf(!(std::abs(covered - area) <= AreaTolerance * area + rounding), "a polygon of ",
-    std::to_string(area), " m2 cannot be triangulated");
+  for (const auto& [a, b, c] : triangulation.GetTriangles())
+  {
+    sheet.triangles.push_back({ ids[a], ids[b], ids[c] });
+  }
+  AddOutline(sheet);
   return sheet;
+}
+
+void AddOutline(Sheet& sheet)
+{
+  using Edge = std::array<std::int64_t, 2>;
+  std::set<Edge> edges;
+  for (const auto& [a, b, c] : sheet.triangles)
+  {
+    for (const Edge& edge : { Edge{ a, b }, Edge{ b, c }, Edge{ c, a } })
+    {
+      if (edges.erase({ edge[1], edge[0] }) == 0)
+      {
+        edges.insert(edge);
+      }
+    }
+  }
+  sheet.outline.assign(edges.begin(), edges.end());
 }
 }

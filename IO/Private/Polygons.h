@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Polygons.h
- * @brief Plane polygons with holes: repairs polygons, widens lines and makes triangles, with GEOS.
+ * @brief Plane polygons with holes: repairs polygons and widens lines with GEOS, and makes
+ * triangles.
  *
- * Coordinates are in metres. GEOS's constrained Delaunay triangulation neither adds nor removes
- * vertices, so walls raised on the same rings meet the roof in whole edges.
+ * Coordinates are in metres. Walls are raised on the edges of the triangles, so that walls meet the
+ * roof in whole edges.
  */
 #ifndef AvianLidarPolygons_h
 #define AvianLidarPolygons_h
@@ -140,10 +141,13 @@ std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
 /// Returns the region within half of `width`, m, of a line, with flat ends and mitred corners.
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
-/// Triangulates a valid polygon at the height 0. Throws Error if GEOS fails, or if the area of the
-/// triangles differs from the area of the polygon by more than 1e-9 of the polygon's area plus
-/// rounding.
+/// Triangulates a valid polygon at the height 0 (PolygonTriangulation.h). An edge is divided where
+/// another ring touches it. Throws Error if the area
+/// of the triangles differs from the area of the polygon.
 Sheet Triangulate(const Polygon& polygon);
+
+/// Finds the outline of a sheet: the edges of only one triangle.
+void AddOutline(Sheet& sheet);
 
 double Perimeter(const Polygon& polygon);
 }
