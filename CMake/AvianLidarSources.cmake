@@ -51,6 +51,7 @@ set(cloud_sources
 set(scene_sources
   IO/Private/Extrusion.cxx
   IO/Private/Footprints.cxx
+  IO/Private/LengthText.cxx
   IO/Private/MeshImport.cxx
   IO/Private/MeshStream.cxx
   IO/Private/Polygons.cxx

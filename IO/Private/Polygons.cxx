@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -31,6 +32,25 @@ Ring WithoutRepeats(const Ring& ring)
     kept.pop_back();
   }
   return kept;
+}
+
+// Leaves out rings of fewer than three vertices. The result is empty without an outer ring.
+Polygon WithoutRepeats(const Polygon& polygon)
+{
+  Polygon clean;
+  for (std::size_t i = 0; i < polygon.rings.size(); ++i)
+  {
+    Ring ring = WithoutRepeats(polygon.rings[i]);
+    if (ring.size() >= 3)
+    {
+      clean.rings.push_back(std::move(ring));
+    }
+    else if (i == 0)
+    {
+      return {};
+    }
+  }
+  return clean;
 }
 }
 
@@ -70,35 +90,46 @@ double Area(const Polygon& polygon)
   return area;
 }
 
-std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired)
+std::vector<Polygon> MakeValid(const std::vector<Polygon>& polygons, bool areNested, bool& repaired)
 {
-  Polygon clean;
-  for (std::size_t i = 0; i < polygon.rings.size(); ++i)
-  {
-    Ring ring = WithoutRepeats(polygon.rings[i]);
-    if (ring.size() >= 3)
-    {
-      clean.rings.push_back(std::move(ring));
-    }
-    else if (i == 0)
-    {
-      return {};
-    }
-  }
-  if (clean.rings.empty())
-  {
-    return {};
-  }
   const Geos geos;
-  const Geos::Geometry geometry = geos.MakePolygon(clean);
-  if (GEOSisValid_r(geos.Get(), geometry.get()) == 1)
+  std::vector<Polygon> clean;
+  for (const Polygon& polygon : polygons)
   {
-    return { clean };
+    Polygon one = WithoutRepeats(polygon);
+    if (!one.rings.empty())
+    {
+      clean.push_back(std::move(one));
+    }
+  }
+  if (clean.empty() || geos.IsValid(clean))
+  {
+    return clean;
   }
   repaired = true;
-  std::vector<Polygon> polygons;
-  geos.Collect(geos.Own(GEOSMakeValid_r(geos.Get(), geometry.get())).get(), polygons);
-  return polygons;
+  std::vector<Geos::Geometry> parts;
+  for (const Polygon& polygon : clean)
+  {
+    std::vector<Geos::Geometry> rings;
+    for (const Ring& ring : polygon.rings)
+    {
+      rings.push_back(
+        geos.Own(GEOSMakeValid_r(geos.Get(), geos.MakePolygon(Polygon{ { ring } }).get())));
+    }
+    if (!areNested && rings.size() > 1)
+    {
+      const Geos::Geometry shell = std::move(rings[0]);
+      const Geos::Geometry holes = geos.Combine(&GEOSUnion_r, rings.begin() + 1, rings.end());
+      rings.clear();
+      rings.push_back(geos.Own(GEOSSymDifference_r(geos.Get(), shell.get(), holes.get())));
+    }
+    std::move(rings.begin(), rings.end(), std::back_inserter(parts));
+  }
+  std::vector<Polygon> valid;
+  geos.Collect(
+    geos.Combine(areNested ? &GEOSSymDifference_r : &GEOSUnion_r, parts.begin(), parts.end()).get(),
+    valid);
+  return valid;
 }
 
 std::vector<Polygon> WidenLine(const Ring& line, double width)

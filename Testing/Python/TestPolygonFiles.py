@@ -183,6 +183,8 @@ class PolygonFiles(InFolder):
                                     (vtk.vtkXMLUnstructuredGridWriter(), "a.vtu", grid), (vtk.vtkPLYWriter(), "a.ply", data)):
             writer.SetFileName(name)
             writer.SetInputData(given)
+            if name in ("a.vtp", "a.vtu"):
+                writer.SetDataModeToBinary()
             writer.Write()
         text = "".join(f"v {x} {y} {z}\n" for ring in rings for x, y, z in ring)
         number = iter(range(1, 100))
