@@ -39,6 +39,7 @@ vtk_module_link(AvianLidar::AvianLidar
     AvianLidar::boost
     AvianLidar::xxhash
     AvianLidar::geos
+    AvianLidar::glu
     AvianLidar::utf8
     GDAL::GDAL
     AvianLidar::laszip

@@ -51,6 +51,7 @@ set(cloud_sources
 set(scene_sources
   IO/Private/Extrusion.cxx
   IO/Private/Footprints.cxx
+  IO/Private/LengthText.cxx
   IO/Private/MeshImport.cxx
   IO/Private/MeshStream.cxx
   IO/Private/Polygons.cxx
@@ -62,6 +63,7 @@ set(scene_sources
 
 set(private_sources
   Filters/Private/Common/JsonNode.cxx
+  Filters/Private/Common/PolygonTriangulation.cxx
   Filters/Private/Common/vtkAvianLidarArrays.cxx
   Filters/Private/Common/vtkAvianLidarContent.cxx
   Filters/Private/Common/vtkAvianLidarGather.cxx

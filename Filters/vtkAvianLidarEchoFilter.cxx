@@ -27,6 +27,7 @@ struct vtkAvianLidarEchoFilter::vtkMoved
   double TouchedBeams = 0.0; ///< number of beams touched by movers, on all ranks
   std::string Coincident;    ///< warning on coincident surfaces seen by beams of this rank
   vtkAvianLidarWarnings Warnings;
+  vtkAvianLidarWarnings MoverWarnings;
 };
 
 //------------------------------------------------------------------------------
@@ -99,7 +100,13 @@ void vtkAvianLidarEchoFilter::Prepare(
   this->PrepareBeams(ranks, vtkPolyData::GetData(inputVector[0]));
   in.Beams.CheckRanks(ranks);
   this->PrepareSurfaces(ranks, surfaces);
-  movers.Read(ranks, vtkDataObject::GetData(inputVector[2]), *in.Surfaces);
+  vtkDataObject* moving = vtkDataObject::GetData(inputVector[2]);
+  movers.Read(ranks, moving, *in.Surfaces);
+  if (this->Moved->MoverWarnings.IsNew(moving, movers.checksum, movers.warning) &&
+    ranks.Rank() == 0)
+  {
+    vtkWarningMacro("Input port 2 (movers), " << vtkAvianLidarText(movers.warning));
+  }
   in.Setup.movers = movers.movers;
   in.Setup.largestReflectance = in.Summary.largestReflectance;
   in.Setup.largestGain = in.Summary.largestGain;

@@ -4,6 +4,7 @@
 #include "FormatFacts.h"
 #include "GltfFile.h"
 #include "MeshFormats.h"
+#include "PolygonTriangulation.h"
 #include "UnpackedSize.h"
 #include "Vector.h"
 
@@ -14,7 +15,6 @@
 #include <assimp/LogStream.hpp>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/metadata.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <glm/mat4x3.hpp>
@@ -242,7 +242,48 @@ glm::dmat4 ToDouble(const aiMatrix4x4& m)
     { m.a4, m.b4, m.c4, m.d4 } };
 }
 
-void AddMesh(const aiMesh& source, const glm::dmat4x3& t, Mesh& mesh)
+// Adds the faces of Assimp's meshes. Assimp's own triangulation cuts ears, and gives a fan if it
+// finds no ear.
+class Faces
+{
+public:
+  // Adds a face of at least three corners. @param first index of the first point of Assimp's mesh
+  // @param rounding rounding of coordinates
+  void Add(const aiFace& face, std::int64_t first, int material, double rounding, Mesh& mesh)
+  {
+    this->Corners.clear();
+    for (unsigned int k = 0; k < face.mNumIndices; ++k)
+    {
+      const Vec3& p = mesh.points[first + face.mIndices[k]];
+      this->Corners.emplace_back(p[0], p[1], p[2]);
+    }
+    this->Polygon.Divide(this->Corners);
+    this->Lost.Check(this->Polygon, this->Number, rounding);
+    const auto added = static_cast<std::int64_t>(mesh.points.size()) - face.mNumIndices;
+    for (const glm::dvec3& p : this->Polygon.GetAdded())
+    {
+      mesh.points.push_back({ p.x, p.y, p.z });
+    }
+    for (PolygonTriangulation::Triangle triangle : this->Polygon.GetTriangles())
+    {
+      for (std::int64_t& corner : triangle)
+      {
+        corner = corner < face.mNumIndices ? first + face.mIndices[corner] : added + corner;
+      }
+      mesh.triangles.push_back(triangle);
+      mesh.materials.push_back(material);
+    }
+  }
+
+  std::int64_t Number = 0; // number of the face, among all faces
+  LostAreas Lost;
+
+private:
+  PolygonTriangulation Polygon;
+  std::vector<glm::dvec3> Corners;
+};
+
+void AddMesh(const aiMesh& source, const glm::dmat4x3& t, Faces& faces, Mesh& mesh)
 {
   const auto first = static_cast<std::int64_t>(mesh.points.size());
   double farthest = 0.0;
@@ -254,12 +295,18 @@ void AddMesh(const aiMesh& source, const glm::dmat4x3& t, Mesh& mesh)
     mesh.points.push_back({ p.x, p.y, p.z });
   }
   const double scale = std::max({ safeLength(t[0]), safeLength(t[1]), safeLength(t[2]) });
-  mesh.rounding = std::max({ mesh.rounding, scale * SpacingAt(farthest), SpacingAt(t[3].x),
-    SpacingAt(t[3].y), SpacingAt(t[3].z) });
-  for (unsigned int i = 0; i < source.mNumFaces; ++i)
+  const double rounding = scale * SpacingAt(farthest);
+  mesh.rounding =
+    std::max({ mesh.rounding, rounding, SpacingAt(t[3].x), SpacingAt(t[3].y), SpacingAt(t[3].z) });
+  for (unsigned int i = 0; i < source.mNumFaces; ++i, ++faces.Number)
   {
     const aiFace& face = source.mFaces[i];
-    if (face.mNumIndices != 3)
+    if (face.mNumIndices > 3)
+    {
+      faces.Add(face, first, static_cast<int>(source.mMaterialIndex), rounding, mesh);
+      continue;
+    }
+    if (face.mNumIndices < 3)
     {
       ++mesh.skippedFaces;
       continue;
@@ -270,20 +317,21 @@ void AddMesh(const aiMesh& source, const glm::dmat4x3& t, Mesh& mesh)
   }
 }
 
-void AddNode(const aiScene& scene, const aiNode& node, const glm::dmat4& parent, Mesh& mesh)
+void AddNode(
+  const aiScene& scene, const aiNode& node, const glm::dmat4& parent, Faces& faces, Mesh& mesh)
 {
   const glm::dmat4 transform = parent * ToDouble(node.mTransformation);
   for (unsigned int i = 0; i < node.mNumMeshes; ++i)
   {
-    AddMesh(*scene.mMeshes[node.mMeshes[i]], glm::dmat4x3(transform), mesh);
+    AddMesh(*scene.mMeshes[node.mMeshes[i]], glm::dmat4x3(transform), faces, mesh);
   }
   for (unsigned int i = 0; i < node.mNumChildren; ++i)
   {
-    AddNode(scene, *node.mChildren[i], transform, mesh);
+    AddNode(scene, *node.mChildren[i], transform, faces, mesh);
   }
 }
 
-// Checks the indices of the corners of faces, which Assimp's triangulation does not check.
+// Checks the indices of the corners of faces.
 void CheckFaces(const aiScene& scene)
 {
   for (unsigned int i = 0; i < scene.mNumMeshes; ++i)
@@ -580,7 +628,6 @@ Mesh ReadAssimpMesh(const std::string& file)
   if (scene)
   {
     CheckFaces(*scene);
-    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   }
   if (!scene || !scene->mRootNode)
   {
@@ -612,7 +659,12 @@ Mesh ReadAssimpMesh(const std::string& file)
     unit *= FbxUnit(*scene);
     mesh.upAxis = TurnFbx(*scene);
   }
-  AddNode(*scene, *scene->mRootNode, glm::dmat4(1), mesh);
+  Faces faces;
+  AddNode(*scene, *scene->mRootNode, glm::dmat4(1), faces, mesh);
+  if (const std::string lost = faces.Lost.Sentence("face"); !lost.empty())
+  {
+    mesh.warnings.push_back(lost);
+  }
   const Vec3& moved = files->GetOffset();
   for (Vec3& p : mesh.points)
   {

@@ -382,8 +382,15 @@ void AddDataSet(vtkDataSet* data, Mesh& mesh)
   CheckCells(data);
   vtkNew<vtkDataSetSurfaceFilter> outside;
   outside->SetInputData(data);
+  outside->PassThroughCellIdsOn();
   outside->Update();
-  const vtkSmartPointer<vtkPolyData> surface = vtkAvianLidarTriangles(outside->GetOutput());
+  std::string warning;
+  const vtkSmartPointer<vtkPolyData> surface = vtkAvianLidarTriangles(outside->GetOutput(),
+    &warning, outside->GetOutput()->GetCellData()->GetArray(outside->GetOriginalCellIdsName()));
+  if (!warning.empty())
+  {
+    mesh.warnings.push_back(warning);
+  }
   surface->GetFieldData()->ShallowCopy(data->GetFieldData());
   const auto first = static_cast<std::int64_t>(mesh.points.size());
   double farthest = 0.0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace avianlidar::scene
 {
@@ -124,7 +123,6 @@ Sheet Join(const std::vector<TerrainPiece>& pieces)
   constexpr double same = 1e-4; // distance of vertices that are merged, m
   Sheet sheet;
   std::map<std::array<std::int64_t, 2>, Index> known;
-  std::set<std::array<Index, 2>> edges;
   for (const TerrainPiece& piece : pieces)
   {
     const Sheet plan = Triangulate(piece.polygon);
@@ -146,17 +144,10 @@ Sheet Join(const std::vector<TerrainPiece>& pieces)
       if (a != b && b != c && c != a)
       {
         sheet.triangles.push_back({ a, b, c });
-        edges.insert({ { a, b }, { b, c }, { c, a } });
       }
     }
   }
-  for (const auto& [left, right] : edges)
-  {
-    if (edges.count({ right, left }) == 0) // edge of only one triangle
-    {
-      sheet.outline.push_back({ left, right });
-    }
-  }
+  AddOutline(sheet);
   return sheet;
 }
 

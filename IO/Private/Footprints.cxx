@@ -2,6 +2,7 @@
 #include "Footprints.h"
 
 #include "Extrusion.h"
+#include "LengthText.h"
 #include "MeshFormats.h"
 #include "RegularFile.h"
 #include "SceneDescription.h"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -24,29 +24,66 @@ namespace avianlidar::scene
 {
 namespace
 {
+// Greatest plausible heights and widths, and elevations above the sea, m.
+constexpr double LargestLength = 1000;
+constexpr double HighestElevation = 9000;
+
 struct Feature
 {
-  std::string name;
+  std::string name; // number of the feature if it does not have a name
+  std::string heightText;
+  bool isNested = false; // whether places inside an even number of rings are outside
   std::optional<double> height;
   std::optional<double> minHeight;
   std::optional<double> width;
   std::vector<Polygon> polygons;
   std::vector<Ring> lines;
   Ring points;
+
+  bool HasPlan() const
+  {
+    return !this->polygons.empty() || !this->lines.empty() || !this->points.empty();
+  }
+};
+
+// Counts features, and names the first.
+class Names
+{
+public:
+  void Add(const std::string& name)
+  {
+    this->Text += this->Count < Listed ? (this->Count > 0 ? ", " : "") + name : "";
+    ++this->Count;
+  }
+  int GetCount() const { return this->Count; }
+  std::string GetText() const { return this->Text + (this->Count > Listed ? ", ..." : ""); }
+
+private:
+  static constexpr int Listed = 5;
+  int Count = 0;
+  std::string Text;
 };
 
 struct Counts
 {
   int filtered = 0;
-  int placeless = 0;
-  int surfaces = 0;
+  Names placeless;
+  Names surfaces;
   int points = 0;
   int thinLines = 0;
-  int repaired = 0;
-  int empty = 0;
-  int assumedHeights = 0;
-  int minHeights = 0;
+  Names repaired;
+  Names empty;
+  Names assumedHeights;
+  Names minHeights;
   int beyond = 0;
+  Names failed;
+  std::string failure; // error of the first feature that failed
+
+  void AddFailure(const std::string& name, const std::string& error)
+  {
+    this->failure = this->failed.GetCount() == 0 ? error : this->failure;
+    this->failed.Add(name);
+  }
 };
 
 // Area in plan. With `follows` the area follows the terrain and does not have a level roof.
@@ -110,44 +147,39 @@ bool HasTruthValue(std::string_view json, const std::string& name)
   return false;
 }
 
-// Returns the text of a length. If one feature has a list, GDAL makes lists of all values; a list
-// of one value counts as this value, and other lists and truth values give no text.
-std::string FindLengthText(const OGRFeature& feature, const std::string& name)
+// Returns the text of a number, or an empty text for an attribute that cannot be a number. If one
+// feature has a list, GDAL makes lists of all values; a list of one value counts as this value.
+std::string FindNumber(const OGRFeature& feature, const std::string& name)
 {
   const int field = name.empty() ? -1 : feature.GetFieldIndex(name.c_str());
   if (field >= 0 && feature.IsFieldSetAndNotNull(field))
   {
-    const OGRFieldType type = feature.GetFieldDefnRef(field)->GetType();
-    const char* json = feature.GetNativeData();
-    const std::string text = feature.GetFieldAsString(field);
-    if (json && HasTruthValue(json, name))
+    const OGRFieldDefn& column = *feature.GetFieldDefnRef(field);
+    const OGRFieldType type = column.GetType();
+    const char* const json = feature.GetNativeData();
+    if (column.GetSubType() == OFSTBoolean || (json && HasTruthValue(json, name)))
     {
       return {};
     }
     if (type == OFTIntegerList || type == OFTInteger64List || type == OFTRealList ||
       type == OFTStringList) // "(1:12)"
     {
+      const std::string text = feature.GetFieldAsString(field);
       return text.rfind("(1:", 0) == 0 ? text.substr(3, text.size() - 4) : std::string();
+    }
+    if (type != OFTString && type != OFTInteger && type != OFTInteger64 && type != OFTReal)
+    {
+      return {};
     }
   }
   return name.empty() ? std::string() : FindAttribute(feature, name).value_or("");
 }
 
-// Reads lengths such as "12", "12.5" and "12 m". Texts with other units, such as feet or floors,
-// give no value. `unit` is the unit of a number without a unit, m.
-std::optional<double> FindLength(
-  const OGRFeature& feature, const std::string& name, double unit = 1)
+// Returns the name of a feature, or the name of the object and a number.
+std::string FindName(const OGRFeature& feature, const Object& object, std::size_t number)
 {
-  const std::string text = FindLengthText(feature, name);
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string given(end);
-  if (end == text.c_str() || !(value > 0) || !std::isfinite(value) ||
-    (given != "" && given != " m" && given != "m"))
-  {
-    return {};
-  }
-  return given.empty() ? unit * value : value;
+  const std::string name = FindAttribute(feature, object.footprints.nameAttribute).value_or("");
+  return name.empty() ? object.name + " " + std::to_string(number) : name;
 }
 
 Ring GetRing(const OGRSimpleCurve& curve)
@@ -160,8 +192,11 @@ Ring GetRing(const OGRSimpleCurve& curve)
   return ring;
 }
 
-void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& counts)
+// Adds the parts of a geometry to a feature. Returns whether parts were left out: solids and other
+// surfaces in space.
+bool CollectGeometry(const OGRGeometry& geometry, Feature& feature)
 {
+  bool left = false;
   switch (wkbFlatten(geometry.getGeometryType()))
   {
     case wkbPolygon:
@@ -183,15 +218,16 @@ void CollectGeometry(const OGRGeometry& geometry, Feature& feature, Counts& coun
     case wkbGeometryCollection:
       for (const OGRGeometry* part : *geometry.toGeometryCollection())
       {
-        CollectGeometry(*part, feature, counts);
+        left = CollectGeometry(*part, feature) || left;
       }
       break;
     case wkbPoint:
       feature.points.push_back({ geometry.toPoint()->getX(), geometry.toPoint()->getY() });
       break;
     default:
-      ++counts.surfaces;
+      left = true;
   }
+  return left;
 }
 
 bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filters)
@@ -298,9 +334,31 @@ double HeightUnit(OGRLayer& layer, const std::string& attribute)
   return isObstacleFile && (attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0;
 }
 
-std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& options, Counts& counts,
-  const std::function<bool()>& keepGoing)
+Feature ReadFeature(const OGRFeature& source, const OGRGeometry& geometry, const Object& object,
+  double unit, std::size_t number, Counts& counts)
 {
+  const FootprintOptions& options = object.footprints;
+  Feature feature;
+  feature.name = FindName(source, object, number);
+  feature.heightText = FindNumber(source, options.heightAttribute);
+  const bool isElevation = options.heightAttribute == "AMSL";
+  feature.height =
+    ReadLength(feature.heightText, unit, isElevation ? HighestElevation : LargestLength);
+  feature.minHeight = ReadLength(FindNumber(source, options.minHeightAttribute), 1, LargestLength);
+  feature.width = ReadLength(FindNumber(source, options.widthAttribute), 1, LargestLength);
+  // Arcs are replaced by chords.
+  const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
+  if (CollectGeometry(straight ? *straight : geometry, feature))
+  {
+    counts.surfaces.Add(feature.name);
+  }
+  return feature;
+}
+
+std::vector<Feature> ReadFeatures(
+  OGRLayer& layer, const Object& object, Counts& counts, const std::function<bool()>& keepGoing)
+{
+  const FootprintOptions& options = object.footprints;
   std::vector<Feature> features;
   const double unit = HeightUnit(layer, options.heightAttribute);
   layer.ResetReading();
@@ -318,18 +376,11 @@ std::vector<Feature> ReadFeatures(OGRLayer& layer, const FootprintOptions& optio
     const OGRGeometry* geometry = source->GetGeometryRef();
     if (!geometry || geometry->IsEmpty())
     {
-      ++counts.placeless;
+      counts.placeless.Add(
+        FindAttribute(*source, options.nameAttribute).value_or("feature without a name"));
       continue;
     }
-    Feature feature;
-    feature.name = FindAttribute(*source, options.nameAttribute).value_or("");
-    feature.height = FindLength(*source, options.heightAttribute, unit);
-    feature.minHeight = FindLength(*source, options.minHeightAttribute);
-    feature.width = FindLength(*source, options.widthAttribute);
-    // Arcs are replaced by chords.
-    const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
-    CollectGeometry(straight ? *straight : *geometry, feature, counts);
-    features.push_back(std::move(feature));
+    features.push_back(ReadFeature(*source, *geometry, object, unit, features.size() + 1, counts));
   }
   return features;
 }
@@ -348,9 +399,26 @@ void ToLocal(Ring& ring, const GeoreferencedPoints& frame, double height)
   }
 }
 
-// Transforms plans to local metres. Heights from GDAL are ignored.
-void ToLocal(
-  std::vector<Feature>& features, const OGRLayer& layer, const Object& object, const Scene& scene)
+void ToLocal(Feature& feature, const GeoreferencedPoints& frame, double height)
+{
+  for (Polygon& polygon : feature.polygons)
+  {
+    for (Ring& ring : polygon.rings)
+    {
+      ToLocal(ring, frame, height);
+    }
+  }
+  for (Ring& line : feature.lines)
+  {
+    ToLocal(line, frame, height);
+  }
+  ToLocal(feature.points, frame, height);
+}
+
+// Transforms plans to local metres. Heights from GDAL are ignored. A feature outside the reference
+// system loses its plan.
+void ToLocal(std::vector<Feature>& features, const OGRLayer& layer, const Object& object,
+  const Scene& scene, Counts& counts)
 {
   if (object.crs == "local")
   {
@@ -367,36 +435,34 @@ void ToLocal(
     : GeoreferencedPoints(*scene.origin, object.crs);
   for (Feature& feature : features)
   {
-    for (Polygon& polygon : feature.polygons)
+    try
     {
-      for (Ring& ring : polygon.rings)
-      {
-        ToLocal(ring, frame, scene.origin->height);
-      }
+      ToLocal(feature, frame, scene.origin->height);
     }
-    for (Ring& line : feature.lines)
+    catch (const Error& error)
     {
-      ToLocal(line, frame, scene.origin->height);
+      counts.AddFailure(feature.name, error.what());
+      feature.polygons.clear();
+      feature.lines.clear();
+      feature.points.clear();
     }
-    ToLocal(feature.points, frame, scene.origin->height);
   }
 }
 
-std::string Label(const Feature& feature, const Object& object, std::size_t number)
-{
-  return feature.name.empty() ? object.name + " " + std::to_string(number) : feature.name;
-}
-
-double GetHeight(const Feature& feature, const Object& object, std::size_t number, Counts& counts)
+double GetHeight(const Feature& feature, const Object& object, Counts& counts)
 {
   const FootprintOptions& options = object.footprints;
   if (feature.height)
   {
     return *feature.height;
   }
-  failIf(!options.height, "feature \"", Label(feature, object, number), "\" has no usable ",
-    options.heightAttribute, ", and there is no height to assume");
-  counts.assumedHeights += !options.heightAttribute.empty();
+  failIf(!options.height, "feature \"", feature.name, "\" has no usable ", options.heightAttribute,
+    ", and there is no height to assume");
+  if (!options.heightAttribute.empty())
+  {
+    counts.assumedHeights.Add(
+      feature.name + (feature.heightText.empty() ? "" : " (\"" + feature.heightText + "\")"));
+  }
   return *options.height;
 }
 
@@ -404,7 +470,10 @@ double GetHeight(const Feature& feature, const Object& object, std::size_t numbe
 double GetMinHeight(const Feature& feature, double height, Counts& counts)
 {
   const double under = feature.minHeight.value_or(0);
-  counts.minHeights += under >= height && under > 0;
+  if (under >= height && under > 0)
+  {
+    counts.minHeights.Add(feature.name);
+  }
   return under < height ? under : 0;
 }
 
@@ -421,14 +490,14 @@ std::vector<Region> GetRegions(
 {
   std::vector<Region> regions;
   bool repaired = false;
-  for (const Polygon& polygon : feature.polygons)
+  for (Polygon& valid : MakeValid(feature.polygons, feature.isNested, repaired))
   {
-    for (Polygon& valid : MakeValid(polygon, repaired))
-    {
-      regions.push_back({ std::move(valid), isMedium });
-    }
+    regions.push_back({ std::move(valid), isMedium });
   }
-  counts.repaired += repaired;
+  if (repaired)
+  {
+    counts.repaired.Add(feature.name);
+  }
   const std::optional<double> width = feature.width ? feature.width : options.width;
   for (const Ring& line : isMedium ? std::vector<Ring>() : feature.lines)
   {
@@ -471,8 +540,8 @@ void AddAlong(const Ring& line, double width, Ring& points)
 }
 
 // Adds the crowns of trees and rows of trees, as ellipsoids between base and height.
-void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
-  const Terrain* terrain, Counts& counts, Part& crowns)
+void AddCrowns(const Feature& feature, const Object& object, const Terrain* terrain, Counts& counts,
+  Part& crowns)
 {
   const std::optional<double> width = feature.width ? feature.width : object.footprints.width;
   Ring points;
@@ -486,7 +555,7 @@ void AddCrowns(const Feature& feature, const Object& object, std::size_t number,
     counts.points += static_cast<int>(points.size());
     return;
   }
-  const double height = GetHeight(feature, object, number, counts);
+  const double height = GetHeight(feature, object, counts);
   for (const Vec2& p : points)
   {
     const std::optional<double> ground = terrain ? terrain->HeightAt(p) : 0.0;
@@ -526,6 +595,52 @@ void AddRegion(const Region& region, const Terrain* terrain, const FootprintOpti
                : AddSolid(sheet, base, height, materials, mesh);
 }
 
+// Removes what was added to a mesh.
+class Undo
+{
+public:
+  explicit Undo(Mesh& mesh)
+    : Target(mesh)
+    , Points(mesh.points.size())
+    , Triangles(mesh.triangles.size())
+  {
+  }
+  void operator()() const
+  {
+    this->Target.points.resize(this->Points);
+    this->Target.triangles.resize(this->Triangles);
+    this->Target.materials.resize(this->Triangles);
+  }
+
+private:
+  Mesh& Target;
+  const std::size_t Points;
+  const std::size_t Triangles;
+};
+
+// Adds the areas or solids of a feature.
+void AddRegions(const Feature& feature, const Object& object, const std::vector<Region>& regions,
+  const Terrain* terrain, const ExtrusionMaterials& materials, Counts& counts, Mesh& mesh)
+{
+  const FootprintOptions& options = object.footprints;
+  const double top = options.flat ? 0 : GetHeight(feature, object, counts);
+  const double under = options.flat ? 0 : GetMinHeight(feature, top, counts);
+  const Undo undo(mesh);
+  try
+  {
+    for (const Region& region : regions)
+    {
+      AddRegion(
+        region, terrain, options, options.base + under, top - under, materials, counts, mesh);
+    }
+  }
+  catch (const Error&)
+  {
+    undo();
+    throw;
+  }
+}
+
 std::vector<Part> Raise(const std::vector<Feature>& features, const Object& object,
   const Terrain* terrain, Counts& counts, const std::function<bool()>& keepGoing)
 {
@@ -536,40 +651,41 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
   materials.glazing = options.glazing;
   std::vector<Part> parts;
   Part crowns{ object.name, object.objectClass, {} };
-  for (std::size_t i = 0; i < features.size(); ++i)
+  const bool isMedium = !object.medium.empty();
+  for (const Feature& feature : features)
   {
     if (!keepGoing())
     {
       throw WorkStopped();
     }
-    const bool isMedium = !object.medium.empty();
-    if (isMedium)
+    try
     {
-      AddCrowns(features[i], object, i + 1, terrain, counts, crowns);
+      if (isMedium)
+      {
+        AddCrowns(feature, object, terrain, counts, crowns);
+      }
+      const std::vector<Region> regions = GetRegions(feature, options, isMedium, counts);
+      if (regions.empty())
+      {
+        if (!isMedium && feature.HasPlan())
+        {
+          counts.empty.Add(feature.name);
+        }
+        continue;
+      }
+      const std::string& name = options.separate ? feature.name : object.name;
+      Part part{ name, object.objectClass, {} };
+      const bool isNew = parts.empty() || options.separate;
+      AddRegions(feature, object, regions, terrain, materials, counts,
+        isNew ? part.mesh : parts.back().mesh);
+      if (!part.mesh.triangles.empty())
+      {
+        parts.push_back(std::move(part));
+      }
     }
-    const std::vector<Region> regions = GetRegions(features[i], options, isMedium, counts);
-    if (regions.empty())
+    catch (const Error& error)
     {
-      counts.empty += isMedium ? 0 : 1;
-      continue;
-    }
-    if (parts.empty() || options.separate)
-    {
-      parts.push_back({ options.separate ? Label(features[i], object, i + 1) : object.name,
-        object.objectClass, {} });
-    }
-    Mesh& mesh = parts.back().mesh;
-    const double top = options.flat ? 0 : GetHeight(features[i], object, i + 1, counts);
-    const double under = options.flat ? 0 : GetMinHeight(features[i], top, counts);
-    const double base = options.base + under;
-    const double height = top - under;
-    for (const Region& region : regions)
-    {
-      AddRegion(region, terrain, options, base, height, materials, counts, mesh);
-    }
-    if (mesh.triangles.empty())
-    {
-      parts.pop_back();
+      counts.AddFailure(feature.name, error.what());
     }
   }
   if (!crowns.crowns.empty())
@@ -577,6 +693,46 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
     parts.push_back(std::move(crowns));
   }
   return parts;
+}
+
+// Adds a sentence to the notes, unless nothing was counted.
+void AddNote(const Object& object, int count, const std::string& what, const std::string& names,
+  std::vector<std::string>& notes)
+{
+  if (count > 0)
+  {
+    notes.push_back(joined(object.name, ": ", count, " ", what, names.empty() ? "" : ": ", names));
+  }
+}
+
+void AddNotes(const Object& object, const Counts& counts, std::vector<std::string>& notes)
+{
+  const std::pair<const Names&, std::string> named[] = {
+    { counts.repaired, "footprints with crossing or overlapping rings were repaired" },
+    { counts.failed, "features that cannot be made (" + counts.failure + ") were left out" },
+    { counts.empty, "features without an area were left out" },
+    { counts.placeless, "features without a geometry were left out" },
+    { counts.surfaces, "surfaces in space were left out" },
+    { counts.assumedHeights,
+      "features have no usable height attribute and got the default height" },
+    { counts.minHeights,
+      "features have a least height that is not below their height, and stand on the ground" },
+  };
+  for (const auto& [names, what] : named)
+  {
+    AddNote(object, names.GetCount(), what, names.GetText(), notes);
+  }
+  AddNote(object, counts.thinLines, "lines without a width were left out", "", notes);
+  AddNote(object, counts.points, "points were left out", "", notes);
+  AddNote(object, counts.beyond,
+    "areas and points beyond " + object.footprints.on + " were left out", "", notes);
+}
+
+// Returns whether an error of GDAL concerns one feature, which then has no geometry.
+bool IsOfOneFeature(GDALDataset& data, const std::string& reason)
+{
+  const std::string driver = data.GetDriverName();
+  return driver.rfind("GeoJSON", 0) == 0 && reason.rfind(": Invalid ", 0) == 0;
 }
 }
 
@@ -605,9 +761,11 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   failIf(!data, "GDAL cannot read it", quiet.Reason());
   OGRLayer& layer = OpenLayer(*data, object.footprints.layer);
   Counts counts;
-  std::vector<Feature> features = ReadFeatures(layer, object.footprints, counts, keepGoing);
-  failIf(quiet.Failed(), "GDAL cannot read all of it", quiet.Reason());
-  failIf(features.empty() && counts.placeless > 0, "none of its ", counts.placeless, " features",
+  std::vector<Feature> features = ReadFeatures(layer, object, counts, keepGoing);
+  failIf(quiet.Failed() && !IsOfOneFeature(*data, quiet.Reason()), "GDAL cannot read all of it",
+    quiet.Reason());
+  const int placeless = counts.placeless.GetCount();
+  failIf(features.empty() && placeless > 0, "none of its ", placeless, " features",
     (object.footprints.filters.empty() ? "" : " that fit the filter"), " has a geometry",
     (isTable ? ": a table needs the columns x and y, or longitude and latitude, with numbers"
              : ""));
@@ -615,34 +773,20 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
     counts.filtered == 0
       ? "holds no features"
       : "none of its " + std::to_string(counts.filtered) + " features fits the filter");
-  ToLocal(features, layer, object, scene);
+  const bool isNested = std::string(data->GetDriverName()) == "OSM";
+  for (Feature& feature : features)
+  {
+    feature.isNested = isNested;
+  }
+  ToLocal(features, layer, object, scene, counts);
   std::vector<Part> parts = Raise(features, object, terrain, counts, keepGoing);
-  failIf(parts.empty() && counts.surfaces > 0,
+  failIf(parts.empty() && counts.failed.GetCount() > 0, counts.failure);
+  failIf(parts.empty() && counts.surfaces.GetCount() > 0,
     "its features are surfaces in space, expected areas, lines or points in plan: give it as a "
     "mesh");
   failIf(parts.empty(), "its features have no area (points, or lines without width)",
     std::string(terrain ? ", or lie beyond " + object.footprints.on : ""));
-  const std::string beyond = "areas and points beyond " + object.footprints.on + " were left out";
-  const std::pair<int, const char*> all[] = {
-    { counts.repaired, "footprints with crossing or overlapping rings were repaired" },
-    { counts.empty, "features without an area were left out" },
-    { counts.thinLines, "lines without a width were left out" },
-    { counts.points, "points were left out" },
-    { counts.placeless, "features without a geometry were left out" },
-    { counts.surfaces, "surfaces in space were left out" },
-    { counts.beyond, beyond.c_str() },
-    { counts.assumedHeights,
-      "features have no usable height attribute and got the default height" },
-    { counts.minHeights,
-      "features have a least height that is not below their height, and stand on the ground" },
-  };
-  for (const auto& [count, what] : all)
-  {
-    if (count > 0)
-    {
-      notes.push_back(joined(object.name, ": ", count, " ", what));
-    }
-  }
+  AddNotes(object, counts, notes);
   return parts;
 }
 }

@@ -23,9 +23,9 @@ namespace avianlidar::scene
  * On a terrain, a solid stands on the lowest point of the terrain below the solid. Flat areas,
  * lines and media follow the terrain. Areas beyond the terrain are left out.
  *
- * Sentences on repaired or skipped features and on assumed heights are added to `notes`. Throws
- * Error if the file cannot be read, no feature is left, or a feature does not have a height. Throws
- * WorkStopped if keepGoing returns false.
+ * A feature that cannot be made is left out. Sentences that count and name repaired features,
+ * features that were left out and assumed heights are added to `notes`. Throws Error if the file
+ * cannot be read or no feature is left. Throws WorkStopped if keepGoing returns false.
  */
 std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const Terrain* terrain,
   std::vector<std::string>& notes, const std::function<bool()>& keepGoing);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Polygons.h"
 
+#include "PolygonTriangulation.h"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <map>
+#include <set>
 
 namespace avianlidar::scene
 {
@@ -12,7 +15,6 @@ namespace
 {
 // Length of edges that are removed, m. Maps do not resolve such edges, which only make slivers.
 constexpr double SmallestEdge = 1e-6;
-constexpr double AreaTolerance = 1e-9;
 
 Ring WithoutRepeats(const Ring& ring)
 {
@@ -30,6 +32,25 @@ Ring WithoutRepeats(const Ring& ring)
     kept.pop_back();
   }
   return kept;
+}
+
+// Leaves out rings of fewer than three vertices. The result is empty without an outer ring.
+Polygon WithoutRepeats(const Polygon& polygon)
+{
+  Polygon clean;
+  for (std::size_t i = 0; i < polygon.rings.size(); ++i)
+  {
+    Ring ring = WithoutRepeats(polygon.rings[i]);
+    if (ring.size() >= 3)
+    {
+      clean.rings.push_back(std::move(ring));
+    }
+    else if (i == 0)
+    {
+      return {};
+    }
+  }
+  return clean;
 }
 }
 
@@ -69,35 +90,46 @@ double Area(const Polygon& polygon)
   return area;
 }
 
-std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired)
+std::vector<Polygon> MakeValid(const std::vector<Polygon>& polygons, bool areNested, bool& repaired)
 {
-  Polygon clean;
-  for (std::size_t i = 0; i < polygon.rings.size(); ++i)
-  {
-    Ring ring = WithoutRepeats(polygon.rings[i]);
-    if (ring.size() >= 3)
-    {
-      clean.rings.push_back(std::move(ring));
-    }
-    else if (i == 0)
-    {
-      return {};
-    }
-  }
-  if (clean.rings.empty())
-  {
-    return {};
-  }
   const Geos geos;
-  const Geos::Geometry geometry = geos.MakePolygon(clean);
-  if (GEOSisValid_r(geos.Get(), geometry.get()) == 1)
+  std::vector<Polygon> clean;
+  for (const Polygon& polygon : polygons)
   {
-    return { clean };
+    Polygon one = WithoutRepeats(polygon);
+    if (!one.rings.empty())
+    {
+      clean.push_back(std::move(one));
+    }
+  }
+  if (clean.empty() || geos.IsValid(clean))
+  {
+    return clean;
   }
   repaired = true;
-  std::vector<Polygon> polygons;
-  geos.Collect(geos.Own(GEOSMakeValid_r(geos.Get(), geometry.get())).get(), polygons);
-  return polygons;
+  std::vector<Geos::Geometry> parts;
+  for (const Polygon& polygon : clean)
+  {
+    std::vector<Geos::Geometry> rings;
+    for (const Ring& ring : polygon.rings)
+    {
+      rings.push_back(
+        geos.Own(GEOSMakeValid_r(geos.Get(), geos.MakePolygon(Polygon{ { ring } }).get())));
+    }
+    if (!areNested && rings.size() > 1)
+    {
+      const Geos::Geometry shell = std::move(rings[0]);
+      const Geos::Geometry holes = geos.Combine(&GEOSUnion_r, rings.begin() + 1, rings.end());
+      rings.clear();
+      rings.push_back(geos.Own(GEOSSymDifference_r(geos.Get(), shell.get(), holes.get())));
+    }
+    std::move(rings.begin(), rings.end(), std::back_inserter(parts));
+  }
+  std::vector<Polygon> valid;
+  geos.Collect(
+    geos.Combine(areNested ? &GEOSSymDifference_r : &GEOSUnion_r, parts.begin(), parts.end()).get(),
+    valid);
+  return valid;
 }
 
 std::vector<Polygon> WidenLine(const Ring& line, double width)
@@ -122,8 +154,8 @@ std::vector<Polygon> WidenLine(const Ring& line, double width)
 
 Sheet Triangulate(const Polygon& polygon)
 {
-  Sheet sheet;
-  std::map<Vec2, std::int64_t> index;
+  std::vector<glm::dvec3> corners;
+  std::vector<std::size_t> ends;
   for (std::size_t r = 0; r < polygon.rings.size(); ++r)
   {
     Ring ring = polygon.rings[r];
@@ -131,45 +163,53 @@ Sheet Triangulate(const Polygon& polygon)
     {
       std::reverse(ring.begin(), ring.end());
     }
-    std::vector<std::int64_t> ids;
     for (const Vec2& p : ring)
     {
-      const auto inserted = index.emplace(p, static_cast<std::int64_t>(sheet.points.size()));
-      if (inserted.second)
-      {
-        sheet.points.push_back({ p[0], p[1], 0.0 });
-      }
-      ids.push_back(inserted.first->second);
+      corners.emplace_back(p[0], p[1], 0.0);
     }
-    for (std::size_t i = 0; i < ids.size(); ++i)
-    {
-      sheet.outline.push_back({ ids[i], ids[(i + 1) % ids.size()] });
-    }
+    ends.push_back(corners.size());
   }
-  const Geos geos;
-  const Geos::Geometry geometry = geos.MakePolygon(polygon);
-  std::vector<Polygon> pieces;
-  geos.Collect(
-    geos.Own(GEOSConstrainedDelaunayTriangulation_r(geos.Get(), geometry.get())).get(), pieces);
-  double covered = 0;
-  for (const Polygon& piece : pieces)
+  PolygonTriangulation triangulation;
+  triangulation.Divide(corners, ends);
+  failIf(!triangulation.IsWhole(0.0), "a polygon of ", triangulation.GetOutlineArea(),
+    " m2 has rings that cross or overlap");
+  corners.insert(corners.end(), triangulation.GetAdded().begin(), triangulation.GetAdded().end());
+  // Rings share the vertices at which they touch.
+  Sheet sheet;
+  std::map<Vec2, std::int64_t> index;
+  std::vector<std::int64_t> ids;
+  for (const glm::dvec3& p : corners)
   {
-    Ring corners = piece.rings[0];
-    if (SignedArea(corners) < 0)
+    const auto inserted =
+      index.emplace(Vec2{ p.x, p.y }, static_cast<std::int64_t>(sheet.points.size()));
+    if (inserted.second)
     {
-      std::reverse(corners.begin(), corners.end());
+      sheet.points.push_back({ p.x, p.y, 0.0 });
     }
-    sheet.triangles.push_back(
-      { index.at(corners.at(0)), index.at(corners.at(1)), index.at(corners.at(2)) });
-    covered += SignedArea({ corners[0], corners[1], corners[2] });
+    ids.push_back(inserted.first->second);
   }
-  const double area = Area(polygon);
-  // The products that make the area of a long narrow polygon are far larger than the area. Their
-  // rounding is as large.
-  const double rounding =
-    4 * std::numeric_limits<double>::epsilon() * std::pow(Perimeter(polygon), 2);
-  failIf(!(std::abs(covered - area) <= AreaTolerance * area + rounding), "a polygon of ",
-    std::to_string(area), " m2 cannot be triangulated");
+  for (const auto& [a, b, c] : triangulation.GetTriangles())
+  {
+    sheet.triangles.push_back({ ids[a], ids[b], ids[c] });
+  }
+  AddOutline(sheet);
   return sheet;
+}
+
+void AddOutline(Sheet& sheet)
+{
+  using Edge = std::array<std::int64_t, 2>;
+  std::set<Edge> edges;
+  for (const auto& [a, b, c] : sheet.triangles)
+  {
+    for (const Edge& edge : { Edge{ a, b }, Edge{ b, c }, Edge{ c, a } })
+    {
+      if (edges.erase({ edge[1], edge[0] }) == 0)
+      {
+        edges.insert(edge);
+      }
+    }
+  }
+  sheet.outline.assign(edges.begin(), edges.end());
 }
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Polygons.h
- * @brief Plane polygons with holes: repairs polygons, widens lines and makes triangles, with GEOS.
+ * @brief Plane polygons with holes: repairs polygons and widens lines with GEOS, and makes
+ * triangles.
  *
- * Coordinates are in metres. GEOS's constrained Delaunay triangulation neither adds nor removes
- * vertices, so walls raised on the same rings meet the roof in whole edges.
+ * Coordinates are in metres. Walls are raised on the edges of the triangles, so that walls meet the
+ * roof in whole edges.
  */
 #ifndef AvianLidarPolygons_h
 #define AvianLidarPolygons_h
@@ -79,6 +80,46 @@ public:
       this->Get(), rings[0], rings.data() + 1, static_cast<unsigned int>(rings.size() - 1)));
   }
 
+  Geometry MakeMultiPolygon(const std::vector<Polygon>& polygons) const
+  {
+    std::vector<Geometry> made;
+    for (const Polygon& polygon : polygons)
+    {
+      made.push_back(this->MakePolygon(polygon));
+    }
+    std::vector<GEOSGeometry*> parts;
+    for (Geometry& part : made)
+    {
+      parts.push_back(part.release());
+    }
+    return this->Own(GEOSGeom_createCollection_r(
+      this->Get(), GEOS_MULTIPOLYGON, parts.data(), static_cast<unsigned int>(parts.size())));
+  }
+
+  /// Combines one or more geometries by an operation on two, such as GEOSUnion_r(). Halves are
+  /// combined first, because an operation takes longer on a geometry that has grown.
+  using Operation = GEOSGeometry*(GEOSContextHandle_t, const GEOSGeometry*, const GEOSGeometry*);
+  Geometry Combine(Operation* operation, std::vector<Geometry>::iterator begin,
+    std::vector<Geometry>::iterator end) const
+  {
+    if (end - begin == 1)
+    {
+      return std::move(*begin);
+    }
+    const auto middle = begin + (end - begin) / 2;
+    const Geometry first = this->Combine(operation, begin, middle);
+    const Geometry second = this->Combine(operation, middle, end);
+    return this->Own(operation(this->Get(), first.get(), second.get()));
+  }
+
+  /// Returns whether polygons are valid, and do not overlap.
+  bool IsValid(const std::vector<Polygon>& polygons) const
+  {
+    const Geometry all =
+      polygons.size() == 1 ? this->MakePolygon(polygons[0]) : this->MakeMultiPolygon(polygons);
+    return GEOSisValid_r(this->Get(), all.get()) == 1;
+  }
+
   Ring GetRing(const GEOSGeometry* ring) const
   {
     const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(this->Get(), ring);
@@ -131,19 +172,28 @@ double SignedArea(const Ring& ring);
 double Area(const Polygon& polygon);
 
 /**
- * Returns valid polygons that cover the region of `polygon`, without repeated vertices and without
- * crossing or overlapping rings (GEOS MakeValid). The result is empty if no region with an area is
- * left. `repaired` becomes true if the repair changes more than repeated vertices.
+ * Returns valid polygons for the region of `polygons`, without repeated vertices and without
+ * crossing or overlapping rings. The result is empty if no region with an area is left. `repaired`
+ * becomes true if the repair changes more than repeated vertices.
+ *
+ * Each ring is made valid alone (GEOS MakeValid), because GEOS fills some holes that share edges.
+ * A hole outside its polygon becomes a polygon. Polygons that overlap are united.
+ * @param areNested true if a place inside an even number of all rings is outside: GDAL takes some
+ * holes of OpenStreetMap that share edges for islands
  */
-std::vector<Polygon> MakeValid(const Polygon& polygon, bool& repaired);
+std::vector<Polygon> MakeValid(
+  const std::vector<Polygon>& polygons, bool areNested, bool& repaired);
 
 /// Returns the region within half of `width`, m, of a line, with flat ends and mitred corners.
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
-/// Triangulates a valid polygon at the height 0. Throws Error if GEOS fails, or if the area of the
-/// triangles differs from the area of the polygon by more than 1e-9 of the polygon's area plus
-/// rounding.
+/// Triangulates a valid polygon at the height 0 (PolygonTriangulation.h). An edge is divided where
+/// another ring touches it. Throws Error if the area
+/// of the triangles differs from the area of the polygon.
 Sheet Triangulate(const Polygon& polygon);
+
+/// Finds the outline of a sheet: the edges of only one triangle.
+void AddOutline(Sheet& sheet);
 
 double Perimeter(const Polygon& polygon);
 }

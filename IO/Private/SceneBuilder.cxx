@@ -389,44 +389,77 @@ std::array<int, 6> CountSurfaces(const Mesh& mesh, const Vector& start)
   return counts;
 }
 
-/// Adds a line for every part: numbers of triangles and of degenerate triangles, and extents, m. A
-/// triangle is degenerate if its vertices lie on a line or at a point within rounding. Rays do not
-/// meet a degenerate triangle. Warns of parts that have only degenerate triangles, and of parts
-/// more than 100 km away, whose scale, unit, position or reference system may be wrong.
+// Box around points.
+struct Extent
+{
+  Vector low{ std::numeric_limits<double>::max() };
+  Vector high{ std::numeric_limits<double>::lowest() };
+
+  void Add(const Vector& point)
+  {
+    this->low = min(this->low, point);
+    this->high = max(this->high, point);
+  }
+  bool IsFar() const
+  {
+    const Vector farthest = max(-this->low, this->high);
+    return std::max({ farthest.x, farthest.y, farthest.z }) > FarAway;
+  }
+  std::string Text() const
+  {
+    char text[256];
+    std::snprintf(text, sizeof text, ", east %.2f to %.2f, north %.2f to %.2f, up %.2f to %.2f m",
+      this->low[0], this->high[0], this->low[1], this->high[1], this->low[2], this->high[2]);
+    return text;
+  }
+};
+
+/// Adds a line for every part: numbers of triangles and of degenerate triangles, or the number of
+/// crowns, and extents, m. A triangle is degenerate if its vertices lie on a line or at a point
+/// within rounding. Rays do not meet a degenerate triangle. Warns of parts that have only
+/// degenerate triangles, and of parts more than 100 km away, whose scale, unit, position or
+/// reference system may be wrong.
 void ReportExtents(BuiltScene& built)
 {
   std::vector<std::string> distant;
   for (const Part& part : built.parts)
   {
-    Vector low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+    Extent extent;
     std::size_t degenerate = 0;
     for (const auto& t : part.mesh.triangles)
     {
       const Vector corners[] = { CornerOf(part.mesh, t[0]), CornerOf(part.mesh, t[1]),
         CornerOf(part.mesh, t[2]) };
-      for (const Vector& corner : corners)
-      {
-        low = min(low, corner);
-        high = max(high, corner);
-      }
+      std::for_each(std::begin(corners), std::end(corners),
+        [&extent](const Vector& corner) { extent.Add(corner); });
       degenerate += IsDegenerate(corners[0], corners[1], corners[2]);
     }
-    char text[256];
-    std::snprintf(text, sizeof text,
-      ": %zu triangles, %zu degenerate, east %.2f to %.2f, north %.2f to %.2f, up %.2f to %.2f m",
-      part.mesh.triangles.size(), degenerate, low[0], high[0], low[1], high[1], low[2], high[2]);
-    built.report.push_back(part.name + text);
-    if (degenerate > 0 && degenerate == part.mesh.triangles.size())
+    for (std::size_t i = 0; i < part.crowns.size(); ++i)
+    {
+      const auto& [width, height] = part.crowns[i];
+      const Vector half(0.5 * width, 0.5 * width, 0.5 * height);
+      const Vector centre = CornerOf(part.mesh, static_cast<std::int64_t>(i));
+      extent.Add(centre - half);
+      extent.Add(centre + half);
+    }
+    const std::size_t triangles = part.mesh.triangles.size();
+    if (triangles == 0 && part.crowns.empty())
+    {
+      built.report.push_back(part.name + ": a medium that is not bounded by triangles");
+      continue;
+    }
+    const std::string counts = triangles > 0
+      ? joined(triangles, " triangles, ", degenerate, " degenerate")
+      : joined(part.crowns.size(), " ellipsoids");
+    built.report.push_back(part.name + ": " + counts + extent.Text());
+    if (degenerate > 0 && degenerate == triangles)
     {
       built.warnings.push_back(part.name + ": all " + std::to_string(degenerate) +
         " triangles are points or lines, which no ray meets: is the scale wrong?");
     }
-    for (int i = 0; i < 3; ++i)
+    if (extent.IsFar())
     {
-      if (std::max(-low[i], high[i]) > FarAway && (distant.empty() || distant.back() != part.name))
-      {
-        distant.push_back(part.name);
-      }
+      distant.push_back(part.name);
     }
   }
   if (!distant.empty())

@@ -104,7 +104,7 @@ std::vector<TerrainPiece> Terrain::Cut(const Polygon& polygon) const
     for (const Polygon& part : shared)
     {
       bool repaired = false;
-      for (Polygon& piece : MakeValid(part, repaired))
+      for (Polygon& piece : MakeValid({ part }, false, repaired))
       {
         if (Area(piece) > std::max(smallestPiece, smallestWidth * Perimeter(piece) / 2))
         {

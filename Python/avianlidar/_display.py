@@ -3,6 +3,7 @@
 import base64
 import html
 import io
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,10 +11,12 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ._advice import to_act_on
-from ._cloud import triangles_of
+from ._cloud import field_values, triangles_of
 from ._sight import extent
 
 MOST = 20000  # number of triangles or beams in a picture, at most
+# Lines of a scene's report on sizes and on the lidar's place
+_SIZE = re.compile(r": (\d+ triangles, \d+ degenerate|\d+ ellipsoids), east |: a medium that is not bounded|^lidar: \d")
 
 
 def page(thing, rows: Callable[[Any], dict[str, Any]], draw: Callable[[Any], None] | None = None,
@@ -52,6 +55,13 @@ def place_rows(scene) -> dict[str, Any]:
     if scene.lidar_position:
         rows["lidar"] = "({:g}, {:g}, {:g}) m".format(*scene.lidar_position)
     return rows
+
+
+def scene_notes(scene) -> list[str]:
+    """Lines of the report of scene files on what was left out, repaired or assumed."""
+    blocks = (scene.surfaces.GetBlock(number) for number in range(scene.surfaces.GetNumberOfBlocks()))
+    lines = (line for block in blocks if block is not None for line in field_values(block).get("scene_report", ()))
+    return [line for line in lines if not _SIZE.search(line)]
 
 
 def scene_rows(scene) -> dict[str, Any]:

@@ -62,13 +62,14 @@ def _scan_of(options) -> Scan:
 
 
 def _say_place(options, scan: Scan) -> None:
-    """Prints where the lidar stands, and what placed it there."""
+    """Prints where the lidar stands, what placed it there, and what the scene leaves out or assumes."""
     place, known = scan.sensor.position, scan.scene.lidar_position
     why = "as --sensor-set says"
     if place == tuple(options.position or known or (0, 0, 0)):
         why = ("as --position says" if options.position else "as the scene file says" if known else
                "the default; --position X Y Z moves it")
     tell("the lidar stands at ({:.10g}, {:.10g}, {:.10g}) m, ".format(*place) + why)
+    tell(*_display.scene_notes(scan.scene))
 
 
 def scan(options) -> None:
@@ -168,6 +169,7 @@ def info(options) -> None:
         raise FileNotFoundError(f"no such file: {file}")
     chosen = _of_packets(options, file)
     hints: Iterable[str] = ()
+    notes: Iterable[str] = ()
     if name.endswith(".lidarsensor.json"):
         what, rows = "a sensor", _display.sensor_rows(Sensor(file))
     elif name.endswith(".coverage.json"):
@@ -185,10 +187,11 @@ def info(options) -> None:
         return
     else:
         scene, what = Scene(file), "a scene"
-        rows = _display.scene_rows(scene)
+        rows, notes = _display.scene_rows(scene), _display.scene_notes(scene)
         hints = of_scene(scene.bounds) if scene.number_of_triangles else ()
     tell(f"{file}: {what}")
     table((key, _words(value)) for key, value in rows.items())
+    tell(*notes)
     for text in hints:
         warn(text)
 

@@ -113,6 +113,22 @@ class Verbs(unittest.TestCase):
             self.assertEqual((code, errors), (0, []))
             self.assertRegex("\n".join(lines), words)
 
+    def test_what_a_scene_assumes_and_leaves_out_is_printed(self):
+        square = [[[0, 50], [9, 50], [9, 59], [0, 59], [0, 50]]]
+        (OUTPUT / "plans.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
+            {"type": "Feature", "properties": {"name": name, "h": "tall"}, "geometry": geometry} for name, geometry in (
+                ("House", {"type": "Polygon", "coordinates": square}), ("Lamp", {"type": "Point", "coordinates": [0, 0]}))]}), encoding="utf-8")
+        scene = OUTPUT / "plans.lidarscene.json"
+        scene.write_text(json.dumps({"version": 1, "objects": [{"footprints": "plans.geojson", "crs": "local", "height": 3, "height_attribute": "h",
+                                                                "material": "Wall"}]}), encoding="utf-8")
+        expected = ["plans: 1 features without an area were left out: Lamp",
+                    'plans: 1 features have no usable height attribute and got the default height: House ("tall")', "plans: 1 points were left out"]
+        out = OUTPUT / "plans.csv"
+        for words in (("info", scene), ("scan", scene, "--sensor", "Search905", *FEW, "-o", out)):
+            code, lines, errors = run(*words)
+            self.assertEqual((code, [line for line in lines if line.startswith("plans: ")]), (0, expected), errors)
+        self.assertFalse(set(expected) & set(run("scan", scene, "--sensor", "Search905", *FEW, "-o", out, "--quiet")[1]))
+
     def test_compare(self):
         def compared(one, other, *more):
             code, lines, errors = run("compare", one, other, *more)

@@ -16,6 +16,7 @@ from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
 from boxfiles import CORNERS, QUADS, TRIANGLES, ac3d, collada, gltf, ifc, obj, ply, poly_data, stl, three_ds, y_up
+from avianlidar.apps._features import length_of
 from echotools import group
 import scenetools as st
 
@@ -268,16 +269,93 @@ class SceneObjects(unittest.TestCase):
         self.assertEqual(scene.names, ["A", "House 2", "House 3"])
         self.assertEqual([st.corners(b)[:, :, 2].max() for b in scene.blocks], [7.5, 3, 3])
         report = " ".join(scene.strings("scene_report"))
-        self.assertIn("House: 2 features have no usable height attribute", report)
+        self.assertIn("House: 2 features have no usable height attribute and got the default height: House 2, House 3 (\"two storeys\")", report)
         self.assertIn("House: 1 points were left out", report)
         scene = self.plan("town.geojson", *features, **options)
         self.assertEqual((scene.names, scene.blocks[0].GetNumberOfCells()), (["House"], 36))
-        for height, expected in (("12m", 12), ("0", 3), ("1e999", 3), ("40 ft", 3)):
+        for height, expected in (("12m", 12), ("0", 3), ("1e999", 3), ("40 ft", 12.192), (True, 3), ([12], 3)):
             scene = self.plan("tall.geojson", ("Polygon", [self.SQUARE], {"h": height}), features="together", **options)
             self.assertEqual(st.corners(scene.blocks[0])[:, :, 2].max(), expected, height)
         for chosen, count in (({"kind": "ho*"}, 2), ({"label": "*"}, 2), ({"kind": "h*", "n": 3}, 1)):
             scene = self.plan("town.geojson", *features, filter=chosen, **options)
             self.assertEqual(scene.blocks[0].GetNumberOfCells(), 12 * count, msg=chosen)
+
+    def test_lengths_are_read_as_the_command_airport_reads_them(self):
+        """Texts of maps, and texts put together from their pieces."""
+        random = np.random.default_rng(4)
+        pieces = ["12", "3,5", "1,200", "1 200", "7.25", "m", " ", "ft", "'", '"', "-", "\u2013", "~", ";", "/", "..", "+", "\xb1", "cm", "\u2032", "\u2033",
+                  "\u2019", "\u043a\u043c", "\u043c\u0435\u0442\u0440", "\u7c73", "storey", "in", "(x)", "agl", "up to", "e2", " \u043c", "\xa0", "\u2009"]
+        texts = ["12,5", "~12", "12-15", "40 ft", "40'", "12.5 metres", "1.2e1", "12;15", "NaN", "0", "-5", "1e6", "39'4\"", "39 ft 4 in", "12 \u041c\u0415\u0422\u0420\u041e\u0412",
+                 "12\u7c73\u9ad8", "12 \u043c\u043c", "3 storeys", "1234,5", "999,999", "1,200 ft", "100000 mm", "1000", "1001", "12m5cm", "4 ; ;", "\u0661\u0662", "6 m - 8 m",
+                 *("".join(random.choice(pieces, random.integers(1, 6))) for _ in range(500))]
+        scene = self.plan("lengths.geojson", *(("Polygon", [self.SQUARE], {"h": text}) for text in texts), features="separate", height_attribute="h",
+                          height=7777)
+        self.assertGreater(sum(length_of(text) is not None for text in texts), 45)
+        for text, block in zip(texts, scene.blocks, strict=True):
+            self.assertAlmostEqual(st.corners(block)[:, :, 2].max(), length_of(text) or 7777, places=9, msg=text)
+
+    def test_one_feature_does_not_end_a_scene(self):
+        """What cannot be made or read is left out, counted and named."""
+        origin = {"latitude": 53.6, "longitude": 13.3, "height": 0}
+        good = [[13.3, 53.6], [13.301, 53.6], [13.301, 53.601], [13.3, 53.6]]
+        far = [[0, 0], [1e9, 0], [1e9, 1], [0, 0]]
+        for coordinates, more, note in (
+                ([[*good[:1], [13.3, 95], *good[2:]]], {}, "1 features that cannot be made (coordinates lie outside their coordinate reference system) were left out: B"),
+                ([[*good[:1], [math.nan, 53.6], *good[2:]]], {}, "1 features that cannot be made (coordinates lie outside"),
+                ([[*good[:1], ["a", "b"], *good[2:]]], {}, "1 features without a geometry were left out: B"),
+                ([good], {"height_attribute": "h"}, 'there is no height to assume) were left out: B'),
+                ([far], {"crs": "local", "height": 1, "glazing": {"share": 0.5, "bay": 2}}, "bays of 2 m: a coordinate or 'bay' is wrong) were left out: B")):
+            local = [[[1000 * (x - 13), 1000 * (y - 53)] for x, y in good]] if "crs" in more else [good]
+            text = json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": p, "geometry": {"type": "Polygon", "coordinates": c}}
+                for p, c in (({"name": "A", "h": 1}, local), ({"name": "B"}, coordinates))]})
+            self.save("bad.geojson", text)
+            scene = self.read({"footprints": "bad.geojson", **({"height": 1} if not more else more)}, origin=origin)
+            alone = self.plan("alone.geojson", ("Polygon", local, {"h": 1}), **{"height": 1, "crs": "EPSG:4326", **more}) if "crs" in more else None
+            self.assertIn(note, " ".join(scene.strings("scene_report")))
+            self.assertTrue(st.is_closed(st.corners(scene.blocks[0])))
+            self.assertEqual(len(scene.blocks), 1)
+            if alone:
+                np.testing.assert_array_equal(st.corners(scene.blocks[0]), st.corners(alone.blocks[0]))
+
+    def test_rings_that_touch(self):
+        """Courtyards that meet in points and share edges, as ways in any order, sense and beginning. The area is that of the outer square less
+        the courtyards, by the trapezoids of their corners."""
+        random = np.random.default_rng(7)
+        origin = {"latitude": 1.6, "longitude": 7.4, "height": 0}
+        star = [[(5, 5), (4, 2), (2, 1), (3, 4)], [(5, 5), (8, 4), (9, 2), (6, 3)], [(5, 5), (2, 6), (1, 8), (4, 7)], [(5, 5), (6, 8), (8, 9), (7, 6)]]
+        for case in range(24):
+            moved = {(x, y): (x, y) + random.uniform(-0.3, 0.3, 2).round(4) * (case % 2) for x in range(11) for y in range(11)}
+            cells = [[(x, y), (x + 2, y), (x + 2, y + 2), (x, y + 2)] for x in range(1, 9, 2) for y in range(1, 9, 2) if random.uniform() < 0.5]
+            rings = [[(0, 0), (10, 0), (10, 10), (0, 10)], *(star if case < 4 else cells)]
+            places = {corner: i for i, corner in enumerate(moved, 1)}
+            ways, members = "", ""
+            for number in random.permutation(len(rings)):
+                ring = np.roll(rings[number], random.integers(4), axis=0)[::random.choice([-1, 1])].tolist()
+                ways += f'<way id="{number + 1}" version="1">' + "".join(f'<nd ref="{places[tuple(p)]}"/>' for p in [*ring, ring[0]]) + "</way>"
+                members += f'<member type="way" ref="{number + 1}" role="{"inner" if number else "outer"}"/>'
+            self.save("touch.osm", '<osm version="0.6">' + "".join(
+                f'<node id="{i}" version="1" lat="{1.6 + 1e-3 * moved[p][1]:.9f}" lon="{7.4 + 1e-3 * moved[p][0]:.9f}"/>' for p, i in places.items())
+                + ways + f'<relation id="1" version="1">{members}<tag k="type" v="multipolygon"/><tag k="building" v="yes"/></relation></osm>')
+
+            def area(ring):
+                local = [st.frame(origin, {"latitude": 1.6 + 1e-3 * moved[p][1], "longitude": 7.4 + 1e-3 * moved[p][0], "height": 0})[0] for p in ring]
+                return 0.5 * abs(sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(local, local[1:] + local[:1])))
+
+            scene = self.read({"footprints": "touch.osm", "layer": "multipolygons", "height": 1}, origin=origin)
+            self.assertAlmostEqual(st.volume(st.corners(scene.blocks[0])) / (area(rings[0]) - sum(map(area, rings[1:]))), 1, places=6, msg=case)
+
+    def test_polygons_that_overlap(self):
+        """Polygons of a feature are united, holes too; a hole outside its polygon is a polygon."""
+        square = np.array(self.SQUARE)
+        for rings, area in (([[square], [square + [5, 0]]], 250), ([[square], [square + [20, 0]]], 400), ([[square, self.HOLE, self.HOLE]], 140),
+                            ([[square, self.HOLE, np.array(self.HOLE) + [2, 0]]], 128), ([[square, square + [30, 0]]], 400)):
+            coordinates = [[np.array(ring).tolist() for ring in polygon] for polygon in rings]
+            scene = self.plan("overlap.geojson", ("MultiPolygon", coordinates, {"name": "A"}), height=1)
+            triangles = st.corners(scene.blocks[0])
+            self.assertAlmostEqual(st.volume(triangles), area, places=9)
+            self.assertTrue(st.is_closed(triangles))
+            self.assertIn("overlap: 1 footprints with crossing or overlapping rings were repaired: A", scene.strings("scene_report"))
 
     def test_undersides(self):
         """A canopy from 6 to 8 m, one whose underside is above its top."""
@@ -359,6 +437,13 @@ class SceneObjects(unittest.TestCase):
         scene = self.read({"file": "flat.obj", "name": "Flat"})
         self.assertIn("Flat: 3 triangles, 2 degenerate, east 0.00 to 2.00, north 0.00 to 3.00, up 0.00 to 1.00 m", scene.strings("scene_report"))
         self.assertIn("Flat: 1 points or lines were left out", scene.strings("scene_report"))
+        self.save("trees.geojson", json.dumps({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": g} for g in (
+            {"type": "Point", "coordinates": [3, 4]}, {"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [9, 4]}]})]}))
+        leaves = {"kind": "foliage", "leaf_area_density": 1}
+        fog = self.read({"name": "Fog", "medium": {"kind": "fog", "visibility": 300, "shape": "everywhere"}},
+                        {"footprints": "trees.geojson", "name": "Trees", "crs": "local", "height": 6, "width": 2, "medium": leaves})
+        self.assertEqual(fog.strings("scene_report")[-2:], ["Fog: a medium that is not bounded by triangles",
+                                                            "Trees: 2 ellipsoids, east 2.00 to 10.00, north 3.00 to 5.00, up 0.00 to 6.00 m"])
         self.assertEqual([scene.reader.CanReadFile(os.path.join(self.folder, name)) for name in ("scene.lidarscene.json", "flat.obj",
                                                                                                  "none.lidarscene.json", "")], [1, 0, 0, 0])
 

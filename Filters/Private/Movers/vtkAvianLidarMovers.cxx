@@ -264,9 +264,10 @@ void TakeTriangles(const avianlidar::TriangleMesh& all, std::size_t begin, std::
   }
 }
 
-/// The triangulated movers. @param triangulated data to which the leaves point
-std::vector<Leaf> TakeLeaves(
-  vtkDataObject* input, bool named, std::vector<vtkSmartPointer<vtkPolyData>>& triangulated)
+/// The triangulated movers. @param triangulated data to which the leaves point @param warning
+/// becomes the warning on the first mover with polygons that cross or overlap themselves, or empty
+std::vector<Leaf> TakeLeaves(vtkDataObject* input, bool named,
+  std::vector<vtkSmartPointer<vtkPolyData>>& triangulated, std::string& warning)
 {
   std::vector<Leaf> leaves = Collect(input);
   for (Leaf& leaf : leaves)
@@ -278,7 +279,9 @@ std::vector<Leaf> TakeLeaves(
     {
       leaf.name = Arrays::TextAt(fields, BlockName, 0);
     }
-    triangulated.push_back(leaf.Triangulated());
+    std::string lost;
+    triangulated.push_back(leaf.Triangulated(lost));
+    warning = warning.empty() ? lost : warning;
     leaf.data = triangulated.back();
   }
   return leaves;
@@ -343,11 +346,12 @@ void vtkAvianLidarMovers::ReadAll(
 {
   this->movers.reset();
   this->checksum = 0;
+  this->warning.clear();
   this->objectNames = surfaces.objectNames;
   this->objectClasses = surfaces.objectClasses;
   this->materialNames = surfaces.materialNames;
   std::vector<vtkSmartPointer<vtkPolyData>> triangulated;
-  const std::vector<Leaf> leaves = TakeLeaves(input, named, triangulated);
+  const std::vector<Leaf> leaves = TakeLeaves(input, named, triangulated, this->warning);
   if (leaves.empty())
   {
     return;

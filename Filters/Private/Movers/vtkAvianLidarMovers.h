@@ -34,6 +34,7 @@ struct vtkAvianLidarMovers
   std::vector<std::string> objectNames;
   std::vector<std::string> objectClasses; ///< classes by object id; empty: no input has classes
   std::vector<std::string> materialNames;
+  std::string warning; ///< warning about suspicious input; empty: no warning
 
   /// Read the movers of all ranks, unless input, surfaces and ranks are unchanged. All ranks must
   /// call this function. Ids of movers are kept if all these ids are larger than the ids of the

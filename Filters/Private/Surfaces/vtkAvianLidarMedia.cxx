@@ -10,6 +10,7 @@
 #include "vtkAvianLidarBuiltInTexts.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarTriangles.h"
 
 #include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
@@ -20,7 +21,6 @@
 #include "vtkPolyData.h"
 #include "vtkSphereSource.h"
 #include "vtkStringArray.h"
-#include "vtkTriangleFilter.h"
 
 #include <algorithm>
 #include <array>
@@ -324,12 +324,7 @@ namespace
 /// A closed surface as triangles that face outward. Throws if the surface is open.
 vtkSmartPointer<vtkPolyData> Closed(vtkPolyData* surface, const std::string& name)
 {
-  vtkNew<vtkTriangleFilter> triangles;
-  triangles->SetInputData(surface);
-  triangles->PassVertsOff();
-  triangles->PassLinesOff();
-  triangles->Update();
-  vtkPolyData* given = triangles->GetOutput();
+  const vtkSmartPointer<vtkPolyData> given = vtkAvianLidarTriangles(surface);
   avianlidar::TriangleMesh mesh;
   for (vtkIdType i = 0; i < given->GetNumberOfPoints(); ++i)
   {
@@ -461,22 +456,20 @@ std::string vtkAvianLidarMedia::TextOf(vtkPolyData* leaf, const std::string& nam
     return json.dump();
   }
   Json points = Json::array();
-  for (vtkIdType i = 0; i < leaf->GetNumberOfPoints(); ++i)
+  const vtkSmartPointer<vtkPolyData> surface = vtkAvianLidarTriangles(leaf);
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
     double p[3];
-    leaf->GetPoint(i, p);
+    surface->GetPoint(i, p);
     points.push_back({ p[0], p[1], p[2] });
   }
   Json triangles = Json::array();
   vtkIdType size = 0;
   const vtkIdType* corners = nullptr;
-  vtkCellArray* polys = leaf->GetPolys();
+  vtkCellArray* polys = surface->GetPolys();
   for (polys->InitTraversal(); polys->GetNextCell(size, corners);)
   {
-    for (vtkIdType k = 2; k < size; ++k)
-    {
-      triangles.push_back({ corners[0], corners[k - 1], corners[k] });
-    }
+    triangles.push_back({ corners[0], corners[1], corners[2] });
   }
   json["points"] = std::move(points);
   json["triangles"] = std::move(triangles);

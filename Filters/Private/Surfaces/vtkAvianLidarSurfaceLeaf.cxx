@@ -243,10 +243,16 @@ std::size_t vtkAvianLidarSurfaceLeaf::NumberOfTriangles() const
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated() const
+vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaceLeaf::Triangulated(std::string& warning) const
 {
-  return this->IsTriangulated() ? vtkSmartPointer<vtkPolyData>(this->data)
-                                : vtkAvianLidarTriangles(this->data);
+  warning.clear();
+  if (this->IsTriangulated())
+  {
+    return this->data;
+  }
+  vtkSmartPointer<vtkPolyData> triangles = vtkAvianLidarTriangles(this->data, &warning);
+  warning = warning.empty() ? warning : this->Message(warning);
+  return triangles;
 }
 
 //------------------------------------------------------------------------------

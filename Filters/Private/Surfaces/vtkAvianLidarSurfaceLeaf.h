@@ -83,7 +83,8 @@ struct vtkAvianLidarSurfaceLeaf
 
   /// The polygons and strips as triangles. Vertices, lines, and polygons and strips of fewer than
   /// three points are dropped. Returns `data` itself if all cells are triangles.
-  vtkSmartPointer<vtkPolyData> Triangulated() const;
+  /// @param warning becomes the warning of vtkAvianLidarTriangles() with the place, or empty
+  vtkSmartPointer<vtkPolyData> Triangulated(std::string& warning) const;
 };
 
 /// An array of numbers of any type. Doubles and ints are read without a virtual call per value.

@@ -107,6 +107,7 @@ private:
   vtkAvianLidarSurfaceIds Ids;
   std::vector<vtkAvianLidarSurfaceArrays> Arrays; ///< cell arrays of the leaves
   vtkIdType WithoutMaterial = 0;
+  std::string AreaWarning; ///< sentence on polygons that cross or overlap themselves
 
   /// Hash of everything that the mesh and the order of its triangles depend on.
   std::uint64_t HashOfGeometry(const std::vector<Leaf>& leaves, vtkFieldData* fields) const
@@ -251,15 +252,14 @@ private:
         "). Use the Material filter, and combine surfaces by Group Datasets: Append Geometry drops "
         "arrays that one input lacks.";
     }
-    for (const Leaf& leaf : leaves)
+    const auto add = [&warning](const std::string& text)
     {
-      const std::string coarse = leaf.WarningOnPoints();
-      if (!coarse.empty())
-      {
-        warning += (warning.empty() ? "" : " Also, ") + coarse;
-        return; // only the first such leaf is named
-      }
-    }
+      warning += (warning.empty() || text.empty() ? "" : " Also, ") + text;
+      return !text.empty();
+    };
+    add(this->AreaWarning);
+    std::any_of(leaves.begin(), leaves.end(), // only the first such leaf is named
+      [&add](const Leaf& leaf) { return add(leaf.WarningOnPoints()); });
   }
 
   /// Warn of a large scene: boxes in single precision are widened by a share of the scene
@@ -302,7 +302,10 @@ private:
     const bool asItIs = leaf.IsTriangulated();
     if (!asItIs)
     {
-      made = leaf.Triangulated();
+      std::string lost;
+      made = leaf.Triangulated(lost);
+      this->AreaWarning =
+        this->AreaWarning.empty() ? lost : this->AreaWarning; // of the first such leaf
     }
     vtkPolyData* poly = asItIs ? leaf.data : made.Get();
     const vtkIdType cells = poly->GetNumberOfPolys();

@@ -96,7 +96,7 @@ class AirportScene:
             there[one.kind] += one.count
         kinds = {kind.replace("_", " "): kind for kind in self.map.known["kinds"]}
         report = "\n".join(field_values(self.scene.surfaces.GetBlock(0)).get("scene_report", ()))
-        for name, count, reason in re.findall(r"^(.*): (\d+) (.*) were left out$", report, re.MULTILINE):
+        for name, count, reason in re.findall(r"^(.*?): (\d+) (.*) were left out(?:: .*)?$", report, re.MULTILINE):
             kind = kinds.get(name.split(" of ")[0].lower())
             if kind is not None:
                 left.append(Feature(kind, {}, count=int(count), reason=reason))

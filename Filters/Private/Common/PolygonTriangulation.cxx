@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PolygonTriangulation.h"
+
+#include <GL/glu.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+namespace avianlidar
+{
+namespace
+{
+// Area of a polygon without area, as a share of the square of the perimeter.
+constexpr double NoArea = 1e-14;
+// Greatest number of polygons that a sentence names.
+constexpr std::int64_t ListedPolygons = 5;
+
+// GLU passes a corner as a pointer, and null for no corner.
+void* ToPointer(std::size_t corner)
+{
+  return reinterpret_cast<void*>(corner + 1);
+}
+
+std::size_t FromPointer(void* pointer)
+{
+  return reinterpret_cast<std::size_t>(pointer) - 1;
+}
+
+// Calls f(from, to) for each edge of the rings.
+template <class F>
+void ForEdges(const std::vector<std::size_t>& ends, F f)
+{
+  std::size_t begin = 0;
+  for (const std::size_t end : ends)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      f(i, i + 1 < end ? i + 1 : begin);
+    }
+    begin = end;
+  }
+}
+
+double TwiceArea(const Vec3& a, const Vec3& b, const Vec3& c)
+{
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+}
+
+//------------------------------------------------------------------------------
+PolygonTriangulation::PolygonTriangulation()
+  : Tessellator(gluNewTess(), &gluDeleteTess)
+{
+  if (!this->Tessellator)
+  {
+    throw std::bad_alloc();
+  }
+  using Self = PolygonTriangulation;
+  using Callback = void (*)();
+  const auto set = [this](GLenum which, auto* callback)
+  { gluTessCallback(this->Tessellator.get(), which, reinterpret_cast<Callback>(callback)); };
+  set(
+    GLU_TESS_VERTEX_DATA,
+    +[](void* corner, void* self)
+    {
+      try
+      {
+        static_cast<Self*>(self)->Swept.push_back(FromPointer(corner));
+      }
+      catch (...)
+      {
+        static_cast<Self*>(self)->Failure = std::current_exception();
+      }
+    });
+  set(
+    GLU_TESS_COMBINE_DATA,
+    +[](GLdouble* place, void** near, GLfloat* weights, void** point, void* self)
+    {
+      *point = near[0];
+      try
+      {
+        static_cast<Self*>(self)->AddPoint(place, near, weights, point);
+      }
+      catch (...)
+      {
+        static_cast<Self*>(self)->Failure = std::current_exception();
+      }
+    });
+  set(
+    GLU_TESS_ERROR_DATA,
+    +[](GLenum error, void* self)
+    {
+      static_cast<Self*>(self)->Failure = error == GLU_OUT_OF_MEMORY
+        ? std::make_exception_ptr(std::bad_alloc())
+        : std::make_exception_ptr(
+            std::runtime_error("GLU cannot divide a polygon: error " + std::to_string(error)));
+    });
+  // With this callback, even an empty one, GLU gives triangles instead of strips and fans.
+  set(
+    GLU_TESS_EDGE_FLAG_DATA, +[](GLboolean, void*) {});
+  gluTessProperty(this->Tessellator.get(), GLU_TESS_WINDING_RULE, GLU_TESS_WINDING_ODD);
+  gluTessNormal(this->Tessellator.get(), 0.0, 0.0, 1.0);
+}
+
+//------------------------------------------------------------------------------
+void PolygonTriangulation::Divide(
+  const std::vector<Vec3>& corners, const std::vector<std::size_t>& ends)
+{
+  this->Triangles.clear();
+  this->Added.clear();
+  this->OutlineArea = this->TriangleArea = 0.0;
+  if (!this->Project(corners, ends))
+  {
+    return;
+  }
+  if (ends.size() > 1 || corners.size() != 4 || !this->DivideQuadrilateral())
+  {
+    this->Sweep(ends);
+  }
+  for (const Triangle& t : this->Triangles)
+  {
+    this->TriangleArea +=
+      0.5 * std::abs(TwiceArea(this->Plane[t[0]], this->Plane[t[1]], this->Plane[t[2]]));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Projects the corners onto the mean plane, whose normal is that of the vector area. Returns false
+/// if there is nothing to divide.
+bool PolygonTriangulation::Project(
+  const std::vector<Vec3>& corners, const std::vector<std::size_t>& ends)
+{
+  if (corners.size() < 3)
+  {
+    return false;
+  }
+  this->Origin = corners[0];
+  Vec3 area(0.0);
+  this->Perimeter = this->Largest = 0.0;
+  ForEdges(ends,
+    [&](std::size_t i, std::size_t next)
+    {
+      const Vec3 p = corners[i] - this->Origin;
+      const Vec3 q = corners[next] - this->Origin;
+      area += 0.5 * cross(p, q);
+      this->Perimeter += safeLength(q - p);
+      this->Largest = std::max(
+        { this->Largest, std::abs(corners[i].x), std::abs(corners[i].y), std::abs(corners[i].z) });
+    });
+  if (!isFinite(area) || !std::isfinite(this->Perimeter * this->Perimeter))
+  {
+    this->Perimeter = this->Largest = 0.0;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+    {
+      const auto corner = static_cast<std::int64_t>(i);
+      this->Triangles.push_back({ 0, corner - 1, corner });
+    }
+    return false;
+  }
+  this->OutlineArea = safeLength(area);
+  const double least = NoArea * this->Perimeter * this->Perimeter;
+  if (this->OutlineArea <= least)
+  {
+    // The corners lie on a line, or parts of opposite sense cancel. The plane is that of the corner
+    // farthest from the first, and of the corner farthest from the line through these two.
+    const auto farthest = [&](auto distance)
+    {
+      return *std::max_element(corners.begin(), corners.end(),
+        [&](const Vec3& a, const Vec3& b) { return distance(a) < distance(b); });
+    };
+    const Vec3 first =
+      farthest([&](const Vec3& p) { return safeLength(p - this->Origin); }) - this->Origin;
+    const Vec3 second =
+      farthest([&](const Vec3& p) { return safeLength(cross(first, p - this->Origin)); });
+    area = cross(first, second - this->Origin);
+    if (safeLength(area) <= least)
+    {
+      return false;
+    }
+  }
+  const Vec3 normal = unitVector(area);
+  int axis = 0; // the coordinate axis that is farthest from the normal
+  for (int k = 1; k < 3; ++k)
+  {
+    axis = std::abs(normal[k]) < std::abs(normal[axis]) ? k : axis;
+  }
+  Vec3 along(0.0);
+  along[axis] = 1.0;
+  along = unitVector(along - normal[axis] * normal);
+  this->Axes = { along, cross(normal, along), normal };
+  this->Plane.resize(corners.size());
+  std::transform(corners.begin(), corners.end(), this->Plane.begin(),
+    [this](const Vec3& corner)
+    {
+      const Vec3 p = corner - this->Origin;
+      return Vec3(dot(p, this->Axes[0]), dot(p, this->Axes[1]), dot(p, this->Axes[2]));
+    });
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// Divides a quadrilateral along the shorter diagonal inside. Returns false without such diagonal.
+bool PolygonTriangulation::DivideQuadrilateral()
+{
+  const auto& p = this->Plane;
+  const auto square = [&p](std::size_t a, std::size_t b)
+  { return std::pow(p[b].x - p[a].x, 2) + std::pow(p[b].y - p[a].y, 2); };
+  const std::int64_t shorter = square(1, 3) < square(0, 2);
+  for (const std::int64_t k : { shorter, 1 - shorter }) // the diagonal begins at this corner
+  {
+    const Triangle first{ k, k + 1, k + 2 };
+    const Triangle second{ k, k + 2, (k + 3) % 4 };
+    if (TwiceArea(p[first[0]], p[first[1]], p[first[2]]) > 0.0 &&
+      TwiceArea(p[second[0]], p[second[1]], p[second[2]]) > 0.0)
+    {
+      this->Triangles = { first, second };
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void PolygonTriangulation::Sweep(const std::vector<std::size_t>& ends)
+{
+  this->Swept.clear();
+  this->Failure = nullptr;
+  GLUtesselator* tessellator = this->Tessellator.get();
+  gluTessBeginPolygon(tessellator, this);
+  std::size_t corner = 0;
+  for (const std::size_t end : ends)
+  {
+    gluTessBeginContour(tessellator);
+    for (; corner < end; ++corner)
+    {
+      GLdouble place[3] = { this->Plane[corner].x, this->Plane[corner].y, 0.0 };
+      gluTessVertex(tessellator, place, ToPointer(corner));
+    }
+    gluTessEndContour(tessellator);
+  }
+  gluTessEndPolygon(tessellator);
+  if (this->Failure)
+  {
+    std::rethrow_exception(this->Failure);
+  }
+  for (std::size_t i = 0; i + 2 < this->Swept.size(); i += 3)
+  {
+    Triangle triangle;
+    std::copy_n(this->Swept.begin() + static_cast<std::ptrdiff_t>(i), 3, triangle.begin());
+    if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+    {
+      this->Triangles.push_back(triangle);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Gives GLU the corner in the place where edges meet, or a new point. @param near up to four
+/// corners near the place, then null
+void PolygonTriangulation::AddPoint(
+  const double* place, void* const* near, const float* weights, void** point)
+{
+  double height = 0.0;
+  for (int k = 0; k < 4 && near[k]; ++k)
+  {
+    const Vec3& p = this->Plane[FromPointer(near[k])];
+    if (p.x == place[0] && p.y == place[1])
+    {
+      *point = near[k];
+      return;
+    }
+    height += weights[k] * p.z;
+  }
+  *point = ToPointer(this->Plane.size());
+  this->Plane.emplace_back(place[0], place[1], height);
+  this->Added.push_back(
+    this->Origin + place[0] * this->Axes[0] + place[1] * this->Axes[1] + height * this->Axes[2]);
+}
+
+//------------------------------------------------------------------------------
+bool PolygonTriangulation::IsWhole(double rounding) const
+{
+  constexpr double tolerance = 1e-6;
+  const double own = std::numeric_limits<double>::epsilon() * this->Largest;
+  // A corner beside the edge on which it should lie adds slivers on both sides of the edge.
+  return std::abs(this->TriangleArea - this->OutlineArea) <=
+    tolerance * this->OutlineArea + 2.0 * (rounding + own) * this->Perimeter;
+}
+
+//------------------------------------------------------------------------------
+void LostAreas::Check(const PolygonTriangulation& polygon, std::int64_t name, double rounding)
+{
+  if (polygon.IsWhole(rounding))
+  {
+    return;
+  }
+  this->Names += this->Count < ListedPolygons ? (this->Count > 0 ? ", " : "") + std::to_string(name)
+                                              : std::string();
+  if (this->Count++ == 0)
+  {
+    std::ostringstream text;
+    text << "triangles of " << polygon.GetTriangleArea() << " m2 for an outline of "
+         << polygon.GetOutlineArea() << " m2";
+    this->Areas = text.str();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string LostAreas::Sentence(const std::string& kind) const
+{
+  if (this->Count == 0)
+  {
+    return {};
+  }
+  const bool one = this->Count == 1;
+  const bool all = this->Count <= ListedPolygons;
+  return (one ? "polygon " : std::to_string(this->Count) + " polygons ") + "(" + kind +
+    (one ? " " : "s ") + this->Names + (all ? "" : ", ...") + ")" +
+    (one ? " crosses or overlaps itself: " : " cross or overlap themselves: ") + this->Areas +
+    "; what an outline surrounds twice is taken as a hole";
+}
+}
