@@ -98,6 +98,9 @@ void vtkAvianLidarEchoFilter::Prepare(
   vtkAvianLidarMovers& movers = this->Moved->Movers;
   this->PrepareBeams(ranks, vtkPolyData::GetData(inputVector[0]));
   in.Beams.CheckRanks(ranks);
+  vtkAvianLidarRanks::Settings own;
+  own.Add("ReportMovers", this->ReportMovers);
+  ranks.AgreeOn(own);
   this->PrepareSurfaces(ranks, surfaces);
   movers.Read(ranks, vtkDataObject::GetData(inputVector[2]), *in.Surfaces);
   in.Setup.movers = movers.movers;
