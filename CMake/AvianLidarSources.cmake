@@ -67,6 +67,7 @@ set(private_sources
   Filters/Private/Common/vtkAvianLidarArrays.cxx
   Filters/Private/Common/vtkAvianLidarContent.cxx
   Filters/Private/Common/vtkAvianLidarGather.cxx
+  Filters/Private/Common/vtkAvianLidarExecutive.cxx
   Filters/Private/Common/vtkAvianLidarGuard.cxx
   Filters/Private/Common/vtkAvianLidarRanks.cxx
   Filters/Private/Common/vtkAvianLidarScanStream.cxx

@@ -17,6 +17,7 @@
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkMultiProcessController.h"
+#include "vtkMultiProcessStream.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -57,6 +58,24 @@ struct Setup
       std::equal(this->Position, this->Position + 3, other.Position) && this->Table == other.Table;
   }
 };
+
+// Sets the position on a rank without points to the position of the first rank with points.
+void SharePosition(const vtkAvianLidarRanks& ranks, bool hasPoints, double position[3])
+{
+  vtkMultiProcessStream mine;
+  mine << (hasPoints ? 1 : 0) << position[0] << position[1] << position[2];
+  for (vtkMultiProcessStream& stream : ranks.Gather(mine))
+  {
+    int has = 0;
+    double read[3];
+    stream >> has >> read[0] >> read[1] >> read[2];
+    if (has != 0 && !hasPoints)
+    {
+      std::copy(read, read + 3, position);
+      return;
+    }
+  }
+}
 
 // Key of the cell of each point.
 std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup)
@@ -182,6 +201,7 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
 struct vtkAvianLidarClutterFilter::Memory
 {
   Setup Of;
+  double Position[3]; ///< sensor's position for the present scan
   vtkAvianLidarScanStream Stream;
   std::shared_ptr<const ClutterMap> Before; ///< map without the last scan
   std::shared_ptr<const ClutterMap> With;   ///< map with the last scan
@@ -289,14 +309,9 @@ void vtkAvianLidarClutterFilter::Advance(vtkDataObject* cloud, vtkPolyData* tabl
   setup.Grid = { this->RangeStep, this->AzimuthStep, this->ElevationStep };
   setup.Window = this->Window;
   setup.Learning = this->Learning;
-  std::copy(this->SensorPosition, this->SensorPosition + 3, setup.Position);
+  std::copy(memory.Position, memory.Position + 3, setup.Position);
   setup.Table = HashOfTable(table);
-  const double time = vtkAvianLidarWithin(ScanPort,
-    [&]()
-    {
-      vtkAvianLidarScanStream::ReadPosition(cloud, setup.Position);
-      return memory.Stream.TimeOf(cloud);
-    });
+  const double time = vtkAvianLidarWithin(ScanPort, [&]() { return memory.Stream.TimeOf(cloud); });
   const bool goesOn = memory.Stream.Begun() && memory.Of == setup;
   const bool back = goesOn && time < memory.Stream.Time();
   if (!goesOn || back)
@@ -370,16 +385,33 @@ int vtkAvianLidarClutterFilter::RequestData(
       vtkAvianLidarWithin("Clutter filter: ",
         [&]()
         {
+          std::copy(this->SensorPosition, this->SensorPosition + 3, memory.Position);
+          vtkAvianLidarWithin(
+            ScanPort, [&]() { vtkAvianLidarScanStream::ReadPosition(cloud, memory.Position); });
+        });
+      SharePosition(ranks, cloud->GetNumberOfPoints() > 0, memory.Position);
+      vtkAvianLidarWithin("Clutter filter: ",
+        [&]()
+        {
           this->Advance(cloud, vtkPolyData::GetData(inputVector[1]), memory);
           keys = KeysOf(cloud, memory.Of);
         });
       vtkAvianLidarRanks::Settings settings;
       settings.Add("time", memory.Stream.Time());
       settings.Add("Window", this->Window);
+      settings.Add("ClutterThreshold", this->ClutterThreshold);
       settings.Add("RangeStep", this->RangeStep);
       settings.Add("AzimuthStep", this->AzimuthStep);
       settings.Add("ElevationStep", this->ElevationStep);
+      settings.Add("RangeTolerance", this->RangeTolerance);
+      settings.Add("AngularTolerance", this->AngularTolerance);
+      settings.Add("WarmUp", this->WarmUp);
       settings.Add("Learning", this->Learning);
+      for (const double coordinate : memory.Of.Position)
+      {
+        settings.Add("position (or SensorPosition)", coordinate);
+      }
+      settings.Add("the checksum of input port 1 (table)", memory.Of.Table);
       settings.Add("learned_scans", memory.Before ? memory.Before->scans() : 0);
       ranks.AgreeOn(settings);
       const vtkSmartPointer<vtkPointSet> all = vtkAvianLidarGather::Coordinates(ranks, cloud);

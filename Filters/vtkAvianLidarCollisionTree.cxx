@@ -216,6 +216,15 @@ void vtkAvianLidarCollisionTree::MergeSurfaces(
 {
   vtkInternals& in = *this->Internals;
   this->CheckOptions();
+  vtkAvianLidarRanks::Settings settings;
+  settings.Add("Preset", this->Preset);
+  if (this->Preset == PRESET_CUSTOM)
+  {
+    settings.Add("SplitRule", this->SplitRule);
+    settings.Add("BoundingVolume", this->BoundingVolume);
+    settings.Add("MaximumLeafSize", this->MaximumLeafSize);
+  }
+  ranks.AgreeOn(settings);
   in.Surfaces = in.Exchange.Merge(ranks, input, "Input port 0, ", 0, in.Surfaces);
   const vtkAvianLidarSurfaces& merged = *in.Surfaces;
   if (in.Warnings.IsNew(input, merged.checksum, merged.warning) && ranks.Rank() == 0)

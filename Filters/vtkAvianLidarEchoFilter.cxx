@@ -99,6 +99,9 @@ void vtkAvianLidarEchoFilter::Prepare(
   vtkAvianLidarMovers& movers = this->Moved->Movers;
   this->PrepareBeams(ranks, vtkPolyData::GetData(inputVector[0]));
   in.Beams.CheckRanks(ranks);
+  vtkAvianLidarRanks::Settings own;
+  own.Add("ReportMovers", this->ReportMovers);
+  ranks.AgreeOn(own);
   this->PrepareSurfaces(ranks, surfaces);
   vtkDataObject* moving = vtkDataObject::GetData(inputVector[2]);
   movers.Read(ranks, moving, *in.Surfaces);

@@ -7,11 +7,13 @@
 #ifndef vtkAvianLidarProperties_h
 #define vtkAvianLidarProperties_h
 
-#include "vtkSetGet.h"       // For set and get macros
-#include "vtkSmartPointer.h" // For the controller
+#include "vtkAvianLidarModule.h" // For export macro
+#include "vtkSetGet.h"           // For set and get macros
+#include "vtkSmartPointer.h"     // For the controller
 
 #include <string> // For names of files
 
+class vtkExecutive;
 class vtkInformation;
 class vtkMultiProcessController;
 
@@ -87,6 +89,22 @@ public:
 /// execution that fails counts as done: the pipeline goes on with empty outputs whose field data
 /// `error` hold the message. ParaView's proxies turn the property on, because ParaView never
 /// updates a failed filter again. Default: off.
-#define vtkAvianLidarErrorsAsDataMacro() vtkAvianLidarSwitchMacro(ErrorsAsData, false)
+///
+/// If ErrorsAsData is off, VTK does not execute a filter whose producer failed.
+/// CreateDefaultExecutive() makes an executive that then empties the outputs.
+#define vtkAvianLidarErrorsAsDataMacro()                                               \
+  vtkAvianLidarSwitchMacro(ErrorsAsData, false);                                       \
+                                                                                       \
+protected:                                                                             \
+  vtkExecutive* CreateDefaultExecutive() override                                      \
+  {                                                                                    \
+    return vtkAvianLidarEmptyingExecutive(this->Superclass::CreateDefaultExecutive()); \
+  }                                                                                    \
+                                                                                       \
+public:
+
+/// Replace a vtkCompositeDataPipeline by one that empties the outputs of its algorithm if a request
+/// fails anywhere upstream, with the reason as field data `error`. Other executives are returned.
+VTKAVIANLIDAR_EXPORT vtkExecutive* vtkAvianLidarEmptyingExecutive(vtkExecutive* usual);
 
 #endif

@@ -225,6 +225,10 @@ int vtkAvianLidarRangeImage::RequestData(
   const int done = vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks)
     {
+      vtkAvianLidarRanks::Settings settings;
+      settings.Add("Columns", this->Columns);
+      settings.Add("Rows", this->Rows);
+      ranks.AgreeOn(settings);
       vtkSmartPointer<vtkPolyData> echoes = vtkPolyData::GetData(inputVector[0]);
       vtkSmartPointer<vtkPolyData> beams = vtkPolyData::GetData(inputVector[1]);
       vtkAvianLidarWithin("Range image: ",

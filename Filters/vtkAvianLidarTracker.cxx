@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarTracker.h"
 
+#include "Hash.h"
 #include "Tracker.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
@@ -29,8 +30,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -83,6 +86,15 @@ vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
   vtkMultiProcessStream mine;
   mine << static_cast<long long>(facts.Points) << facts.Time << facts.Sensor[0] << facts.Sensor[1]
        << facts.Sensor[2] << facts.HalfBeamwidth;
+  const double own[] = { facts.Time, facts.Sensor[0], facts.Sensor[1], facts.Sensor[2],
+    facts.HalfBeamwidth };
+  const std::optional<std::uint64_t> known = facts.Points > 0
+    ? std::optional<std::uint64_t>(avianlidar::hashOf(own, sizeof own, 0))
+    : std::nullopt;
+  vtkAvianLidarRequire(ranks.Same(known) ? ""
+                                         : "the ranks have clouds of different times, positions or "
+                                           "beam widths in field data, expected "
+                                           "those of one scan");
   vtkIdType before = 0;
   bool isFirst = true;
   int rank = 0;
@@ -251,6 +263,14 @@ struct vtkAvianLidarTracker::vtkInternals
   State Before;     // state before the last cloud
   State After;      // state after the last cloud
   CloudFacts Facts; // facts of the present cloud
+
+  // Adds the clouds that were tracked before.
+  void AddMemoryTo(vtkAvianLidarRanks::Settings& settings) const
+  {
+    const bool begun = this->After.Stream.Begun();
+    settings.Add("time of the cloud before", begun ? this->After.Stream.Time() : -1e300);
+    settings.Add("number of tracks", this->After.Tracker.tracks().size());
+  }
 
   static avianlidar::TrackerSettings SettingsOf(const vtkAvianLidarTracker& self);
   // Updates the tracks. @return track of each point of the cloud, or -1
@@ -454,6 +474,11 @@ int vtkAvianLidarTracker::RequestData(
       {
         settings.Add(setting.Property, setting.ValueOf(*this));
       }
+      for (const double coordinate : this->SensorPosition)
+      {
+        settings.Add("SensorPosition", coordinate);
+      }
+      this->Internals->AddMemoryTo(settings);
       ranks.AgreeOn(settings);
       const vtkIdType first = Share(ranks, facts); // first point of this rank
       const vtkSmartPointer<vtkPolyData> cloud = vtkAvianLidarGather::Points(ranks, input);

@@ -3,6 +3,7 @@
 
 #include "Private/KittiFormat.h"
 #include "Private/OutputFile.h"
+#include "Private/ReadCloud.h"
 #include "Private/vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarNames.h"
@@ -43,15 +44,25 @@ class Labels
 {
 public:
   Labels(vtkPointSet* input, bool byMaterial)
-    : Objects(fields::Need(input, names::ObjectId.name))
+    : Objects(fields::Find(input, names::ObjectId.name))
     , Materials(byMaterial ? fields::Need(input, names::MaterialId.name) : nullptr)
+    , Given(Objects ? nullptr : fields::Find(input, names::SemanticLabel.name))
+    , Instances(Given ? fields::Find(input, names::InstanceId.name) : nullptr)
     , ByMaterial(byMaterial)
     , LabelOf(fields::LabelsOf(input))
   {
   }
 
+  /// Returns whether the input has arrays for the labels.
+  bool Known() const { return this->Objects || this->Materials || this->Given; }
+
   std::uint32_t At(vtkIdType i) const
   {
+    if (this->Given && !this->ByMaterial)
+    {
+      return (static_cast<std::uint32_t>(fields::IntegerOf(this->Given, i, 0)) & 0xFFFF) |
+        static_cast<std::uint32_t>(fields::IntegerOf(this->Instances, i, 0)) << 16;
+    }
     const int id = fields::IntegerOf(this->Objects, i, -1);
     const int label = this->ByMaterial
       ? formats::labelOfMaterial(fields::IntegerOf(this->Materials, i, -1))
@@ -63,6 +74,7 @@ public:
 
 private:
   vtkDataArray *Objects, *Materials;
+  vtkDataArray *Given, *Instances; ///< labels of an input without objects, such as a KITTI scan
   bool ByMaterial;
   std::function<formats::SemanticLabel(int)> LabelOf;
 };
@@ -78,7 +90,7 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   {
     this->Warn(std::string(": the input has no field data '") + names::Position.name +
       "' of a sensor: its points are taken for coordinates in the sensor's frame, x right, y "
-      "forward, z up.");
+      "forward, z up. Set the field data, or --position of avianlidar convert.");
     pose.emplace();
   }
 
@@ -89,6 +101,19 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   if (this->WriteLabels)
   {
     labels.emplace(input, this->LabelSource == LABEL_SOURCE_MATERIAL);
+  }
+  if (labels && !labels->Known() && input->GetNumberOfPoints() > 0)
+  {
+    const std::string beside = formats::labelFileOf(this->FileName);
+    failIf(!beside.empty(), "the input has no point array '", names::ObjectId.name, "' or '",
+      names::SemanticLabel.name, "' for labels, but the file would get those of ", beside,
+      ": remove that file");
+    this->Warn(std::string(": no labels are written, because the input has no point array '") +
+      names::ObjectId.name + "' or '" + names::SemanticLabel.name + "'.");
+    labels.reset();
+  }
+  if (labels)
+  {
     // beside the target if FileName is a link
     labelFile.emplace(std::filesystem::path(file.name()).replace_extension(".label").string());
   }
@@ -99,10 +124,12 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
   const vtkIdType size = input->GetNumberOfPoints();
   vtkIdType beyond = 0;
+  double rounding = 0.0;
   constexpr double greatest = formats::KittiGreatestIntensity;
   for (vtkIdType i = 0; i < size; ++i)
   {
     const Point p = PlaceOf(input, *pose, i);
+    rounding = std::max(rounding, fields::RoundingOf(p));
     const double value = fields::ValueOf(intensity, i, 0.0);
     beyond += value < 0.0 || value > greatest ? 1 : 0;
     unsigned char bytes[16];
@@ -126,6 +153,12 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   else
   {
     file.commit();
+  }
+  if (rounding > fields::NoticeableRounding)
+  {
+    this->Warn(": single precision, which KITTI uses," + fields::Moves(rounding) +
+      ": set the field data '" + names::Position.name +
+      "', or --position of avianlidar convert, to the position of the sensor.");
   }
   if (beyond > 0)
   {

@@ -10,8 +10,10 @@
  *
  * With WriteLabels a file of the same name with the extension .label holds a uint32 for each point.
  * The lower 16 bits are the class of the object, or 300 + `material_id`. The upper 16 bits are
- * `object_id` + 1, or 0 without an object. Labels need the array `object_id` and, if LabelSource is
- * the material, `material_id`. With WriteLabels a FileName that ends with .label gives an error.
+ * `object_id` + 1, or 0 without an object. Without `object_id`, the labels are `semantic_label` and
+ * `instance_id`, as read from KITTI; without these arrays no labels are written, with a warning. If
+ * LabelSource is the material, labels need `material_id`. With WriteLabels a FileName that ends
+ * with .label gives an error.
  *
  * The writer writes both files as a whole, or no file. Sources: Geiger et al., "Vision meets
  * Robotics: The KITTI Dataset", IJRR 2013; Behley et al., "SemanticKITTI", ICCV 2019. Classes and

@@ -287,6 +287,7 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   GeodeticFrame geodesy;
   const Frame target =
     PlaceFile(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
+  output.degrees = formats::hasDegrees(output.crs);
   output.position = [&](std::int64_t i)
   {
     Point point;

@@ -195,8 +195,8 @@ vtkStandardNewMacro(vtkAvianLidarPCDWriter);
 //------------------------------------------------------------------------------
 void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 {
-  formats::PcdOutput output{ fields::ToTable(input, this->Precision == PRECISION_SINGLE,
-    ToPackedColour, [this](const std::string& text) { this->Warn(text); }) };
+  formats::PcdOutput output{ fields::ToTable(input, this->Precision, ToPackedColour,
+    [this](const std::string& text) { this->Warn(text); }) };
   output.ascii = this->FileType == FILE_TYPE_ASCII;
   output.width = static_cast<std::uint64_t>(input->GetNumberOfPoints());
   OrganisedCells cells;

@@ -32,8 +32,8 @@ vtkStandardNewMacro(vtkAvianLidarPLYWriter);
 //------------------------------------------------------------------------------
 void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
 {
-  formats::TableOutput output = fields::ToTable(input, this->Precision == PRECISION_SINGLE,
-    ToRedGreenBlue, [this](const std::string& text) { this->Warn(text); });
+  formats::TableOutput output = fields::ToTable(
+    input, this->Precision, ToRedGreenBlue, [this](const std::string& text) { this->Warn(text); });
   output.ascii = this->FileType == FILE_TYPE_ASCII;
   formats::PlyFaces faces;
   vtkNew<vtkIdList> ids;

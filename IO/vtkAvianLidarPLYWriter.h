@@ -38,7 +38,8 @@ public:
   enum Precisions
   {
     PRECISION_SINGLE = 0,
-    PRECISION_DOUBLE = 1
+    PRECISION_DOUBLE = 1,
+    PRECISION_AUTOMATIC = 2
   };
 
   ///@{
@@ -49,10 +50,12 @@ public:
   ///@}
 
   ///@{
-  /** Precision of x, y and z. Default PRECISION_SINGLE. */
-  vtkAvianLidarLimitedMacro(Precision, PRECISION_SINGLE, PRECISION_DOUBLE, PRECISION_SINGLE);
+  /** Precision of x, y and z. PRECISION_AUTOMATIC: double if single precision moves a coordinate
+   * by more than 1 mm, with a warning. Default PRECISION_SINGLE. */
+  vtkAvianLidarLimitedMacro(Precision, PRECISION_SINGLE, PRECISION_AUTOMATIC, PRECISION_SINGLE);
   void SetPrecisionToSingle() { this->SetPrecision(PRECISION_SINGLE); }
   void SetPrecisionToDouble() { this->SetPrecision(PRECISION_DOUBLE); }
+  void SetPrecisionToAutomatic() { this->SetPrecision(PRECISION_AUTOMATIC); }
   ///@}
 
 protected:

@@ -147,6 +147,12 @@ std::string foreignUnitOf(const std::string& wkt)
   return planIsMetre && upIsMetre ? std::string() : up && name != up ? name + " and " + up : name;
 }
 
+bool hasDegrees(const std::string& wkt)
+{
+  const scene::QuietGdal quiet;
+  return systemOf(wkt).IsGeographic();
+}
+
 int utmZoneOf(const std::string& wkt)
 {
   const scene::QuietGdal quiet;

@@ -27,6 +27,9 @@ std::string wktOfGeoKeys(const std::vector<unsigned char>& keys,
 /// if plan and heights have different units. Returns an empty text for metres or an unknown unit.
 std::string foreignUnitOf(const std::string& wkt);
 
+/// Returns whether the coordinates are longitude and latitude.
+bool hasDegrees(const std::string& wkt);
+
 /// Returns the zone of a WKT of UTM on WGS84, negative in the south, or 0 for any other text.
 int utmZoneOf(const std::string& wkt);
 }

@@ -192,6 +192,27 @@ void addComments(const FieldTable& table, Cloud& cloud)
   }
 }
 
+void keepPoints(Cloud& cloud, const std::vector<std::size_t>& kept)
+{
+  const auto keep = [&kept](auto& values, std::size_t components)
+  {
+    std::size_t end = 0;
+    for (const std::size_t i : kept)
+    {
+      for (std::size_t c = 0; c < components; ++c)
+      {
+        values[end++] = values[i * components + c];
+      }
+    }
+    values.resize(end);
+  };
+  keep(cloud.points, 3);
+  for (Column& column : cloud.columns)
+  {
+    std::visit([&](auto& values) { keep(values, column.components); }, column.values);
+  }
+}
+
 void dropEmptyCells(Cloud& cloud, bool hasEmptyCells)
 {
   std::vector<std::size_t> kept;
@@ -214,23 +235,7 @@ void dropEmptyCells(Cloud& cloud, bool hasEmptyCells)
     cloud.warnings.push_back(
       std::to_string(lost) + " points whose coordinates are not finite are left out");
   }
-  const auto keep = [&kept](auto& values, std::size_t components)
-  {
-    std::size_t end = 0;
-    for (const std::size_t i : kept)
-    {
-      for (std::size_t c = 0; c < components; ++c)
-      {
-        values[end++] = values[i * components + c];
-      }
-    }
-    values.resize(end);
-  };
-  keep(cloud.points, 3);
-  for (Column& column : cloud.columns)
-  {
-    std::visit([&](auto& values) { keep(values, column.components); }, column.values);
-  }
+  keepPoints(cloud, kept);
 }
 
 void writeRows(

@@ -55,6 +55,9 @@ TableTargets targetsOf(const FieldTable& table, Cloud& to);
 std::uint64_t readRows(ByteSource& source, const FieldTable& table, const TableTargets& targets,
   const KeepGoing& keepGoing);
 
+/// Keeps only the points of the given indices, which must ascend.
+void keepPoints(Cloud& cloud, const std::vector<std::size_t>& kept);
+
 /// Leaves out the points whose coordinates are not finite, with a warning of their number.
 /// @param hasEmptyCells whether points of three NaN are cells of a grid, which give no warning
 void dropEmptyCells(Cloud& cloud, bool hasEmptyCells = false);

@@ -6,12 +6,13 @@
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
  * (2019). The code writes version 1.4, point data record format 6, or 7 with colours. It reads
  * versions 1.0 to 1.4, formats 0 to 10, with extra bytes, and leaves out waveforms (formats 4, 5, 9
- * and 10). LAZ files have compressed point records and no waveforms (LazFormat.h).
+ * and 10) and withheld points. LAZ files have compressed point records and no waveforms
+ * (LazFormat.h).
  *
  * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
- * finest scale of 10^-6, 10^-5, ... m that the extent of the cloud allows. The error is at most
- * half of the scale, plus the rounding of the double c: 0.5 micrometres for a cloud of up to 4.2
- * km, and 5 micrometres for a cloud of 42 km.
+ * finest scale of 10^-6, 10^-5, ... m that the extent of the cloud allows (from 10^-9 for degrees).
+ * The error is at most half of the scale, plus the rounding of the double c: 0.5 micrometres for a
+ * cloud of up to 4.2 km, and 5 micrometres for a cloud of 42 km.
  */
 #ifndef AvianLidarLasFormat_h
 #define AvianLidarLasFormat_h
@@ -32,6 +33,7 @@ constexpr int LasMostReturns = 15;
 constexpr double LasGreatestCoordinate = 1e15; // greatest coordinate, m (a tenth of a light year)
 constexpr double LasScanAngleStep = 0.006;     // unit of a stored scan angle, deg
 constexpr double LasIntensityStep = 1.0 / 257; // unit of a stored intensity: 65535 is intensity 255
+constexpr int LasWithheld = 4;                 // flag of a deleted point
 constexpr std::size_t LasLongestName = 31;     // greatest length of a name, bytes
 constexpr std::size_t LasMostExtraFields = LasLongestVlr / LasExtraBytesSize;
 
@@ -72,9 +74,9 @@ struct LasAxis
   double bound() const;
 };
 
-/// Returns the finest scale (a power of ten, at least 1e-6 m) and an offset that is a whole number,
-/// for coordinates from low to high, m.
-LasAxis chooseAxis(double low, double high);
+/// Returns the finest scale (a power of ten, at least 10^-decimals) and an offset that is a whole
+/// number, for coordinates from low to high, m or deg.
+LasAxis chooseAxis(double low, double high, int decimals = 6);
 
 /// A field of the core of a point of format 6 or 7.
 struct LasCoreField
@@ -129,6 +131,7 @@ struct LasOutput
   int sourceId = 0;                                ///< source id of the file
   std::string software;
   std::string crs;         ///< coordinate reference system, WKT; empty if unknown
+  bool degrees = false;    ///< whether x and y are in degrees
   std::string description; ///< text of the text area, at most LasLongestVlr bytes
   std::vector<Field> extra;
 };

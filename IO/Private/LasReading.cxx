@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoordinateSystem.h"
+#include "FieldTable.h"
 #include "LasFormat.h"
 #include "LazFormat.h"
 
@@ -247,6 +248,13 @@ void findSystem(const Header& header, const Records& records, Cloud& cloud)
   }
 }
 
+/// Returns the flags of a point record: 1 synthetic, 2 key-point, 4 withheld, 8 overlap (formats 6
+/// to 10).
+int flagsOf(const unsigned char* record, bool isNew)
+{
+  return isNew ? record[15] & 15 : record[15] >> 5;
+}
+
 /// Columns of a cloud, at first all zeros, and the functions that fill the columns from a record.
 class Columns
 {
@@ -273,7 +281,7 @@ public:
     this->addByte("number_of_returns", "1",
       [isNew](Bits at) { return isNew ? at[14] >> 4 : (at[14] >> 3) & 7; });
     this->addByte(LasClassification, "", [isNew](Bits at) { return isNew ? at[16] : at[15] & 31; });
-    this->addByte(LasFlags, "", [isNew](Bits at) { return isNew ? at[15] & 15 : at[15] >> 5; });
+    this->addByte(LasFlags, "", [isNew](Bits at) { return flagsOf(at, isNew); });
     this->addByte(LasUserData, "", [](Bits at) { return at[17]; });
     this->add(LasScanAngle, "deg",
       [isNew](Bits at, int) -> double {
@@ -427,9 +435,15 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   }
   requireMemoryFor(header.points, length);
   Columns columns(header, records.fields, cloud);
+  std::vector<std::size_t> kept; // points that are not withheld
+  kept.reserve(header.points);
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
     columns.take(i, bytes);
+    if ((flagsOf(bytes, header.layout.extended) & LasWithheld) == 0)
+    {
+      kept.push_back(i);
+    }
     goOn(keepGoing, i, header.points);
   };
   if (header.compressed)
@@ -441,6 +455,13 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
     forEachRecord(source, header.data, length, header.points, take);
   }
   columns.finish();
+  if (const std::uint64_t withheld = header.points - kept.size(); withheld > 0)
+  {
+    keepPoints(cloud, kept);
+    cloud.warnings.push_back(std::to_string(withheld) +
+      (withheld == 1 ? " point that is" : " points that are") +
+      " flagged as withheld, which means deleted, " + (withheld == 1 ? "is" : "are") + " left out");
+  }
   return cloud;
 }
 }

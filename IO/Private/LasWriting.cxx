@@ -206,13 +206,14 @@ double LasAxis::bound() const
   return 0.5 * this->scale + 2.0 * largest * std::numeric_limits<double>::epsilon();
 }
 
-LasAxis chooseAxis(double low, double high)
+LasAxis chooseAxis(double low, double high, int decimals)
 {
   LasAxis axis;
+  axis.scale = 1.0 / std::pow(10.0, decimals);
   axis.offset = std::nearbyint(0.5 * (low + high));
   const double reach = std::max(high - axis.offset, axis.offset - low);
   // Scales below 1 are computed as 1 / 10^k, which gives the double nearest to 1e-5, for example.
-  for (int k = 6; reach > axis.scale * (GreatestInteger - 1.0); --k)
+  for (int k = decimals; reach > axis.scale * (GreatestInteger - 1.0); --k)
   {
     axis.scale = k > 0 ? 1.0 / std::pow(10.0, k - 1) : axis.scale * 10.0;
   }
@@ -243,7 +244,7 @@ LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing)
   }
   for (int axis = 0; axis < 3; ++axis)
   {
-    measure.axes[axis] = chooseAxis(low[axis], high[axis]);
+    measure.axes[axis] = chooseAxis(low[axis], high[axis], output.degrees && axis < 2 ? 9 : 6);
   }
   return measure;
 }

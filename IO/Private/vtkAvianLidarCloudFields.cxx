@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudFields.h"
 
+#include "CoordinateSystem.h"
 #include "ScanPattern.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
@@ -32,6 +33,14 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
+constexpr double MetresPerDegree = 111320.0; // along the equator
+enum Precision                               // as in the classes of the writers
+{
+  PRECISION_SINGLE,
+  PRECISION_DOUBLE,
+  PRECISION_AUTOMATIC
+};
+
 Scalar ScalarOf(vtkDataArray* array)
 {
   const int type = array->GetDataType();
@@ -87,21 +96,19 @@ Field CoordinateField(vtkPointSet* input, int axis, bool single)
     } };
 }
 
-/// Returns the largest rounding error of a coordinate as float, m.
-double RoundingOf(vtkPointSet* input)
+/// Returns the largest rounding error of a coordinate as float, m. Infinity if a float cannot hold
+/// a coordinate.
+double LargestRounding(vtkPointSet* input)
 {
-  double bounds[6];
-  input->GetBounds(bounds);
-  double largest = 0.0;
-  for (const double bound : bounds)
+  double most = 0.0;
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
-    largest = std::max(largest, std::abs(bound));
+    Point p;
+    input->GetPoint(i, p.data());
+    most = std::max(most, RoundingOf(p));
   }
-  // Larger coordinates give an error elsewhere.
-  largest = std::min<double>(largest, std::numeric_limits<float>::max());
-  return input->GetNumberOfPoints() > 0
-    ? 0.5 * (std::nextafter(static_cast<float>(largest), INFINITY) - static_cast<float>(largest))
-    : 0.0;
+  const bool isDegrees = formats::hasDegrees(FindText(input, names::CrsWkt.name));
+  return isDegrees ? most * MetresPerDegree : most;
 }
 
 vtkSmartPointer<vtkDataArray> ToArray(const formats::Column& column)
@@ -272,16 +279,39 @@ void WarnOfTaken(
 }
 
 //------------------------------------------------------------------------------
-formats::TableOutput ToTable(vtkPointSet* input, bool single,
+double RoundingOf(const Point& point)
+{
+  double most = 0.0;
+  for (const double value : point)
+  {
+    const bool isBeyond = std::abs(value) > std::numeric_limits<float>::max();
+    const double rounding = isBeyond ? INFINITY : std::abs(value - static_cast<float>(value));
+    most = std::isfinite(value) ? std::max(most, rounding) : most;
+  }
+  return most;
+}
+
+//------------------------------------------------------------------------------
+std::string Moves(double rounding)
+{
+  return std::isfinite(rounding)
+    ? avianlidar::joined(" moves coordinates by up to ", std::round(1e3 * rounding) / 1e3, " m")
+    : " cannot hold all coordinates";
+}
+
+//------------------------------------------------------------------------------
+formats::TableOutput ToTable(vtkPointSet* input, int precision,
   const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
   const std::function<void(const std::string&)>& warn)
 {
-  constexpr double noticeable = 1e-3; // rounding that gives a warning, m
-  const double rounding = single ? RoundingOf(input) : 0.0;
-  if (rounding > noticeable)
+  const double rounding = precision == PRECISION_DOUBLE ? 0.0 : LargestRounding(input);
+  const bool single = precision == PRECISION_SINGLE ||
+    (precision == PRECISION_AUTOMATIC && rounding <= NoticeableRounding);
+  if (rounding > NoticeableRounding)
   {
-    warn(avianlidar::joined(": single precision moves coordinates by up to ", rounding,
-      " m so far from the origin: set Precision to Double."));
+    warn(single
+        ? ": single precision" + Moves(rounding) + ": set Precision to Double."
+        : ": x, y and z are in double precision, because single precision" + Moves(rounding) + ".");
   }
   formats::TableOutput output;
   std::vector<Field>& all = output.fields;

@@ -96,11 +96,23 @@ std::string Quoted(const std::vector<std::string>& names);
 void WarnOfTaken(
   const std::vector<std::string>& left, const std::function<void(const std::string&)>& warn);
 
-/// Returns x, y, z (as floats if `single`), intensity as float, the fields of all other numeric
+constexpr double NoticeableRounding = 1e-3; // rounding that gives a warning, m
+
+/// Returns the largest rounding error of a coordinate as float, in the unit of the coordinates.
+/// Infinity if a float cannot hold a coordinate.
+double RoundingOf(const Point& point);
+
+/// Returns the words " moves coordinates by up to 0.25 m".
+std::string Moves(double rounding);
+
+/// Returns x, y, z, intensity as float, the fields of all other numeric
 /// arrays (`toColours` makes the fields of `rgb`), and the notes as comment. Blanks in names become
 /// `_`, and 64-bit integers become doubles. A warning names arrays that are left out because
-/// another field has their name. A second warning reports rounding by more than 1 mm.
-avianlidar::formats::TableOutput ToTable(vtkPointSet* input, bool single,
+/// another field has their name. A second warning reports rounding by more than 1 mm, or double
+/// precision that avoids the rounding.
+/// @param precision of x, y and z: 0 single, 1 double, 2 double only if single precision rounds by
+/// more than 1 mm
+avianlidar::formats::TableOutput ToTable(vtkPointSet* input, int precision,
   const std::function<std::vector<Field>(vtkDataArray*)>& toColours,
   const std::function<void(const std::string&)>& warn);
 

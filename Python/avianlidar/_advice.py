@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._numbers import figures
 from ._properties import snake
 
 # properties of vtkAvianLidarEchoFilter
@@ -136,10 +137,10 @@ def table_rows(advice: Advice) -> list[tuple[Any, ...]]:
     rows: list[tuple[Any, ...]] = [("setting", "us a beam", "energy, % (at most)", "range, m (at most)",
                                     "wrong echoes, % (at most)", "")]
     for row in (0, *order[:MOST_ROWS]):
-        errors = [f"{scale * table[name][row]:.3g} ({scale * table[name + '_most'][row]:.3g})"
+        errors = [f"{figures(scale * table[name][row], 3)} ({figures(scale * table[name + '_most'][row], 3)})"
                   for name, scale in (("energy_error", 100), ("range_error", 1), ("missed_share", 100))]
         verdict = "advised" if row == advice.row else VERDICTS[table["verdict"][row]]
-        name, time = ("" if row else "now: ") + advice.words(row), f"{1e6 * table['seconds_per_beam'][row]:.3g}"
+        name, time = ("" if row else "now: ") + advice.words(row), figures(1e6 * table['seconds_per_beam'][row], 3)
         rows.append((name, time, *errors, verdict))
     return rows
 
@@ -148,7 +149,7 @@ def to_act_on(fields: Mapping[str, Any]) -> Iterator[str]:
     """Sentences on limits of a scan that a user can remove, from the field data of the echoes."""
     farthest, gate = (float(fields.get(name, np.inf)) for name in ("perceivable_range", "range_gate"))
     if farthest < gate:
-        yield (f"nothing beyond {farthest:.0f} m is perceived, although the range gate ends at {gate:g} m: "
+        yield (f"nothing beyond {farthest:.0f} m is perceived, although the range gate ends at {figures(gate)} m: "
                "more pulse energy, a lower energy limit or clearer air would let the sensor see farther")
 
 

@@ -7,19 +7,21 @@ import numpy as np
 
 from ._advice import MET, SETTINGS, UNDECIDED, Advice
 from ._measurement import CELLS, DEFAULT, DIRECT, RAYS, UNCONNECTED, Measurement, Trial, choose
+from ._numbers import figures
 from ._pipeline import Progress
 from ._properties import snake
 
 
 def per_cent(share: float) -> str:
-    return f"{100 * share if share > 1e-11 else 0:.{2 if share < 0.995 else 3}g} %"
+    return f"{figures(100 * share if share > 1e-11 else 0, 2 if share < 0.995 else 3)} %"
 
 
 def errors_in_words(errors: np.ndarray) -> str:
     """Errors in words. @param errors by kind: a value, or value, least and most"""
     words = []
     for kind, name in enumerate(("energy {} rms", "range {} rms", "echoes missed or invented {}")):
-        value, most = (f"{one:.3g} m" if kind == 1 else per_cent(one) for one in np.atleast_1d(errors[kind])[[0, -1]])
+        value, most = (f"{figures(one, 3)} m" if kind == 1 else per_cent(one)
+                       for one in np.atleast_1d(errors[kind])[[0, -1]])
         bound = f"at most {most}"
         if errors.ndim > 1 and np.isinf(errors[kind, 2]):
             bound = "undecided: fewer than 30 beams have an echo of twice the limit"
@@ -32,7 +34,7 @@ def cost(trial: Trial, other: Trial) -> str:
     if trial.is_as_fast_as(other):
         return "about the same time"
     share = round(100 * (trial.seconds / other.seconds - 1))
-    return f"{abs(share):.3g} % {'less' if share < 0 else 'more'} time"
+    return f"{figures(abs(share), 3)} % {'less' if share < 0 else 'more'} time"
 
 
 def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
@@ -45,9 +47,10 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
     of = {trial.setting: trial for trial in m.trials[1:]}
     seconds = number * (advised or of[DEFAULT]).seconds
     if advised:
-        times = "" if advised.is_as_fast_as(m.trials[0]) else f"{m.trials[0].seconds / advised.seconds:.3g} times "
+        gain = figures(m.trials[0].seconds / advised.seconds, 3)
+        times = "" if advised.is_as_fast_as(m.trials[0]) else f"{gain} times "
         lines.append(f"Advised: {advised.setting.words()}: {errors_in_words(advised.errors)}; "
-                     f"{1e6 * advised.seconds:.3g} us a beam of one core, {seconds:.3g} s the scan, "
+                     f"{figures(1e6 * advised.seconds, 3)} us a beam of one core, {figures(seconds, 3)} s the scan, "
                      f"{times}as fast as the present settings")
     else:
         best = min(m.trials, key=lambda trial: trial.parts(m.asked))
@@ -76,7 +79,7 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
     for samples, name in ((CELLS, "cells"), (RAYS, "plain rays")):
         met = [trial for trial in m.trials if trial.setting.samples == samples and trial.verdict == MET]
         fewest = min(met, key=lambda trial: (trial.setting.rays, trial.seconds), default=None)
-        needs.append(f"{name} need {fewest.setting.rays} ({1e6 * fewest.seconds:.3g} us a beam)" if fewest else
+        needs.append(f"{name} need {fewest.setting.rays} ({figures(1e6 * fewest.seconds, 3)} us a beam)" if fewest else
                      f"no tried number of {name} is enough")
     nothing, polygons, cells = m.views[1], m.views[2], m.views[3] + m.views[5]
     lines.append(f"Density of rays: {per_cent(polygons)} of the beams are integrated over polygons, {per_cent(cells)} "
@@ -91,9 +94,9 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
         weather = f"the air takes {light} of the light and {echoes} of the echoes; {back}"
     two, eight = (f"{(m.tree_seconds + seconds) / (m.tree_seconds + seconds / n):.2g}" for n in (2, 8))
     return [*lines, f"Weather: {weather}",
-            f"Processes: the collision tree ({m.tree_seconds:.2g} s of one core) is built by every process, and the "
-            f"scan ({seconds:.2g} s) is divided. The speed-up is at most {two} with 2 processes and {eight} with 8. "
-            "Later scans keep the tree",
+            f"Processes: the collision tree ({figures(m.tree_seconds, 2)} s of one core) is built by every process, "
+            f"and the scan ({figures(seconds, 2)} s) is divided. The speed-up is at most {two} with 2 processes and "
+            f"{eight} with 8. Later scans keep the tree",
             f"The reference's own error: {errors_in_words(m.own())}"]
 
 

@@ -218,6 +218,9 @@ def parser() -> Parser:
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
     verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap")
+    verb["convert"].add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
+        help="position of the sensor in the coordinates of the cloud, m, to which a KITTI scan (.bin) is relative; "
+        "default: the position in the file")
     for name in ("info", "compare", "convert"):
         add = verb[name].add_argument
         add("--sensor-address", metavar="ADDRESS", help="address of the sensor in packets (.pcap), as 192.168.1.201 or "

@@ -12,6 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ._advice import to_act_on
 from ._cloud import field_values, triangles_of
+from ._numbers import figures
 from ._sight import extent
 
 MOST = 20000  # number of triangles or beams in a picture, at most
@@ -51,9 +52,9 @@ def place_rows(scene) -> dict[str, Any]:
         scene.surfaces.GetBounds(bounds)
         rows["extent"] = extent(bounds)
     if scene.geodetic_origin:
-        rows["origin"] = "latitude {:.6f}, longitude {:.6f} deg, height {:g} m".format(*scene.geodetic_origin)
+        rows["origin"] = "latitude {:.6f}, longitude {:.6f} deg, height {:.10g} m".format(*scene.geodetic_origin)
     if scene.lidar_position:
-        rows["lidar"] = "({:g}, {:g}, {:g}) m".format(*scene.lidar_position)
+        rows["lidar"] = "({:.10g}, {:.10g}, {:.10g}) m".format(*scene.lidar_position)
     return rows
 
 
@@ -109,10 +110,11 @@ def sensor_rows(sensor) -> dict[str, Any]:
     assumed = beams.fields.get("assumed", ())
 
     def value(name: str, unit: str, scale: float = 1.0) -> str:
-        return f"{scale * getattr(sensor, name):g} {unit}" + (" (assumed)" if name in assumed else "")
+        return f"{figures(scale * getattr(sensor, name))} {unit}" + (" (assumed)" if name in assumed else "")
 
-    rows.update({"position": "({:g}, {:g}, {:g}) m".format(*sensor.position), "wavelength": value("wavelength", "nm"),
-                 "range gate": value("range_gate", "m"), "pulse energy": value("pulse_energy", "\u00b5J", 1e6),
+    rows.update({"position": "({:.10g}, {:.10g}, {:.10g}) m".format(*sensor.position),
+                 "wavelength": value("wavelength", "nm"), "range gate": value("range_gate", "m"),
+                 "pulse energy": value("pulse_energy", "\u00b5J", 1e6),
                  "full beam width": value("half_beamwidth", "mrad", 2e3), "rate": value("rotation_rate", "Hz")})
     if sensor.half_beamwidth_across:
         rows["full beam width"] += " by " + value("half_beamwidth_across", "mrad", 2e3)
@@ -140,7 +142,7 @@ def scan_rows(scan) -> dict[str, Any]:
     echoes = scan.echoes
     rows = {"beams": scan.report.number_of_points, "echoes": echoes.number_of_points, "arrays": ", ".join(echoes)}
     if echoes.number_of_points:
-        rows["distances"] = "{:.5g} to {:.5g} m".format(echoes["distance_m"].min(), echoes["distance_m"].max())
+        rows["distances"] = "{} to {} m".format(*(figures(end(echoes["distance_m"]), 5) for end in (np.min, np.max)))
     return {**rows, **{"limit": text for text in to_act_on(echoes.fields)}}
 
 
@@ -148,8 +150,8 @@ def coverage_rows(cover) -> dict[str, Any]:
     """The rows of a coverage's table that need no execution."""
     air = f"attenuation {cover.attenuation_coefficient:g} per metre"
     rows = {"bird": cover.species or f"target of {cover.effective_area:g} m2",
-            "air": f"visibility {cover.visibility:g} m" if cover.visibility > 0.0 else air,
-            "sensor": "({:g}, {:g}, {:g}) m".format(*cover.sensor.position)}
+            "air": f"visibility {figures(cover.visibility)} m" if cover.visibility > 0.0 else air,
+            "sensor": "({:.10g}, {:.10g}, {:.10g}) m".format(*cover.sensor.position)}
     if cover.places is None:
         return {**rows, "image": extent(cover.bounds), "spacing": "({:g}, {:g}, {:g}) m".format(*cover.spacing)}
     return {**rows, "places": cover.places.GetNumberOfPoints()}

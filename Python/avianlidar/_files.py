@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reading and writing of clouds, names of files, and regular files."""
-import contextlib
 import csv
 import gzip
 import io
@@ -25,6 +24,8 @@ from ._writers import refuse, suffixes, write
 # growth of files larger than SMALL. Text grows 5 to 30 times.
 LARGEST, SMALL, GROWTH = 256 << 20, 16 << 20, 100
 LONGEST = 200  # bytes of a name; the names of files add suffixes
+MOST_LINES = 1000  # greatest number of lines above the first row of a table
+COMMENTS = ("#", "//", "%", "!")  # beginnings of lines above the rows
 _NAME_AND_UNIT = re.compile(r"(.*?)(?: \[([^\[\]]*)\])?", re.S)
 _AXIS = re.compile(r"(?://)?\s*([xyz])(?:\s*[(\[]m[)\]])?", re.I)  # of CloudCompare, LAStools and spreadsheets
 _POINTS = ("Points:", "Points_", "Points_m_XYZ:", "Points_m_XYZ_")  # of ParaView and VeloView, before a number
@@ -79,60 +80,140 @@ def _axes(names: list[str]) -> list[str]:
     return [axis[1].lower() if axis else name for axis, name in zip(found, names)]
 
 
-def _names_and_rows(path: pathlib.Path) -> tuple[list[str], io.StringIO, str | None]:
-    """Names of the columns, the rows below, and the separator (None: blanks)."""
-    text = read_regular(path).decode("utf-8-sig")
-    first = text.partition("\n")[0].strip()
-    if first.lower().startswith("sep=") and len(first) == 5:  # a line that Excel writes
-        text, delimiter = text.partition("\n")[2], first[4]
+def _header(stream: io.StringIO, separators: str) -> tuple[list[str], str | None] | None:
+    """Names of columns at the position of the stream, and the separator (None: blanks), if x, y and z are among the
+    names. The position is then below the names."""
+    at = stream.tell()
+    line = stream.readline()
+    separator = max(separators, key=re.sub(r'"[^"]*"', "", line).count)  # outside of quotation marks
+    for delimiter in (separator, None):
+        stream.seek(at)
+        try:
+            names = next(csv.reader(stream, delimiter=delimiter)) if delimiter else stream.readline().split()
+        except csv.Error:
+            continue
+        names = _axes([name.strip() for name in names])
+        if set("xyz") <= {_NAME_AND_UNIT.fullmatch(name)[1] for name in names}:  # type: ignore[index]
+            return names, delimiter
+    return None
+
+
+def _is_numbers(line: str) -> bool:
+    """Whether a line is a row of a table: only numbers, and empty cells between separators."""
+    try:
+        words = re.split(r"[,;\s]+", line.partition("#")[0].replace('"', ""))
+        return len([float(word) for word in words if word]) > 0
+    except ValueError:
+        return False
+
+
+def _names_and_rows(path: pathlib.Path) -> tuple[list[str], str, str | None]:
+    """Names of the columns, the rows below, and their separator (None: blanks). Other lines may stand above the
+    names."""
+    stream = io.StringIO(read_regular(path).decode("utf-8-sig"), newline="")
+    is_xyz = path.suffix.lower() == ".xyz"
+    separators = ",;" if is_xyz else ",;\t"
+    found: tuple[list[str], str | None] | None = None
+    comments: list[list[str]] = []  # names in comments
+    for _ in range(MOST_LINES):
+        at = stream.tell()
+        line = stream.readline()
+        words = line.strip().strip('",;')
+        if not line:
+            break
+        if words.lower().startswith("sep=") and len(words) in (4, 5):  # a line that Excel writes
+            separators = line.strip()[4]
+        elif words.startswith(COMMENTS):
+            named = _header(io.StringIO(words.lstrip("".join(COMMENTS))), separators)
+            comments += [named[0]] if named else []
+        elif _is_numbers(line):
+            if is_xyz and len(words.split()) == 1 and not set(",;") & set(words):
+                raise ValueError("the first line has one word, as files of molecules have it")
+            stream.seek(at)
+            break
+        elif words:
+            stream.seek(at)
+            found = _header(stream, separators)
+            if found:
+                break
+            stream.seek(at)
+            stream.readline()
+    rows = stream.read()
+    if "#" in rows:
+        rows = re.sub(r"[ \t]*#.*", "", rows)
+    first = next(filter(None, map(str.strip, io.StringIO(rows))), "")
+    delimiter: str | None = max(separators, key=first.count)
+    if found and (found[1] or "") in first:
+        delimiter = found[1]
+    delimiter = delimiter if delimiter and delimiter in first or not first else None
+    if found is None:  # numbers follow
+        count = len(first.strip(delimiter).split(delimiter))
+        fitting = sorted((one for one in comments if len(one) == count or is_xyz and len(one) < count), key=len)
+        names = (comments + fitting or [[]])[-1]
+        if is_xyz:
+            names = fitting[-1] if fitting else _HELIOS if count == len(_HELIOS) else [*"xyz"][:count]
+            names = [*names, *(f"column_{i}" for i in range(len(names) + 1, count + 1))]
     else:
-        delimiter = max(",;\t", key=re.sub(r'"[^"]*"', "", first).count)  # outside of quotation marks
-    if path.suffix.lower() == ".xyz":
-        delimiter = max(",;", key=first.count)
-        words = first.replace(delimiter, " ").split()
-        if len(words) == 1:
-            raise ValueError("the first line has one word, as files of molecules have it")
-        with contextlib.suppress(ValueError):
-            count = len([float(word) for word in words])
-            names = [*"xyz", *(f"column_{i}" for i in range(4, count + 1))][:count]
-            names = _HELIOS if count == len(_HELIOS) else names
-            return names, io.StringIO(text), delimiter if delimiter in first else None
-        if delimiter not in first:
-            return _axes(first.removeprefix("//").split()), io.StringIO(text.partition("\n")[2]), None
-    stream = io.StringIO(text, newline="")
-    names = _axes([cell.strip() for cell in next(csv.reader(stream, delimiter=delimiter), [])])
-    if delimiter != ",":  # then a comma may be a decimal mark
-        rest = stream.read()
-        if "," in rest and "." in rest:
+        names = found[0]
+    if delimiter in (";", "\t"):  # then a comma may be a decimal mark
+        if "," in rows and "." in rows:
             raise ValueError("numbers have points and commas: either may be the decimal mark")
-        stream = io.StringIO(rest.replace(",", "."))
-    return names, stream, delimiter
+        rows = rows.replace(",", ".")
+    return names, rows, delimiter
+
+
+def _numbers(rows: str, delimiter: str | None, width: int) -> tuple[np.ndarray, np.ndarray]:
+    """The numbers of rows of text, with NaN for empty cells, and whether a cell is empty. Separators at the end of a
+    row are ignored."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about missing rows
+            table = np.loadtxt(io.StringIO(rows), delimiter=delimiter, quotechar='"', comments=None, ndmin=2)
+        return table, np.zeros(table.shape, bool)
+    except ValueError:
+        if delimiter is None:
+            raise
+    found = []
+    for row in csv.reader(io.StringIO(rows, newline=""), delimiter=delimiter):
+        cells = [cell.strip() for cell in row]
+        while len(cells) > width and not cells[-1]:
+            cells.pop()
+        if any(cells):
+            found.append(cells)
+            if len(cells) != width:
+                raise ValueError(f"rows have {len(cells)} cells, the first line {width}")
+    return np.array([[float(cell or "nan") for cell in cells] for cells in found]), np.array(found) == ""
 
 
 def _table(path: pathlib.Path) -> tuple[dict[str, str], np.ndarray]:
     """Units of the columns by name, and the rows."""
     try:
-        names, stream, delimiter = _names_and_rows(path)
+        names, rows, delimiter = _names_and_rows(path)
         units: dict[str, str] = {}
-        for cell in names:
-            name, unit = _NAME_AND_UNIT.fullmatch(cell).groups("")  # type: ignore[union-attr]
+        for number, cell in enumerate(names, 1):
+            name, unit = _NAME_AND_UNIT.fullmatch(cell or f"column_{number}").groups("")  # type: ignore[union-attr]
             if name in units:
                 raise ValueError(f"the column {name!r} is there twice")
             units[name] = unit
         wrong = [axis for axis in "xyz" if units.get(axis, "no") not in ("", "m")]
         if wrong:
             raise ValueError(f"has no column {wrong[0]} in metres")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about missing rows
-            table = np.loadtxt(stream, delimiter=delimiter, quotechar='"', comments=None, ndmin=2)
-        table = table if table.size else np.empty((0, len(units)))
+        table, gaps = _numbers(rows, delimiter, len(names))
+        if not table.size:
+            table, gaps = np.empty((0, len(units))), np.empty((0, len(units)), bool)
         if table.shape[1] != len(units):
             raise ValueError(f"rows have {table.shape[1]} cells, the first line {len(units)}")
     except (ValueError, csv.Error) as error:
         raise ValueError(f"{path}: is not a cloud ({error}): expected a first line of names, among them x, y and z "
                          "(m), some with units, as 'energy [J]', and numbers below; of .xyz numbers alone, x, y and z "
                          "(m) first") from None
-    return units, table
+    columns = list(units)
+    # Separators at the ends of lines make columns without a name and without numbers.
+    kept = [bool(cell) or not gaps[:, place].all() for place, cell in enumerate(names)]
+    empty = sum(gaps[:, place].sum() for place, name in enumerate(columns) if kept[place] and name not in tuple("xyz"))
+    if empty:
+        warnings.warn(f"{path}: {empty} empty cells are read as NaN", RuntimeWarning, stacklevel=callers_level())
+    return {name: units[name] for name, keep in zip(columns, kept) if keep}, table[:, kept]
 
 
 def _read_table(path: pathlib.Path) -> Cloud:

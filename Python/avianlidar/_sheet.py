@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from ._disk import write_whole
+from ._numbers import figures
 
 # Spectral irradiance of the sun for 100 klx, W/(m2 nm), by wavelength in nm; the nearest value holds outside.
 # Second-hand: read off the reference spectrum ASTM G173-03 (global, 37 degrees), which has some 109 klx.
@@ -222,7 +223,7 @@ def fit(sensor, points: Sequence[dict[str, Any]] | None = None) -> Fit:
     for i, point in enumerate(points):
         if point["range"] > sensor.range_gate:
             raise ValueError(f"sheet.points[{i}].range is {point['range']!r}, expected at most range_gate, "
-                             f"{sensor.range_gate:g} m")
+                             f"{figures(sensor.range_gate)} m")
     receiver = Receiver(sensor)
     start, frees = max(sensor.filter_bandwidth, 1e-3), _told(points)
     aperture, bandwidth, board = _fitted(receiver, points, start, frees)

@@ -8,6 +8,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from ._cloud import Cloud, as_numpy, field_values, triangles_of, with_points
+from ._numbers import figures
 from ._pipeline import update
 from ._plot import STATUS
 
@@ -16,9 +17,14 @@ FAR = 1e5  # m: distance at which nothing is seen
 BELOW = 1.0  # distance below the lowest point from which on a sensor counts as below the scene, m
 
 
+def coordinate(value: float) -> str:
+    """A coordinate in words, in cm if it is one of a map."""
+    return figures(value) if abs(value) < 1e5 else figures(round(value, 2), 15)
+
+
 def extent(bounds) -> str:
     """Bounds in words, m."""
-    return ", ".join(f"{name} {low:.6g} to {high:.6g}" for name, low, high in
+    return ", ".join(f"{name} {coordinate(low)} to {coordinate(high)}" for name, low, high in
                      zip(("east", "north", "up"), bounds[::2], bounds[1::2])) + " m"
 
 
@@ -97,16 +103,16 @@ def of_scene(bounds, place=(0, 0, 0), seen: bool = True) -> Iterator[str]:
         yield f"the scene extends {extent(bounds)}: if its file is in millimetres, read it with the scale 0.001"
     elif on_north and (deep < tall / 3 and tall > 100 and bounds[4] < -0.25 * tall or
                        not seen and bounds[4] < place[2] - 0.5 * tall and deep < tall):
-        yield (f"the scene's lowest point is {-bounds[4]:.6g} m below the origin, and the scene stands on north = "
-               f"{bounds[2]:.6g} m ({extent(bounds)}): if y is up in its file, read it with the up axis y")
+        yield (f"the scene's lowest point is {figures(-bounds[4])} m below the origin, and the scene stands on north = "
+               f"{figures(bounds[2])} m ({extent(bounds)}): if y is up in its file, read it with the up axis y")
 
 
 def of_place(surfaces, bounds, place, seen: bool = True) -> Iterator[str]:
     """Warnings about a sensor's place. @param seen whether there are echoes"""
-    where = "({:.6g}, {:.6g}, {:.6g}) m".format(*place)
+    where = "({}, {}, {}) m".format(*map(coordinate, place))
     within = all(low <= at <= high for at, low, high in zip(place[:2], bounds[:4:2], bounds[1:4:2]))
     if place[2] < bounds[4] - BELOW and (within or not seen):
-        yield f"the sensor at {where} is below the scene, whose lowest point is at {bounds[4]:.6g} m"
+        yield f"the sensor at {where} is below the scene, whose lowest point is at {figures(bounds[4])} m"
         return
     numbers, heights = crossed(surfaces, place)
     above = heights > place[2]
@@ -127,7 +133,7 @@ def of_echoes(bounds, place, report, gate: float) -> str:
     text = f"no echoes of {report.number_of_points} beams: {', '.join(words)}"
     away = np.linalg.norm([max(low - at, 0, at - high) for at, low, high in zip(place, bounds[::2], bounds[1::2])])
     if away > gate:
-        text += f"; the scene is {away:.6g} m away or more, the range gate ends at {gate:.6g} m"
+        text += f"; the scene is {figures(away)} m away or more, the range gate ends at {figures(gate)} m"
         if away > FAR:
             text += "; if its coordinates are those of a map, such as UTM, subtract an offset or put the sensor there"
     elif counts[1] == report.number_of_points:

@@ -11,8 +11,9 @@ from . import Cloud, Scan, Scene, Sensor, _display, _scene, _sheet, load_cloud, 
 from . import vtkAvianLidar as _wrapped
 from ._advice import check_suffix as check_advice
 from ._advice import notes_of, table_rows, to_act_on
-from ._cloud import vertices
+from ._cloud import add_array, vertices
 from ._disk import replacing
+from ._numbers import figures
 from ._pipeline import update
 from ._sight import extent, of_scene
 from ._suffixes import OF_SENSOR, PACKETS, POINTS
@@ -34,11 +35,20 @@ def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
         check_target(out, [*options.out[:number], pathlib.Path(options.scene)])
 
 
+def _unreturned(cloud) -> dict[str, np.ndarray]:
+    """Whether each point is no echo of a surface, by words for the kind of points."""
+    kinds: dict[str, np.ndarray] = {}
+    if "object_id" in cloud:
+        kinds = {"false alarms of the noise (object_id -1)": cloud["object_id"] == -1,
+                 "echoes of the air (object_id -2)": cloud["object_id"] == -2}
+    elif "classification" in cloud:  # of LAS
+        kinds = {"noise (classification 7 or 18)": np.isin(cloud["classification"], (7, 18))}
+    return {words: points for words, points in kinds.items() if points.any()}
+
+
 def _alarms(cloud) -> str:
     """Words on the number of echoes that come from no surface."""
-    ids = list(cloud.get("object_id", ()))
-    return "".join(f", {ids.count(number)} of them {words} (object_id {number})" for number, words in
-                   ((-1, "false alarms of the noise"), (-2, "echoes of the air")) if number in ids)
+    return "".join(f", {points.sum()} of them {words}" for words, points in _unreturned(cloud).items())
 
 
 def _percent_of(what: str) -> Callable[[float, str], None]:
@@ -157,7 +167,7 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
     rows: list[tuple[Any, ...]] = [("array", "unit", "least", "greatest")]
     for name, values in cloud.items():
         finite = values[np.isfinite(values)] if np.isfinite(values).any() else np.array([np.nan])
-        rows.append((name, cloud.units[name] or "-", f"{finite.min():.6g}", f"{finite.max():.6g}"))
+        rows.append((name, cloud.units[name] or "-", figures(finite.min()), figures(finite.max())))
     table(rows)
     if not quiet:
         table(notes_of(fields))
@@ -236,24 +246,25 @@ def compare(options) -> None:
     limits = np.array([np.percentile(Cloud(measure.GetOutputDataObject(port))["nearest_distance"], shares)
                        for port in range(2)])
     table([("distance of nearest points (m)", f"{a} to {b}", f"{b} to {a}"),
-            *(("median" if share == 50 else f"{share} % are within", *map("{:.6g}".format, pair))
+            *(("median" if share == 50 else f"{share} % are within", *map(figures, pair))
               for share, pair in zip(shares, limits.T)),
-            *((words, *(f"{getattr(measure, f'Get{name}{way}')():.6g}" for way in ways)) for words, name in (
+            *((words, *(figures(getattr(measure, f'Get{name}{way}')()) for way in ways)) for words, name in (
                 ("root mean square", "RMSE"), ("largest", "Hausdorff"),
                 ("density-aware Chamfer distance (1)", "DensityAwareChamfer"))),
             ("number of points", *(cloud.number_of_points for cloud in clouds))])
-    tell(f"Hausdorff distance: {measure.GetHausdorffDistance():.6g} m")
+    tell(f"Hausdorff distance: {figures(measure.GetHausdorffDistance())} m")
     alarms = [f"{file.name} has {cloud.number_of_points} echoes{_alarms(cloud)}"
               for file, cloud in zip(files, clouds) if _alarms(cloud)]
     if alarms:
         text = f"All numbers above count echoes that no surface has returned: {'; '.join(alarms)}."
-        left = [cloud.points[cloud["object_id"] >= 0] if "object_id" in cloud else cloud.points for cloud in clouds]
+        left = [cloud.points[~np.any([*_unreturned(cloud).values(), np.zeros(cloud.number_of_points, bool)], axis=0)]
+                for cloud in clouds]
         if all(map(len, left)):
             distance = _compared(*map(vertices, left)).GetHausdorffDistance()
-            text += f" Without these echoes the Hausdorff distance is {distance:.6g} m."
+            text += f" Without these echoes the Hausdorff distance is {figures(distance)} m."
         tell(text)
-    tell(f"density-aware Chamfer distance: {measure.GetDensityAwareChamferDistance():.6g} "
-         f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
+    tell(f"density-aware Chamfer distance: {figures(measure.GetDensityAwareChamferDistance())} "
+          f"(alpha = {measure.GetChamferAlpha():g} 1/m)")
     if options.out:
         save(Cloud(measure.GetOutputDataObject(0)), options.out)
         tell(f"{options.out}: {a} with nearest_distance (m)")
@@ -262,6 +273,8 @@ def compare(options) -> None:
 def convert(options) -> None:
     chosen = _of_packets(options, options.file)
     if options.out.suffix.lower() == ".mcap":
+        if options.position:
+            raise ValueError("--position is for one cloud, expected none for a sequence: its poses are in poses.txt")
         check_target(options.out)
         from .apps import _mcap
         tell(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
@@ -269,6 +282,8 @@ def convert(options) -> None:
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file, chosen)
+    if options.position:
+        add_array(cloud.data.GetFieldData(), "position", np.array(options.position), "m")
     save(cloud, options.out)
     tell(f"{options.out}: {cloud.number_of_points} points of {options.file}")
 

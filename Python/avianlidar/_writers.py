@@ -124,6 +124,8 @@ def write(cloud, file, **properties: Any) -> None:
     writer = getattr(_wrapped, WRITERS[suffix])()
     if suffix in (".las", ".laz") and "geodetic_origin" not in cloud.fields:
         properties = {"coordinate_system": "Local", **properties}
+    if suffix in (".pcd", ".ply"):
+        properties = {"precision": "Automatic", **properties}
     set_properties(writer, **properties)
     writer.SetInputData(cloud.data)
     writer.SetFileName(file_name(path))

@@ -18,6 +18,7 @@ import numpy as np
 
 from . import vtkAvianLidar as _wrapped
 from ._coverage import Coverage
+from ._numbers import figures
 from ._scene import Scene
 from ._sensor import Sensor
 from ._weather import weather
@@ -206,7 +207,7 @@ def advice(plan: Plan, detected_to: float) -> dict[str, Any] | None:
         slower = round(sensor.rotation_rate * number / more, 6)
         raised = [{"minimum_elevation": lowest + (needed - high) * k / RAISES} for k in range(1, RAISES + 1)]
         ways = [{"what": lambda _: f"{more} beams above one another instead of {number}, at the same step",
-                 "cost": f"scans that take {more / number:.2g} times as long, at the same pulses a second",
+                 "cost": f"scans that take {figures(more / number, 2)} times as long, at the same pulses a second",
                  "changes": [{"number_of_channels": more, "rotation_rate": slower}]},
                 {"what": lambda changes: f"the same beams, all higher, from {changes['minimum_elevation']:.1f} to "
                                          f"{changes['minimum_elevation'] + high - low:.1f}°: the best of {RAISES} "

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <vector>
 
 using namespace echotest;
@@ -47,6 +49,24 @@ void expectSameByRays(const Scene& scene, double width, double tolerance)
   EXPECT_GT(rays, 0.0);
   EXPECT_NEAR(regions, rays, tolerance * rays);
 }
+}
+
+TEST(MirrorRegions, SamplesHaveNumbersOfTheirOwn)
+{
+  // Start and sample of each path: more samples than 2^22, and the last of 1024 surfaces.
+  const std::uint32_t many = 1u << 22;
+  const std::uint32_t paths[][2] = { { 0, 0 }, { 0, 1 }, { 0, 3 }, { 0, many }, { 0, many + 1 },
+    { 1, 0 }, { 1, 1 }, { 1022, many - 1 }, { 1023, many - 1 }, { 1023, 16 * many } };
+  const std::uint32_t expected[] = { 0, 1, 3, 4, 5, 6, 7, 9, 11, 12 };
+  std::vector<MirrorPath> all(std::size(paths));
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    all[i].start = paths[i][0];
+    all[i].one = paths[i][1];
+    number = numberAfter(i > 0 ? &all[i - 1] : nullptr, number, all[i]);
+    EXPECT_EQ(number, expected[i]) << i;
+  }
 }
 
 TEST(MirrorRegions, BringWhatRaysBring)

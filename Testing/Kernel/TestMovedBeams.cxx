@@ -424,6 +424,53 @@ TEST(MovedBeams, AMoverMayHaveManyTriangles)
   }
 }
 
+TEST(MovedBeams, KeptBeamsDoNotChangeWhichObjectsCoincide)
+{
+  Scene walls;
+  walls.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall, 1);
+  walls.plate(Vec3(100.0, 1.0, 0.0), Vec3(0.0, 3.0, 0.0), Vec3(0.0, 0.0, 3.0), Wood, 2);
+  const ScanBeams beams = timed(oneBeam(), 0.0);
+  for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
+  {
+    EchoSettings settings = usual();
+    settings.beamSamples = source;
+    ScanSetup setup = makeSetup(walls, {}, settings);
+    TraceCache cache;
+    const auto pairs = [&]()
+    {
+      ScanResult result;
+      EXPECT_TRUE(simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, result));
+      EXPECT_EQ(result.coincident, runScan(setup, beams).coincident); // without the cache
+      return result.coincident.size();
+    };
+    EXPECT_EQ(pairs(), 1u);
+    for (const double half : { 5.0, 0.05 }) // hides the beam, or a part of it
+    {
+      Scene lid;
+      lid.plate(Vec3(50.0, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), Wall, 3);
+      setMovers(setup, { moverOf(lid) });
+      EXPECT_EQ(pairs(), half < 1.0 ? 1u : 0u);
+    }
+  }
+}
+
+TEST(MovedBeams, ReportsNeedNoTimes)
+{
+  ScanSetup setup = makeSetup(Scene(), {}, usual());
+  ScanBeams beams = oneBeam();
+  EXPECT_TRUE(reportMovers(setup, beams, {}, 1).empty()); // nothing moves, and no beam has a time
+  setMovers(setup, { moverOf(goose(Vec3(50.0, 0.0, 0.0), 100)) });
+  const ScanResult untimed = runScan(setup, beams);
+  const MoverReport without = reportMovers(setup, beams, untimed.sights, 1).at(0);
+  beams = timed(beams, 0.0);
+  const ScanResult result = runScan(setup, beams);
+  EXPECT_GT(result.beamsTouched, 0u);
+  expectSame(untimed, result);
+  const MoverReport with = reportMovers(setup, beams, result.sights, 1).at(0);
+  EXPECT_EQ(without.energy, with.energy);
+  EXPECT_EQ(without.range, with.range);
+}
+
 TEST(MovedBeams, TheReportStopsWhenItIsNotWanted)
 {
   std::vector<Mover> movers;

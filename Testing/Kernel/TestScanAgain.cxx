@@ -222,6 +222,28 @@ TEST(ScanAgain, WhatIsKnownIsNotTraced)
   }
 }
 
+TEST(ScanAgain, KeptCellsServeASecondReflection)
+{
+  std::mt19937_64 random(1);
+  EchoSettings settings = usual();
+  settings.numberOfReflections = 1;
+  Sensor wide;
+  wide.halfBeamwidth = 0.03;
+  ScanSeries series(wide, settings, townOf(3, random));
+  std::vector<const CellSamples*> before;
+  for (const BeamTrace& trace : series.cache.beams)
+  {
+    before.push_back(trace.cells());
+  }
+  EXPECT_GT(before.size() - std::count(before.begin(), before.end(), nullptr), 10u);
+  series.setup.settings.numberOfReflections = 2;
+  series.check("two reflections");
+  for (std::size_t b = 0; b < before.size(); ++b)
+  {
+    EXPECT_EQ(series.cache.beams[b].cells(), before[b]) << b;
+  }
+}
+
 TEST(ScanAgain, StandardErrorsAreThoseOfAFreshScanWhateverReturnsAreKnown)
 {
   // One beam over twelve strips one behind the other, of which noise makes more and fewer returns.

@@ -141,6 +141,82 @@ def test_settings_that_differ():
         check_good(echo)
 
 
+def test_settings_of_every_filter():
+    """A setting of one rank that differs is an error on all, which names it; the next good settings work."""
+    def timed(data, time=1.0, **fields):
+        data.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), time)
+        for name, values in fields.items():
+            cloudtools.add_field(data, name, values)
+        return data
+
+    def cloud(**fields):
+        places = np.random.default_rng(RANK).uniform(-100, 100, (20, 3))
+        return timed(cloudtools.cloud(places), **{"position": (1.0, 2.0, 3.0), **fields})
+
+    def filter_of(name, *data):
+        made = getattr(al, "vtkAvianLidar" + name)()
+        for port, one in enumerate(data):
+            made.SetInputData(port, one)
+        return made
+
+    source = echotools.sensor()
+    source.UpdatePiece(RANK, RANKS, 0)
+    beams = echotools.copy_of(source.GetOutput())
+
+    def image():
+        made, sensor = filter_of("RangeImage"), echotools.sensor()
+        echo = echotools.scan(TOWN, sensor, **SETTINGS)
+        made.SetInputConnection(0, echo.GetOutputPort())
+        made.SetInputConnection(1, sensor.GetOutputPort())
+        return made
+
+    cases = [(lambda: filter_of("ClutterFilter", cloud()), (
+                 ("Window", 9.0), ("ClutterThreshold", 0.5), ("RangeStep", 3.0), ("AzimuthStep", 1.0), ("ElevationStep", 1.0),
+                 ("RangeTolerance", 3), ("AngularTolerance", 4), ("WarmUp", 7))),
+             (lambda: filter_of("ClutterFilter", cloud()), (("InputData", cloud(position=(1.0, 2.0, 3.5))),)),
+             (lambda: filter_of("Tracker", cloud()), (("ClusterDistance", 3.0), ("MotionModel", 0), ("SensorPosition", (1.0, 0.0, 0.0)))),
+             (lambda: filter_of("Tracker", cloud()), (("InputData", cloud(position=(1.0, 2.0, 3.5))), ("InputData", cloud(time=2.0)))),
+             (lambda: filter_of("CollisionTree", TOWN), (("SplitRule", 1), ("BoundingVolume", 1), ("MaximumLeafSize", 9), ("Preset", 1))),
+             (lambda: echotools.scan(TOWN, beams, **SETTINGS), (("ReportMovers", False),)),
+             (image, (("Columns", 40), ("Rows", 2)))]
+    for make, settings in cases:
+        for name, value in settings:
+            made = make()
+            messages = echotools.Messages(made)
+            of_data = name == "InputData"
+            before = made.GetInputDataObject(0, 0) if of_data else getattr(made, "Get" + name)()
+            getattr(made, "Set" + name)(mine(before, value))
+            update(made)
+            words = "position" if of_data and made.IsA("vtkAvianLidarClutterFilter") else "different times, positions" if of_data else name
+            for heard in heard_by_all(messages):
+                assert words in heard and (of_data or "expected the same on all ranks" in heard), (made.GetClassName(), name, heard)
+            assert not made.GetOutputDataObject(0).GetNumberOfElements(vtk.vtkDataObject.POINT)
+            getattr(made, "Set" + name)(before)
+            made.Modified()
+            update(made)
+            assert not any(heard_by_all(messages)), (made.GetClassName(), name)
+
+
+def test_a_rank_without_points_learns_clutter():
+    """It takes the sensor's position from the ranks that have points."""
+    def played(parts):
+        filter_ = al.vtkAvianLidarClutterFilter()
+        for time in range(3):
+            data = cloudtools.cloud(np.random.default_rng(5).uniform(-50, 50, (30, 3))[parts])
+            data.GetInformation().Set(vtk.vtkDataObject.DATA_TIME_STEP(), float(time))
+            if data.GetNumberOfPoints():
+                cloudtools.add_field(data, "position", (5.0, 6.0, 7.0))
+            filter_.SetInputData(data)
+            yield filter_
+
+    for serial, together in zip(played(slice(None)), played(slice(0, 0) if RANK == 0 and RANKS > 1 else slice(RANK - 1, None, max(1, RANKS - 1)))):
+        serial.SetController(None)
+        serial.Update()
+        update(together)
+    table = joined(together.GetOutputDataObject(1))
+    assert_same(table, in_order(point_arrays(serial.GetOutputDataObject(1))))
+
+
 def test_beams_of_two_sensors():
     source = echotools.sensor()
     source.Update()

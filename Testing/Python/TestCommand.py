@@ -17,6 +17,8 @@ from scipy.spatial import cKDTree
 import avianlidar as al
 import exampletools
 from avianlidar import _command, _terminal, reach
+from avianlidar._advising import per_cent
+from avianlidar._numbers import figures
 from boxfiles import CORNERS, TRIANGLES, poly_data, stl
 from cloudtools import CLOUDS, READ_BACK
 import helpertools
@@ -197,12 +199,42 @@ class Verbs(unittest.TestCase):
         self.assertEqual(read("x,y,z,energy [J]\n").number_of_points, 0)
         for text, words in (("", "has no column x"), ("x,y,z [mm]\n1,2,3\n", "has no column z in metres"),
                             ("x,y,z,x\n1,2,3,4\n", "'x' is there twice"),
-                            ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells"),
-                            ("x,y,z\n1,2,\n", "string")):
+                            ("x,y,z\n1,2,word\n", "word"), ("x,y,z\n1,2\n", "rows have 2 cells")):
             with self.assertRaisesRegex(ValueError, f"others.csv: is not a cloud .*{words}"):
                 read(text)
         with self.assertRaisesRegex(ValueError, "others.csv: is not a cloud .*decode"):
             read("x,y,z,\u00e4\n1,2,3,4\n", "latin-1")
+
+    def test_numbers_in_sentences(self):
+        """Significant digits without exponents: 100 %, not 1e+02 %; coordinates of a map to the centimetre."""
+        for value, digits, text in ((99.6, 2, "100"), (9.96, 1, "10"), (1234567.0, 6, "1234570"), (1e6, 6, "1000000"), (-5412345.678, 3, "-5410000"),
+                                    (np.float32(0.5), 3, "0.5"), (5.1234e-5, 3, "0.0000512"), (1e-4, 6, "0.0001"), (3e-9, 3, "3e-09"), (2e15, 3, "2e+15"),
+                                    (0.0, 3, "0"), (np.inf, 3, "inf"), (np.nan, 2, "nan"), (99999.96, 6, "100000")):
+            self.assertEqual(figures(value, digits), text)
+        self.assertEqual(per_cent(9.996), "1000 %")
+        file = OUTPUT / "utm.csv"
+        file.write_text("x,y,z\n448123.456,5412345.678,420\n448000,5412000.25,400\n", encoding="utf-8")
+        self.assertIn("east 448000 to 448123.46, north 5412000.25 to 5412345.68, up 400 to 420 m", "".join(run("info", file)[1]))
+
+    def test_clouds_of_a_map_are_converted(self):
+        """Every format keeps the coordinates, or says how much they move and which option helps."""
+        rng = np.random.default_rng(6)
+        places, file = rng.uniform(-50, 50, (100, 3)), OUTPUT / "map.csv"
+        origin = (448123.4, 5412345.6, 420.0)
+        np.savetxt(file, places + origin, "%.6f", ",", header="x,y,z", comments="")
+        for suffix in (".las", ".pcd", ".ply", ".vtp", ".csv"):
+            code, _, errors = run("convert", file, OUTPUT / f"map-out{suffix}")
+            self.assertEqual(code, 0, errors)
+            np.testing.assert_allclose(al.load_cloud(OUTPUT / f"map-out{suffix}").points, places + origin, rtol=0, atol=2e-6)
+            self.assertEqual(["double precision" in error for error in errors], [True] * (suffix in (".pcd", ".ply")))
+        out = OUTPUT / "map-out.bin"
+        code, _, errors = run("convert", file, out)
+        self.assertEqual((code, sum("--position of avianlidar convert" in error for error in errors)), (0, 2), errors)
+        self.assertRegex(" ".join(errors), r"moves coordinates by up to 0\.2\d* m")
+        code, _, errors = run("convert", file, out, "--position", *origin)
+        self.assertEqual((code, len(errors), "no labels are written" in errors[0]), (0, 1, True))
+        np.testing.assert_allclose(al.load_cloud(out).points, places, rtol=0, atol=5e-6)
+        self.assertIn("poses.txt", run("convert", OUTPUT, OUTPUT / "a.mcap", "--position", 1, 2, 3)[2][0])
 
     def test_sensors_and_materials(self):
         code, lines, _ = run("sensors")

@@ -129,14 +129,70 @@ class Producers(InFolder):
                 self.assertEqual(elements(data), 0)
             self.assertEqual((error_of(data), data.GetFieldData().GetNumberOfArrays()), (said, 1))
 
+    def assert_emptied(self, filter_, *words):
+        """Every output is empty, and its field data say why."""
+        for data in outputs(filter_):
+            self.assertEqual((elements(data), data.GetFieldData().GetNumberOfArrays()), (0, 1))
+            for text in words:
+                self.assertIn(text, error_of(data))
+
+    def test_nothing_stays_in_an_output_after_a_failure(self):
+        """In plain VTK, at the first update: an input that is taken away or of a wrong type, and a reader's file that is not there; also
+        behind another filter, of VTK or ours, and as the second consumer of an output."""
+        for name, ports in FILTERS.items():
+            for port in range(len(ports)):
+                with self.subTest(name, port=port):
+                    filter_, producers = pipeline(name)
+                    self.assertEqual(update(filter_), 1)
+                    self.assertGreater(elements(outputs(filter_)[0]), 0)
+                    Messages(filter_)  # also what the executive says
+                    for spoil in (lambda: filter_.RemoveAllInputConnections(port), lambda: filter_.SetInputDataObject(port, vtk.vtkTable())):
+                        spoil()
+                        if update(filter_):  # not every input has to be there
+                            continue
+                        self.assert_emptied(filter_)
+                        filter_.SetInputConnection(port, producers[port].port)
+                        self.assertEqual(update(filter_), 1)
+                        self.assertGreater(elements(outputs(filter_)[0]), 0)
+        first, source = surfaces(), beams()
+        between = vtk.vtkTransformFilter()
+        between.SetTransform(vtk.vtkTransform())
+        between.SetInputConnection(first.port)
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(between.GetOutputPort())
+        echo, other = scan(tree, source.algorithm, **SETTINGS), scan(tree, source.algorithm, **SETTINGS)
+        names = al.vtkAvianLidarUnitNames()
+        names.SetInputConnection(echo.GetOutputPort())
+        for one in (names, other):
+            self.assertEqual(update(one), 1)
+        heard = [Messages(one) for one in (first.algorithm, tree, echo, other, names)]
+        first.set(-1.0)
+        self.assertEqual(update(names), 0)
+        for one in (tree, echo, names):
+            self.assert_emptied(one, "its producer failed")
+        self.assertEqual(update(other), 0)
+        self.assert_emptied(other, "its producer failed")
+        self.assertTrue(heard[0].errors)
+        first.set(0.3)
+        for one in (names, other):
+            self.assertEqual(update(one), 1)
+            self.assertGreater(elements(outputs(one)[0]), 0)
+        for reader in (make("PointCloudReader"), make("SceneReader"), make("SequenceReader")):
+            heard = Messages(reader)
+            reader.SetFileName("no.such.file")
+            self.assertEqual(update(reader), 0)
+            self.assert_emptied(reader)
+            self.assertTrue(heard.errors)
+
     def test_every_class_with_inputs_is_here(self):
         found = {name[len("vtkAvianLidar"):] for name in dir(al) if name.startswith("vtkAvianLidar")}
         found = {name for name in found - {"CloudWriter", "ScanFilter"} if make(name).GetNumberOfInputPorts()}
         self.assertEqual(found, {*FILTERS, *(name + "Writer" for name in cloudtools.WRITERS)})
 
     def test_an_error_upstream_is_not_an_empty_input(self):
-        """Plain, VTK considers what failed up to date: the second update runs on its empty outputs. With errors as data one update
-        executes the whole pipeline, and each algorithm says what is wrong, once."""
+        """Plain, VTK does not execute what is downstream of a failure, whose outputs are empty at once; the second update says so, as VTK
+        considers what failed up to date. With errors as data one update executes the whole pipeline, and each algorithm says what is
+        wrong, once."""
         for name, ports in FILTERS.items():
             filter_, producers = pipeline(name)
             self.assertEqual(update(filter_), 1)
@@ -154,7 +210,8 @@ class Producers(InFolder):
                         self.assertEqual(len(upstream.errors), 1, upstream.errors)
                         self.assertIn(producers[port].words, upstream.errors[0])
                         if not as_data:
-                            messages.errors.clear()
+                            self.assert_emptied(filter_, f"Input port {port}: its producer failed: ", producers[port].words)
+                            self.assertEqual(messages.errors, [])
                             filter_.Modified()
                             self.assertEqual(update(filter_), 0)
                         self.check_failed(filter_, messages, port, producers[port].words)
@@ -282,6 +339,8 @@ class Producers(InFolder):
                 heard = Messages(reader, echo, write, filter_)
                 reader.SetFileName("no.stl")
                 update(echo if first else reader)
+                if first:
+                    self.assert_emptied(echo, "producer failed")
                 for attenuation in (1e-4, 2e-4):
                     echo.SetAttenuationCoefficient(attenuation)
                     self.assertEqual(update(echo), 0)

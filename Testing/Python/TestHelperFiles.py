@@ -6,6 +6,7 @@ import os
 import signal
 import stat
 import unittest
+import warnings
 from unittest import mock
 
 import numpy as np
@@ -69,6 +70,15 @@ class Files(InFolder):
                 (".csv", bom + b"X (m);Y (m);Z (m);i\r\n1,5;-2;3;0,25\r\n", {"i": 0.25}),
                 (".csv", "sep=;\nx;y;z\n1,5;-2;3\n", {}), (".csv", "x\ty\tz\n1.5\t-2\t3\n", {}),
                 (".xyz", "1.5  -2\t3\n", {}), (".xyz", "1.5,-2,3,8\n", {"column_4": 8}), (".xyz", "//X Y Z c\n1.5 -2 3 8\n", {"c": 8}),
+                # Comments and other lines above the names, names in comments, separators at the ends of lines.
+                (".csv", "# made by hand, 2026\n\n# more\nx,y,z,i\n1.5,-2,3,4\n# end\n", {"i": 4}), (".csv", '"# a ""b"", c",,,\n,,,\nx,y,z,i\n1.5,-2,3,4\n,,,\n', {"i": 4}),
+                (".csv", "Survey: hangar\nDate;2026-11-29\nx;y;z;i;\n1,5;-2;3;4;\n", {"i": 4}), (".csv", "x,y,z\n1.5,-2,3,\n", {}),
+                (".csv", "# x,y,z,i\n1.5,-2,3,4\n", {"i": 4}), (".csv", "# x y z\n1.5,-2,3\n", {}), (".csv", "x y z\n1.5 -2 3\n", {}),
+                (".csv", "sep=;\n# c\nx;y;z\n1,5;-2;3\n", {}), (".csv", ",x,y,z\n7,1.5,-2,3\n", {"column_1": 7}),
+                (".csv", "x\ty\tz\t\n1.5\t-2\t3\t\n", {}), (".csv", "//X,Y,Z,R\n1.5,-2,3,4\n", {"R": 4}),
+                (".xyz", "\n1.5 -2 3\n", {}), (".xyz", "# x y z\n1.5 -2 3\n", {}), (".xyz", "#x y z i\n1.5 -2 3 4\n", {"i": 4}),
+                (".xyz", "# a cloud\n\n# x, y, z\n1.5 -2 3 8\n", {"column_4": 8}), (".xyz", "# the columns x y z\n1.5 -2 3\n", {}),
+                (".xyz", "% y x z\n-2,1.5,3 # first\n", {}), (".xyz", "x y z\n1.5 -2 3\n", {}),
                 (".xyz", helios, {"intensity": 0.25, "echo_width": 0, "return_number": 1, "number_of_returns": 2, "fullwave_index": 7,
                                   "hit_object_id": 12, "classification": 6, "gps_time": 300000.5})):
             with self.subTest(text):
@@ -77,7 +87,9 @@ class Files(InFolder):
                 cloud = al.load_cloud(file)
                 self.assertEqual(cloud.points.tolist(), [[1.5, -2, 3]])
                 self.assertEqual({name: values[0].tolist() for name, values in cloud.items()}, arrays)
-        for suffix, text, words in ((".xyz", "3\nwater\nO 0 0 0\n", "one word, as files of molecules"), (".xyz", "1 2\n", "no column z"),
+        for suffix, text, words in ((".xyz", "\n\n3\nwater\nO 0 0 0\n", "one word, as files of molecules"), (".csv", "# only\n", "no column x"),
+                                    (".csv", "# the columns x y z\n1,2,3\n", "rows have 3 cells"), (".csv", "a title\n1,2,3\n", "no column x"),
+                                    (".csv", "x,y,z\n1,2,3,9\n4,5,6,\n", "rows have 4 cells"), (".xyz", "3\nwater\nO 0 0 0\n", "one word, as files of molecules"), (".xyz", "1 2\n", "no column z"),
                                     (".csv", "x;y;z\n1.234,5;2;3\n", "points and commas"), (".csv", "X (mm),Y (mm),Z (mm)\n1,2,3\n", "no column x in metres"),
                                     (".xyz", "1 2 3\n1 2\n", "columns")):
             with self.subTest(text):
@@ -91,6 +103,14 @@ class Files(InFolder):
             with self.assertWarnsRegex(RuntimeWarning, f"{file}: 2 points whose coordinates are not finite are left out"):
                 cloud = al.load_cloud(file)
             self.assertEqual((cloud.points.tolist(), *cloud.values())[::-1], ([6], [[1, 2, 3]]))
+        file = self.folder / "gaps.csv"
+        file.write_text("x,y,z,i,j\n1,2,3,,5\n4,5,6,7,\n7,8,,9,10\n", encoding="ascii")
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            cloud = al.load_cloud(file)
+        self.assertEqual([str(one.message) for one in said], [f"{file}: 2 empty cells are read as NaN",
+                                                              f"{file}: 1 points whose coordinates are not finite are left out"])
+        np.testing.assert_array_equal(np.column_stack([cloud.points, cloud["i"], cloud["j"]]), [(1, 2, 3, np.nan, 5), (4, 5, 6, 7, np.nan)])
 
     def test_no_points_at_all(self):
         """vtkPolyData as it is made, without an object for points; and no echoes."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, assert_refused, cloud, echoes, field, points, read, read_error, unit, write
-from echotools import InFolder, array
+from echotools import InFolder, Messages, array, given
 
 FILE, LABELS = "TestKITTIWriter.bin", "TestKITTIWriter.label"
 
@@ -100,6 +100,30 @@ class TestKITTIWriter(InFolder):
         np.testing.assert_array_equal(np.fromfile(FILE, "<f4")[:4], [2, -1, 3, 0])
         np.testing.assert_allclose(array(read(FILE), "intensity"), [0, 51, 255], rtol=1e-6)
 
+    def test_measured_clouds(self):
+        """Without objects: the labels that were read, or none; far from the sensor, the loss in single precision and its remedy."""
+        near = cloud([[1, 2, 3], [4, 5, 6]])
+        far = cloud(points(near) + (448123.4, 5412345.6, 420.1))
+        position, none, lost = self.write(far)
+        self.assertIn("'position' of a sensor: its points are taken for coordinates in the sensor's frame", position)
+        self.assertIn("no labels are written, because the input has no point array 'object_id' or 'semantic_label'", none)
+        loss = np.abs(np.float32(points(far)) - points(far)).max()
+        self.assertRegex(lost, rf"moves coordinates by up to {round(loss, 3):g} m: set .*'position', or --position of avianlidar convert")
+        self.assertFalse(os.path.exists(LABELS))
+        add_field(far, "position", (448123.4, 5412345.6, 420.1))
+        self.assertEqual(len(self.write(far)), 1)
+        np.testing.assert_allclose(points(read(FILE)), points(near), rtol=0, atol=1e-6)
+        for name, values in (("semantic_label", (40, 252)), ("instance_id", (0, 65535))):
+            add_array(far, name, np.array(values, np.uint16))
+        self.assertEqual(self.write(far), [])
+        again = read(FILE)
+        self.assertEqual([array(again, name).tolist() for name in ("semantic_label", "instance_id")], [[40, 252], [0, 65535]])
+        before = pathlib.Path(FILE).read_bytes()  # these labels would label other points
+        heard = Messages(self.writer)
+        self.assertEqual(given(self.writer, InputData=near, FileName=FILE).Write(), 0)
+        self.assertRegex(heard.errors[0], f"would get those of .*{LABELS}: remove that file")
+        self.assertEqual(pathlib.Path(FILE).read_bytes(), before)
+
     def test_read_again(self):
         self.data = echoes(orientation=(0.0, 0.0, 0.0))
         self.write()
@@ -124,10 +148,9 @@ class TestKITTIWriter(InFolder):
         self.assertFalse(read(str(name)).GetPointData().HasArray("semantic_label"))
 
     def test_bad_input_leaves_neither_file(self):
-        without, broken = cloud([[1, 2, 3]]), ids([1, 2])
-        add_field(without, "position", (0.0, 0.0, 0.0))
+        broken = ids([1, 2])
         broken.GetPoints().SetPoint(1, 0, 0, np.inf)
-        for data, words, source in ((without, "'object_id'", 0), (ids([1]), "'material_id'", 1), (broken, "point 1", 0)):
+        for data, words, source in ((ids([1]), "'material_id'", 1), (broken, "point 1", 0)):
             self.writer.SetLabelSource(source)
             assert_refused(self, self.writer, data, FILE, words)
             self.assertFalse(os.path.exists(LABELS))

@@ -190,7 +190,8 @@ class TestLASWriter(InFolder):
         n, draw = self.data.GetNumberOfPoints(), np.random.default_rng(4)
         for name, high, kind in (("classification", 256, "u1"), ("classification_flags", 16, "u1"), ("user_data", 256, "u1"),
                                  ("point_source_id", 65536, "u2")):
-            add_array(self.data, name, draw.integers(0, high, n).astype(kind))
+            withheld = 4 if name == "classification_flags" else 0  # such points are not read
+            add_array(self.data, name, (draw.integers(0, high, n) & ~withheld).astype(kind))
         add_array(self.data, "scan_angle", draw.integers(-30000, 30001, n) * 0.006, "deg")
         add_array(self.data, "rgb", np.arange(3 * n, dtype=np.uint8).reshape(n, 3))
         found = self.write(SourceId=7)

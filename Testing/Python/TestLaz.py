@@ -24,11 +24,11 @@ CHUNK = 50000
 def random_cloud(count, rgb):
     """Numbers that fill the fields of LAS, and extra bytes of every type."""
     draw = np.random.default_rng(count)
-    data = cloud(draw.uniform(-500, 500, (count, 3)))
+    data = cloud(draw.uniform(-500, 500, (count, 3)))  # none of them withheld
     add_field(data, "geodetic_origin", (31.0, 121.0, 3.0))
     for name, most, kind in (("return_number", 16, "u1"), ("number_of_returns", 16, "u1"), ("classification", 256, "u1"),
                              ("classification_flags", 16, "u1"), ("user_data", 256, "u1"), ("point_source_id", 65536, "u2")):
-        add_array(data, name, draw.integers(0, most, count).astype(kind))
+        add_array(data, name, (draw.integers(0, most, count) & (~4 if name == "classification_flags" else ~0)).astype(kind))
     add_array(data, "intensity", draw.uniform(0, 255, count), "1")
     add_array(data, "scan_angle", draw.uniform(-180, 180, count), "deg")
     add_array(data, "timestamp", draw.uniform(0, 1e9, count), "us")
@@ -60,6 +60,15 @@ class TestLaz(InFolder):
                     write(al.vtkAvianLidarLASWriter(), random_cloud(count, rgb), name)
                 self.assertEqual(bits(read(LAZ)), bits(read(LAS)), (count, rgb))
         self.assertLess(os.path.getsize(LAZ), 0.8 * os.path.getsize(LAS))
+
+    def test_withheld_points(self):
+        """As in LAS: left out and counted, with the flags of the others."""
+        data = cloud(np.arange(48).reshape(16, 3))
+        add_array(data, "classification_flags", np.arange(16).astype("u1"))
+        write(al.vtkAvianLidarLASWriter(), data, LAZ, CoordinateSystem=2)
+        found = read(LAZ, said=["8 points that are flagged as withheld"])
+        self.assertEqual(array(found, "classification_flags").tolist(), [0, 1, 2, 3, 8, 9, 10, 11])
+        self.assertEqual(points(found).tolist(), points(data)[[0, 1, 2, 3, 8, 9, 10, 11]].tolist())
 
     def assert_damaged(self, whole, words="damaged or cut short"):
         save(whole)
@@ -124,7 +133,7 @@ class TestLaz(InFolder):
             las.points.array.view("u1")[:] = draw.integers(0, 256, las.points.array.view("u1").shape)
             for name in (LAS, LAZ):
                 las.write(name)
-            self.assertEqual(bits(read(LAZ)), bits(read(LAS)), form)
+            self.assertEqual(bits(read(LAZ, ["withheld"])), bits(read(LAS, ["withheld"])), form)
 
 
 @unittest.skipIf(LASZIP, "built with LASzip")

@@ -289,13 +289,34 @@ class Written(InFolder):
             turn, wanted = Rotation.from_quat(np.roll(viewpoint[3:], -1)), Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
             np.testing.assert_allclose(turn.as_matrix(), wanted.as_matrix(), rtol=0, atol=1e-12)
 
-    def test_single_precision_far_away_is_warned_of_or_refused(self):
+    def test_precision_follows_the_coordinates(self):
+        """A cloud in coordinates of a map keeps them in double precision, automatically or as is set; in PLY, too."""
         far, beyond = cloud([[340000.123, 3450000.456, 3.0]]), cloud([[1, 2, 3], [1, 1e39, 3]])
-        self.assertRegex(" ".join(self.write(far, Precision=Writer.PRECISION_SINGLE)), "Precision")
+        (words,) = self.write(far, Precision=Writer.PRECISION_SINGLE)
+        loss = np.abs(np.float32(points(far)) - points(far)).max()
+        self.assertIn(f"single precision moves coordinates by up to {round(loss, 3):g} m: set Precision to Double", words)
         os.remove(FILE)
         assert_refused(self, self.writer, beyond, FILE, "point 1 ")
         self.assertEqual(self.write(beyond, Precision=Writer.PRECISION_DOUBLE), [])
         np.testing.assert_array_equal(points(read(FILE)), points(beyond))
+        degrees = cloud([[121.3363123, 31.1979456, 3.0]])
+        add_field(degrees, "crs_wkt", ['GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
+                                       'UNIT["degree",0.0174532925199433]]'])
+        off = np.abs(np.float32(points(degrees)) - points(degrees)).max() * 111320  # m along the equator
+        for kind, name in ((al.vtkAvianLidarPCDWriter, FILE), (al.vtkAvianLidarPLYWriter, PLY)):
+            self.assertEqual(kind().GetPrecision(), Writer.PRECISION_SINGLE)
+            for data, said in ((far, "double precision, because single precision moves coordinates by up to 0.044 m"), (degrees, f"by up to {round(off, 3):g} m"),
+                               (beyond, "because single precision cannot hold all coordinates"), (cloud(np.float32(points(far)).astype(float)), ""),
+                               (cloud([[4000.123, 16000.456, 3.0]]), "")):
+                warned = write(kind(), data, name, Precision=2)
+                self.assertEqual([said in text for text in warned], [True] * bool(said))
+                exact = points(data) if said else np.float32(points(data))
+                np.testing.assert_array_equal(points(read(name)), exact)
+                os.remove(name)
+        las = al.vtkAvianLidarLASWriter()
+        write(las, degrees, "degrees.las")  # a billionth of a degree is 0.1 mm
+        found = read("degrees.las", said=["not in metres but in degree"])
+        np.testing.assert_allclose(points(found), points(degrees), rtol=0, atol=0.5001e-9)
 
     def test_colours(self):
         n = self.data.GetNumberOfPoints()

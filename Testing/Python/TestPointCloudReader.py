@@ -121,6 +121,24 @@ class TestPointCloudReader(InFolder):
             if there["rgb"]:
                 np.testing.assert_array_equal(array(data, "rgb"), np.column_stack([i, i * 0 + 2, i * 0 + 255]))
 
+    def test_las_withheld_points(self):
+        """Points that are flagged as deleted are left out and counted; the other flags stay: synthetic, key-point, overlap."""
+        for form, length in CORE.items():
+            for minor in (4,) if form >= 6 else (0, 1, 2, 3, 4):
+                las(form, n=16, minor=minor)
+                whole = bytearray(pathlib.Path(FILE).read_bytes())
+                for flags, count in ((range(16), 8), ([4] * 16, 16), ([3] * 15 + [6], 1)):
+                    for i, flag in enumerate(flags):
+                        at = len(whole) - (16 - i) * length + 15
+                        whole[at] = flag if form >= 6 else (flag & 7) << 5 | 3
+                    pathlib.Path(FILE).write_bytes(whole)
+                    waves = ["its waveforms are left out"] if form in (4, 5, 9, 10) else []
+                    data = read(FILE, said=[f"{count} point{'s that are' if count > 1 else ' that is'} flagged as withheld", *waves])
+                    kept = [(i, flag & (15 if form >= 6 else 7)) for i, flag in enumerate(flags) if not flag & 4]
+                    self.assertEqual(array(data, "classification_flags").tolist(), [flag for _, flag in kept], (form, minor))
+                    np.testing.assert_allclose(points(data), np.array([(1100 + i, 2200, -i) for i, _ in kept]).reshape(-1, 3))
+                    self.assertEqual({array(data, name).shape[0] for name in names(data)}, {len(kept)})
+
     def test_las_colours(self):
         """Of 8 bits in fields of 16: as they are, unless a channel of the file is above 255."""
         for colour, wanted in (((0, 255, 1), (0, 255, 1)), ((0, 256, 255), (0, 1, 0)), ((51400, 25700, 12850), (200, 100, 50))):

@@ -27,8 +27,9 @@ def files(folder, *endings):
 
 
 # The licence.
-for folder in ("CMake", "Examples", "Filters", "IO", "Plugin", "Testing"):
-    for path in files(folder, ".h", ".cxx", ".py", ".sh", ".cmake", "CMakeLists.txt"):
+FORMATS = (".h", ".cxx", ".py", ".py.in", ".sh", ".cmake", "CMakeLists.txt", ".jinja", ".xml", ".js")
+for folder in ("CMake", "Documentation", "Examples", "Filters", "IO", "Plugin", "Python", "Testing"):
+    for path in (*files(folder, *FORMATS), *(["Python/avianlidar.in"] if folder == "Python" else [])):
         assert "SPDX-License-Identifier: BSD-3-Clause" in read(path)[:200], f"{path}: no SPDX line"
 
 # Nothing is left out of a build: a test or a source that no list names would never be seen again.

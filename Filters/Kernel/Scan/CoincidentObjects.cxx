@@ -18,7 +18,7 @@ void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_
 {
   const auto add = [&](std::uint32_t triangle)
   {
-    if (tree.coincides(triangle))
+    if (triangle < tree.planeOwners.size() && tree.coincides(triangle)) // not of a mover
     {
       planes.push_back({ tree.planeOwner(triangle), beam });
     }

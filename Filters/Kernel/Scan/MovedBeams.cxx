@@ -51,8 +51,8 @@ struct BlockCone
     {
       this->apart = std::max(this->apart, safeLength(beams.origins[b] - this->apex));
       this->axis += unitVector(beams.directions[b]);
-      this->begin = std::min(this->begin, beams.times[b]);
-      this->end = std::max(this->end, beams.times[b]);
+      this->begin = std::min(this->begin, beams.timeOf(b));
+      this->end = std::max(this->end, beams.timeOf(b));
     }
     if (this->axis == Vec3(0.0))
     {
@@ -149,7 +149,7 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
     {
       const Mover& mover = (*this->Setup.movers)[m];
       Touch touch{ m, {} };
-      if (poseAt(mover, this->Beams.times[beam], touch.pose) &&
+      if (poseAt(mover, this->Beams.timeOf(beam), touch.pose) &&
         meets(frame, sphereAt(mover, touch.pose)))
       {
         touching.push_back(touch);

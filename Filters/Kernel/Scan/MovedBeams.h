@@ -55,6 +55,9 @@ public:
   /// The simulator, with the results for the beam simulated last.
   const BeamSimulator& simulator() const { return this->Simulator; }
 
+  /// What the beam simulated last sees.
+  const BeamTrace& trace() const { return this->Trace.front(); }
+
 private:
   struct Touch
   {

@@ -191,7 +191,9 @@ private:
       block.beamOfEcho.resize(block.echoes.size(), b);
       if (!this->Setup.tree->planeOwners.empty())
       {
-        addSeenPlanes(*this->Setup.tree, traces[b], b, block.planes);
+        // What another run has kept of a touched beam must not count.
+        addSeenPlanes(
+          *this->Setup.tree, isTouched(b) ? worker.moved->trace() : traces[b], b, block.planes);
       }
       block.raysTraced += report.raysTracedNow;
       this->Progress.beamDone();

@@ -18,34 +18,36 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
 {
   this->Block.begin(begin, end);
   this->Frames.clear();
-  this->Traced.clear();
+  this->Searched.clear();
   this->FramesOfRays.clear();
   this->TracedRays.clear();
+  const bool byRays = this->Setup.settings.beamSamples == BeamSampleSource::Rays;
+  std::size_t count = 0;
   for (std::size_t beam = begin; beam < end; ++beam)
   {
-    const BeamTrace& known = traces[beam];
-    const bool lacks = known.direct() == DirectEcho::Unknown || this->needsPathStarts(known);
-    if (lacks && !(leaveOut && leaveOut(beam)))
+    BeamTrace& trace = traces[beam];
+    const bool isUnknown = trace.direct() == DirectEcho::Unknown;
+    if (!(isUnknown || this->needsPathStarts(trace)) || (leaveOut && leaveOut(beam)))
     {
+      continue;
+    }
+    ++count;
+    if (isUnknown && !byRays)
+    {
+      trace.view = EmptyView{};
       this->Frames.push_back(this->Block.frameOf(beam));
-      this->Traced.push_back(beam);
+      this->Searched.push_back(beam);
+      continue;
     }
-  }
-  if (this->Setup.settings.beamSamples == BeamSampleSource::Rays)
-  {
-    for (const std::size_t beam : this->Traced)
+    if (isUnknown)
     {
-      traces[beam].view = RayView{};
+      trace.view = RayView{};
     }
-    this->FramesOfRays = this->Frames;
-    this->TracedRays = this->Traced;
+    this->addRaysOf(beam); // a kept view lacks only rays
   }
-  else
-  {
-    this->findViews(traces);
-  }
+  this->findViews(traces);
   this->traceRays();
-  for (const std::size_t beam : this->Traced)
+  for (const std::size_t beam : this->TracedRays)
   {
     if (this->needsPathStarts(traces[beam]) && this->Block.triangles(beam).empty())
     {
@@ -53,7 +55,7 @@ std::size_t ScanBlock::trace(std::size_t begin, std::size_t end, std::vector<Bea
       traces[beam].hits->rays = tracedRaysOf(this->Setup.settings);
     }
   }
-  return this->Traced.size();
+  return count;
 }
 
 /// True if paths with two reflections may start from the untraced rays of a beam in cells.
@@ -62,21 +64,20 @@ bool ScanBlock::needsPathStarts(const BeamTrace& trace) const
   return trace.cells() && !trace.hits && this->Setup.settings.numberOfReflections > 1;
 }
 
-/// Find the views of the beams being traced, and which of them need rays.
+void ScanBlock::addRaysOf(std::size_t beam)
+{
+  this->FramesOfRays.push_back(this->Block.frameOf(beam));
+  this->TracedRays.push_back(beam);
+}
+
+/// Find the views of the searched beams, and which of these beams need rays.
 void ScanBlock::findViews(std::vector<BeamTrace>& traces)
 {
-  for (const std::size_t beam : this->Traced)
-  {
-    if (traces[beam].direct() == DirectEcho::Unknown)
-    {
-      traces[beam].view = EmptyView{};
-    }
-  }
   this->Candidates.begin(this->Scene, this->Frames.data(), this->Frames.size(),
     this->Setup.settings.traceMode == TraceMode::Automatic);
   while (this->Candidates.next())
   {
-    const std::size_t beam = this->Traced[this->Candidates.beam()];
+    const std::size_t beam = this->Searched[this->Candidates.beam()];
     const BeamFrame& frame = this->Block.frameOf(beam);
     TraceCounters& counters = this->Block.counters(beam);
     counters.nodesVisited += this->Candidates.nodesVisited();
@@ -85,8 +86,7 @@ void ScanBlock::findViews(std::vector<BeamTrace>& traces)
       this->Views.find(this->Beams.ids[beam], frame, this->Candidates.triangles(), counters);
     if (trace.direct() == DirectEcho::Rays || this->needsPathStarts(trace))
     {
-      this->FramesOfRays.push_back(frame);
-      this->TracedRays.push_back(beam);
+      this->addRaysOf(beam);
     }
   }
 }

@@ -39,12 +39,13 @@ public:
 
   /// Find what each beam in [begin, end) sees, unless `traces` (of all beams) already holds it.
   /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped @return
-  /// number of beams whose surfaces were searched
+  /// number of beams for which something was traced
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
     const std::function<bool(std::size_t)>& leaveOut = {});
 
 private:
   bool needsPathStarts(const BeamTrace& trace) const;
+  void addRaysOf(std::size_t beam);
   void findViews(std::vector<BeamTrace>& traces);
   void traceRays();
 
@@ -55,9 +56,9 @@ private:
   BeamCandidates Candidates;
   ViewFinder Views;
 
-  // Frames and numbers of the beams being traced, and of the beams that need rays.
+  // Frames and numbers of the beams whose views are searched, and of the beams that need rays.
   std::vector<BeamFrame> Frames;
-  std::vector<std::size_t> Traced;
+  std::vector<std::size_t> Searched;
   std::vector<BeamFrame> FramesOfRays;
   std::vector<std::size_t> TracedRays;
 };

@@ -27,8 +27,8 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
     report.beams += sight.held;
     if (sight.held || sight.energy > 0.0)
     {
-      met[sight.mover][0] = std::min(met[sight.mover][0], beams.times[sight.beam]);
-      met[sight.mover][1] = std::max(met[sight.mover][1], beams.times[sight.beam]);
+      met[sight.mover][0] = std::min(met[sight.mover][0], beams.timeOf(sight.beam));
+      met[sight.mover][1] = std::max(met[sight.mover][1], beams.timeOf(sight.beam));
     }
     report.probability = 1.0 - (1.0 - report.probability) * (1.0 - sight.probability);
     if (!known || sight.energy > known->energy ||
@@ -42,7 +42,7 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
     return reports;
   }
   const auto times = std::minmax_element(beams.times.begin(), beams.times.end());
-  const double middle = 0.5 * (*times.first + *times.second);
+  const double middle = beams.times.empty() ? 0.0 : 0.5 * (*times.first + *times.second);
   std::atomic<bool> stopped{ false };
   const auto goOn = [&](int thread)
   {
@@ -67,7 +67,7 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
         const Vec3& origin = beams.origins[beam];
         report.beam = beam;
         report.energy = best[m] ? best[m]->energy : 0.0;
-        report.present = poseAt(mover, best[m] ? beams.times[beam] : middle, report.pose);
+        report.present = poseAt(mover, best[m] ? beams.timeOf(beam) : middle, report.pose);
         report.first = report.last = report.pose;
         if (report.present && met[m][0] <= met[m][1])
         {

@@ -62,10 +62,9 @@ std::string ErrorOfInput(vtkAlgorithm* self, int port, int connection)
     ? vtkErrorCode::GetStringFromErrorCode(producer->GetErrorCode())
     : error;
 }
-}
 
-//------------------------------------------------------------------------------
-void vtkAvianLidarGuard::CheckStart(vtkAlgorithm* self)
+/// An error text that names the first input whose producer failed; empty if no producer failed.
+std::string ErrorOfInputs(vtkAlgorithm* self)
 {
   for (int port = 0; port < self->GetNumberOfInputPorts(); ++port)
   {
@@ -77,11 +76,42 @@ void vtkAvianLidarGuard::CheckStart(vtkAlgorithm* self)
         // Keep only the text of the first error, without the texts of the filters downstream.
         const auto first = error.rfind(ProducerFailed);
         error.erase(0, first == std::string::npos ? 0 : first + sizeof(ProducerFailed) - 1);
-        vtkAvianLidarRequire("Input port " + std::to_string(port) + ProducerFailed + error);
+        return "Input port " + std::to_string(port) + ProducerFailed + error;
       }
     }
   }
+  return {};
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarGuard::CheckStart(vtkAlgorithm* self)
+{
+  vtkAvianLidarRequire(ErrorOfInputs(self));
   vtkAvianLidarAbort::StopIfWanted(self);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarGuard::EmptyUnlessFailed(
+  vtkAlgorithm* self, vtkInformationVector* outputs) noexcept
+try
+{
+  const std::string known = ErrorOfInputs(self);
+  const std::string error =
+    Sentence(known.empty() ? "An input is missing, or its producer failed" : known);
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject* output = vtkDataObject::GetData(outputs, port);
+    if (output && ErrorOf(output).empty())
+    {
+      output->Initialize();
+      Arrays::SetFieldStrings(output->GetFieldData(), Arrays::Error, { error });
+    }
+  }
+}
+catch (...)
+{
+  // There is no memory for the text. The request has failed already.
 }
 
 //------------------------------------------------------------------------------

@@ -32,6 +32,10 @@ constexpr char NoMemory[] = "There is not enough memory for this";
 /// at progress 0, which the executive reports before RequestData.
 void CheckStart(vtkAlgorithm* self);
 
+/// Empty the outputs that do not hold the error of an execution, after a request that failed. The
+/// field data `error` then says which producer failed.
+void EmptyUnlessFailed(vtkAlgorithm* self, vtkInformationVector* outputs) noexcept;
+
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);
 

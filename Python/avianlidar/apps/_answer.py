@@ -10,6 +10,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from .. import reach
+from .._numbers import figures
 from .._properties import snake
 from .._weather import in_words
 from ._candidates import ground_of
@@ -120,7 +121,7 @@ def over(view: Plan) -> str:
     for kind, names in region_names(view.runways).items():
         there = [name.partition(" ")[2] for name in names if name in view.ends]
         every = len(there) == len(names)
-        up_to = f", up to {view.heights_of(kind)[1]:.3g}\u00a0m high" if there and not view.asked else ""
+        up_to = f", up to {figures(view.heights_of(kind)[1], 3)}\u00a0m high" if there and not view.asked else ""
         if there and kind == "strips":
             which = f"the strips of {whose}" if every else f"the strip of {listed(there)}"
             parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle{up_to})")
@@ -145,7 +146,7 @@ def air_of(view: Plan) -> str:
 
 def takes(plan: Plan) -> str:
     """The duration of one scan of the plan's sensor."""
-    return f"{1.0 / plan.sensor.rotation_rate:.2g}\u00a0s"
+    return f"{figures(1.0 / plan.sensor.rotation_rate, 2)}\u00a0s"
 
 
 def twice(crossing: Optional[Crossing]) -> str:

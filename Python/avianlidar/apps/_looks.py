@@ -18,6 +18,7 @@ from .._cloud import field_values, rows_of
 from .._coverage import Coverage
 from .._disk import write_whole
 from .._files import read_regular
+from .._numbers import figures
 from .._pipeline import Error, Updates, callers_level, update
 from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
 from .._version import __version__
@@ -150,7 +151,8 @@ def require_memory(needed: float, what: str, instead: str) -> None:
     """Error if results exceed this computer's memory. @param needed bytes @param instead advice to the user"""
     there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if needed > there:
-        raise Error(f"{what} need {needed / 1e9:.3g} GB, but the memory has {there / 1e9:.3g} GB: {instead}")
+        needs, has = figures(needed / 1e9, 3), figures(there / 1e9, 3)
+        raise Error(f"{what} need {needs} GB, but the memory has {has} GB: {instead}")
 
 
 def files_of(cover: Coverage, sites, places, inputs, folder) -> List[pathlib.Path]:

@@ -13,6 +13,7 @@ import numpy as np
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import leaves_of
 from .._coverage import Coverage, places_of
+from .._numbers import figures
 from .._pipeline import Error, update
 from .._ranks import digest_of, digest_of_arrays
 from .._scene import Scene, load_scene
@@ -185,8 +186,8 @@ class Plan:
                         "expected least and greatest x, least and greatest y")
         pixels = ((x1 - x0) / self.spacing + 1.0) * ((y1 - y0) / self.spacing + 1.0)
         if not pixels <= MOST_PIXELS:
-            raise Error(f"{self.file}: spacing: is {self.spacing:g} m, which makes maps of {pixels:.3g} pixels, "
-                        f"expected at most {MOST_PIXELS:,}: take a larger spacing or a smaller extent")
+            raise Error(f"{self.file}: spacing: is {self.spacing:g} m, which makes maps of {figures(pixels, 3)} "
+                        f"pixels, expected at most {MOST_PIXELS:,}: take a larger spacing or a smaller extent")
 
     def _runways(self) -> List[Runway]:
         if self.scene.geodetic_origin is None:
@@ -245,7 +246,7 @@ class Plan:
                  ", ".join(name for name in names_of[kind] if name in self.ends) for kind in self.members}
         if self.asked:
             return f"in {' and '.join(there.values())}{heights + ' high' if high > low else ',' + heights}"
-        return "in " + " and ".join(f"{words} (to {self.heights_of(kind)[1]:.3g} m high)"
+        return "in " + " and ".join(f"{words} (to {figures(self.heights_of(kind)[1], 3)} m high)"
                                     for kind, words in there.items())
 
     def heights_of(self, region: str) -> Tuple[float, float]:

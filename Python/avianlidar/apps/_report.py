@@ -13,6 +13,7 @@ import numpy as np
 
 from .._cloud import field_values
 from .._disk import only_run, write_whole
+from .._numbers import figures
 from .._pipeline import Error
 from .._version import __version__
 from .. import reach
@@ -145,7 +146,7 @@ class Report:
         def height(row):
             low, high = first.heights_of(row["region"])
             low, high = max(low, row["height_from"]), min(high, row["height_to"])
-            return f"{low:.3g} to {high:.3g} m" if high > low else f"at {low:.3g} m"
+            return f"{figures(low, 3)} to {figures(high, 3)} m" if high > low else f"at {figures(low, 3)} m"
         rows = [{"region": of[0]["region"], "species": of[0]["species"], "heights": height(of[0]), "shares": of,
                  "all": math.isinf(of[0]["height_from"]) and math.isinf(of[0]["height_to"])}
                 for of in zip(*(view.shares for view in views))]

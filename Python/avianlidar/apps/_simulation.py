@@ -16,6 +16,7 @@ from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vt
 
 from .. import vtkAvianLidar as _wrapped
 from .._cloud import Cloud, add_array, field_values, leaves_of
+from .._numbers import figures
 from .._pipeline import Error, Updates, callers_level, update
 from .._properties import set_properties
 from .._scan import Scan
@@ -209,8 +210,8 @@ class Simulation:
         if len(far):
             least, most = (f"{x:.0f} m" if x < 9999.5 else f"{x / 1000:,.0f} km" for x in (far.min(), far.max()))
             who = "the bird never comes" if len(away) == 1 else f"{len(far)} of {len(away)} birds never come"
-            self._warn(f"{what}: {who} within the lidar's range gate of "
-                       f"{self.sensor.range_gate:g} m: {'it passes' if len(far) == 1 else 'they pass'} the lidar at "
+            self._warn(f"{what}: {who} within the lidar's range gate of {figures(self.sensor.range_gate)} m: "
+                       f"{'it passes' if len(far) == 1 else 'they pass'} the lidar at "
                        f"{least}{f' to {most}' if least != most else ''}{why and '; '}{why}")
 
     def _warn_of_levels(self, flights: Flights, end: float, origin: Any) -> None:
@@ -225,9 +226,10 @@ class Simulation:
         for side, least, nearest in (("above", (up - size).min() - highest, up.argmin()),
                                      ("below", lowest - (up + size).max(), up.argmax())):
             if least > 0.0:
+                gate = figures(self.sensor.range_gate)
                 words = f" and the height of the scene's origin ({origin[2]:g} m)" if origin is not None else ""
                 self._warn(f"{flights.file}: {'the one bird' if count == 1 else f'all {count} birds'} within the range "
-                           f"gate of {self.sensor.range_gate:g} m {'stays' if count == 1 else 'stay'} {side} the beams "
+                           f"gate of {gate} m {'stays' if count == 1 else 'stay'} {side} the beams "
                            f"({lowest:.1f} to {highest:.1f} deg): the {'lowest' if side == 'above' else 'highest'} "
                            f"elevation is {up[nearest]:.1f} deg, {abs(off[nearest, 2]):.0f} m "
                            f"{'above' if off[nearest, 2] >= 0.0 else 'below'} the lidar; check height_reference (heights "

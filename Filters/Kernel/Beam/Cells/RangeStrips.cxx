@@ -523,17 +523,11 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
       found->others.push_back(other);
     }
   };
-  if (this->Setup.settings.numberOfReflections > 1)
-  {
-    found->surfaces = std::make_unique<VisiblePolygons>();
-  }
+  found->surfaces = std::make_unique<VisiblePolygons>();
   for (const SurfaceStrips& of : this->Visible)
   {
     const BeamSurface& s = *(*this->All)[static_cast<std::size_t>(of.number)];
-    if (found->surfaces)
-    {
-      addSurface(s, *found->surfaces);
-    }
+    addSurface(s, *found->surfaces);
     add(s.triangle, s.other, s.height, of.first + of.count);
     if (s.other != NoTriangle)
     {

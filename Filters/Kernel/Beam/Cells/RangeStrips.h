@@ -47,7 +47,7 @@ struct CellSamples
   /// Variance, by sample, of the weight that may move to a neighbouring sample of the same unit.
   std::vector<double> moves;
   std::vector<double> halves; ///< part of `moves` across diagonals of quadrilaterals; empty: zero
-  /// The surfaces that the beam sees, including their hidden parts; null with one reflection.
+  /// The surfaces that the beam sees, including their hidden parts. Null if nothing is seen.
   std::unique_ptr<VisiblePolygons> surfaces;
   bool isCrowded = false; ///< whether more than MostTrianglesOfCells triangles enter
 

@@ -312,15 +312,19 @@ void SecondaryReflection::listPaths(
   };
   const auto pointOf = [&](std::uint32_t sample)
   { return beam.samples.range[sample] * beam.geometry.direction(sample); };
+  const MirrorPath* before = nullptr;
+  std::uint32_t number = 0;
   for (std::size_t p = 0; p < beam.trace.mirrorPaths.size(); ++p)
   {
     const MirrorPath& path = beam.trace.mirrorPaths[p];
     if (path.visibility == Visibility::Clear)
     {
+      number = numberAfter(before, number, path);
+      before = &path;
       const double left = leftOf(path.from, path.end);
       const double back = this->BackThroughputs[p];
       const std::uint32_t one = bySample ? path.one : NoSample;
-      const std::uint32_t two = bySample ? NoSample : path.start << 22 | path.one;
+      const std::uint32_t two = bySample ? NoSample : number;
       paths.push_back({ path.length, (this->MirrorThroughputs[p] - back) * left, path.triangle,
         path.second.cosIncidence, one, two, this->unsureShare(path) });
       if (back > 0.0)

@@ -71,7 +71,7 @@ struct SecondaryPath
   std::uint32_t triangle; ///< triangle of the last reflection
   double cosIncidence;    ///< cosine of incidence at the last reflection
   std::uint32_t one;      ///< sample at P1; NoSample for mirror paths by MirrorRegions.h
-  std::uint32_t two;      ///< sample at P2, key of a sample of MirrorRegions.h, or NoSample
+  std::uint32_t two;      ///< sample at P2, numberAfter() of a mirror path, or NoSample
   double unsure = 0.0;    ///< share of the energy that the width of a mirror's lobe may change
 };
 

@@ -90,6 +90,16 @@ struct MirrorPath
   Visibility visibility;     ///< whether the path is blocked
 };
 
+/// Number of a mirror path by MirrorRegions.h, after the path `before` (null: none) of the number
+/// `number`. The two samples 2k and 2k + 1 of a surface, a stratum, have the numbers 2n and 2n + 1.
+/// There are fewer numbers than paths, times two, so that no number overflows.
+inline std::uint32_t numberAfter(
+  const MirrorPath* before, std::uint32_t number, const MirrorPath& path)
+{
+  const bool isSame = before && before->start == path.start && before->one / 2 == path.one / 2;
+  return (before ? number / 2 + (isSame ? 0 : 1) : 0) * 2 + path.one % 2;
+}
+
 /// A path of matt light whose form factor exceeds MostFormFactor (SecondaryReflection.h).
 struct ShortPath
 {
