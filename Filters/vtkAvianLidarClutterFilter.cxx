@@ -2,6 +2,7 @@
 #include "vtkAvianLidarClutterFilter.h"
 
 #include "ClutterMap.h"
+#include "Figures.h"
 #include "ScanBeams.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
@@ -326,7 +327,8 @@ void vtkAvianLidarClutterFilter::Advance(vtkDataObject* cloud, vtkPolyData* tabl
   }
   if (back)
   {
-    vtkWarningMacro("The time goes back from " << memory.Stream.Time() << " s to " << time
+    vtkWarningMacro("The time goes back from " << avianlidar::figures(memory.Stream.Time(), 15)
+                                               << " s to " << avianlidar::figures(time, 15)
                                                << " s: the memory is emptied.");
   }
   memory.Of = setup;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarTracker.h"
 
+#include "Figures.h"
 #include "Hash.h"
 #include "Tracker.h"
 #include "ValueError.h"
@@ -439,7 +440,8 @@ void vtkAvianLidarTracker::CheckSettings() const
   for (const vtkInternals::Setting& setting : vtkInternals::Settings())
   {
     std::ostringstream expected;
-    expected << setting.Least << " to " << setting.Most << " " << setting.Field.unit;
+    expected << setting.Least << " to " << avianlidar::figures(setting.Most, 6) << " "
+             << setting.Field.unit;
     vtkAvianLidarRequire(avianlidar::rangeError(
       setting.Property, setting.ValueOf(*this), setting.Least, setting.Most, expected.str()));
   }

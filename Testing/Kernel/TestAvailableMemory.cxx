@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AvailableMemory.h"
+#include "Figures.h"
 #include "Statistics.h"
 
 #include <gtest/gtest.h>
@@ -85,6 +86,23 @@ TEST(TestAvailableMemory, isWhatGroupsOfVersion1LeaveAlsoWhereOnlyTheRootIsMount
     .with("sys/fs/cgroup/memory/memory.limit_in_bytes", "8000\n")
     .with("sys/fs/cgroup/memory/memory.usage_in_bytes", "1000\n");
   EXPECT_EQ(system.left(), 7000.0);
+}
+
+TEST(TestAvailableMemory, numbersInSentencesHaveNoExponent)
+{
+  const struct
+  {
+    double value;
+    int digits;
+    const char* text;
+  } cases[] = { { 99.6, 2, "100" }, { 12000.0, 4, "12000" }, { -5412345.6, 3, "-5410000" },
+    { 3525.22, 4, "3525" }, { 9.996, 3, "10" }, { 0.25, 3, "0.25" }, { 3.5e-5, 3, "3.5e-05" },
+    { 1.7e9, 15, "1700000000" }, { 2e15, 3, "2e+15" }, { 0.0, 3, "0" } };
+  for (const auto& c : cases)
+  {
+    EXPECT_EQ(figures(c.value, c.digits), c.text);
+  }
+  EXPECT_EQ(figures(Unlimited, 3), "inf");
 }
 
 TEST(TestAvailableMemory, refusesWhatIsNotThere)

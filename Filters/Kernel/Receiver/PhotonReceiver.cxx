@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PhotonReceiver.h"
 
+#include "Figures.h"
 #include "Noise.h"
 #include "RangeUnits.h"
 #include "ValueError.h"
@@ -106,11 +107,11 @@ std::string warningOnElectrons(const Sensor& sensor)
     return {};
   }
   std::ostringstream text;
-  text.precision(4);
   text << "noise of so few electrons is not Gaussian: a receiver of "
-       << PhotonReceiver(sensor).background << " background electrons in a range unit and an "
-       << "amplifier_noise of " << sensor.amplifierNoise << " would raise some " << times
-       << " times the false_alarms_per_scan asked for";
+       << figures(PhotonReceiver(sensor).background, 4)
+       << " background electrons in a range unit and an "
+       << "amplifier_noise of " << figures(sensor.amplifierNoise, 4) << " would raise some "
+       << figures(times, 4) << " times the false_alarms_per_scan asked for";
   return text.str();
 }
 

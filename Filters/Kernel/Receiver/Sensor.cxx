@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sensor.h"
 
+#include "Figures.h"
 #include "MemberCount.h"
 #include "PhotonReceiver.h"
 #include "ValueError.h"
@@ -111,10 +112,10 @@ std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval)
     return {};
   }
   std::ostringstream text;
-  text.precision(4);
   text
-    << "range_gate is " << sensor.rangeGate << " m, but the next pulse leaves after "
-    << 1e6 * pulseInterval << " us, that is " << unambiguousRange(pulseInterval)
+    << "range_gate is " << figures(sensor.rangeGate, 4) << " m, but the next pulse leaves after "
+    << figures(1e6 * pulseInterval, 4) << " us, that is "
+    << figures(unambiguousRange(pulseInterval), 4)
     << " m: a receiver that all channels share takes echoes from beyond for nearer ones, which is "
     << "not simulated";
   return text.str();

@@ -5,9 +5,10 @@
  * an execution that fails, with the message as their field data `error`. Not installed.
  *
  * Every RequestData runs in vtkAvianLidarGuarded() or, together with other ranks, in
- * vtkAvianLidarRanks::Execute() (vtkAvianLidarRanks.h). VTK considers a failed filter up to date,
- * and at the next update runs the next filter on the empty outputs. So each filter checks its
- * inputs for such an `error` before it executes.
+ * vtkAvianLidarRanks::Execute() (vtkAvianLidarRanks.h). VTK does not execute what is downstream of
+ * a failure: vtkAvianLidarExecutive.cxx empties the outputs there. VTK considers a failed filter up
+ * to date, and at the next update runs the next filter on the empty outputs. So each filter checks
+ * its inputs for such an `error` before it executes.
  */
 #ifndef vtkAvianLidarGuard_h
 #define vtkAvianLidarGuard_h

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarEchoOutput.h"
 
+#include "Figures.h"
 #include "Hash.h"
 #include "PhotonReceiver.h"
 #include "vtkAvianLidarArrays.h"
@@ -16,10 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <locale>
 #include <map>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -109,10 +107,7 @@ void AddBeamArrays(const vtkAvianLidarBeams& beams, vtkPolyData* poly, F beamOf)
 /// The value with three digits, in the same way in all locales.
 std::string Number(double value)
 {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << std::setprecision(3) << value;
-  return text.str();
+  return avianlidar::figures(value, 3);
 }
 
 std::string Joules(double value)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSurfaceLeaf.h"
 
+#include "Figures.h"
 #include "Hash.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
@@ -25,7 +26,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string_view>
 
 namespace
@@ -158,12 +158,11 @@ std::string vtkAvianLidarSurfaceLeaf::WarningOnPoints() const
   {
     return {};
   }
-  std::ostringstream text;
-  text.precision(3);
-  text << this->Message("points in single precision lie up to ") << farthest
-       << " m from the origin, where neighbours are " << std::ldexp(1.0, std::ilogb(farthest) - 23)
-       << " m apart. Give points in double precision, or coordinates near the lidar.";
-  return text.str();
+  using avianlidar::figures;
+  return this->Message("points in single precision lie up to ") + figures(farthest, 3) +
+    " m from the origin, where neighbours are " +
+    figures(std::ldexp(1.0, std::ilogb(farthest) - 23), 3) +
+    " m apart. Give points in double precision, or coordinates near the lidar.";
 }
 
 //------------------------------------------------------------------------------
