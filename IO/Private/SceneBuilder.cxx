@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneBuilder.h"
 
+#include "Figures.h"
 #include "Footprints.h"
 #include "MeshImport.h"
 #include "SceneDescription.h"
@@ -176,11 +177,9 @@ Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
     part.mesh.rounding * std::max({ std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2]) });
   if (lost > leastLoss)
   {
-    std::ostringstream text;
-    text.precision(2);
-    text << object.name << ": its coordinates are so large that single precision keeps them to "
-         << lost << " m only: subtract an offset from them, and give it as position";
-    built.warnings.push_back(text.str());
+    built.warnings.push_back(object.name +
+      ": its coordinates are so large that single precision keeps them to " + figures(lost, 2) +
+      " m only: subtract an offset from them, and give it as position");
   }
   for (const std::string& warning : part.mesh.warnings)
   {

@@ -15,6 +15,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 from osgeo import gdal, osr
 
+from .._numbers import figures
 from .._pipeline import Error, callers_level
 from .._scene import mesh as _surface
 from ._gdal import accuracy_words, warning_of
@@ -253,17 +254,17 @@ def read_heights(file: pathlib.Path, origin: Sequence[float], rectangle: Sequenc
                       stacklevel=callers_level())
     heights = heights[::-1]
     here = height_at(heights, (west, south), spacing, (0.0, 0.0))
-    words = (f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {spacing:.3g} m"
-             + (f" (the file has heights every {pixels.own:.3g} m)"
+    words = (f"heights: {file.name}, {heights.min():.1f} to {heights.max():.1f} m, taken every {figures(spacing, 3)} m"
+             + (f" (the file has heights every {figures(pixels.own, 3)} m)"
                 if abs(spacing / pixels.own - 1.0) > 0.01 else ""))
     if pixels.unit and metres_of(pixels.unit) != 1.0:
         words += f", in {pixels.unit} by the file"
     if holes > 0.0:
-        words += (f"; {holes:.2g} % of the places have no height in the file: holes are filled from their "
+        words += (f"; {figures(holes, 2)} % of the places have no height in the file: holes are filled from their "
                   "surroundings, and beyond the raster's border the ground is level. "
                   f"The raster fades into level ground over {known['feather']:g} m (assumed)")
     if holes > 5.0:
-        warnings.warn(f"{file}: has no heights at {holes:.2g} % of the places of the scene; "
+        warnings.warn(f"{file}: has no heights at {figures(holes, 2)} % of the places of the scene; "
                       "the ground is level at these places", RuntimeWarning, stacklevel=2)
     words += accuracy_words(file, pixels.system, (origin[1], origin[0]))
     places = pixels.local(samples[:, :2])
