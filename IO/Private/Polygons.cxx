@@ -113,8 +113,10 @@ std::vector<Polygon> MakeValid(const std::vector<Polygon>& polygons, bool areNes
     std::vector<Geos::Geometry> rings;
     for (const Ring& ring : polygon.rings)
     {
-      rings.push_back(
-        geos.Own(GEOSMakeValid_r(geos.Get(), geos.MakePolygon(Polygon{ { ring } }).get())));
+      std::vector<Polygon> areas; // without the lines that GEOS adds
+      geos.Collect(
+        geos.Own(GEOSMakeValid_r(geos.Get(), geos.MakePolygon({ { ring } }).get())).get(), areas);
+      rings.push_back(geos.MakeMultiPolygon(areas));
     }
     if (!areNested && rings.size() > 1)
     {

@@ -349,7 +349,9 @@ class SceneObjects(unittest.TestCase):
         """Polygons of a feature are united, holes too; a hole outside its polygon is a polygon."""
         square = np.array(self.SQUARE)
         for rings, area in (([[square], [square + [5, 0]]], 250), ([[square], [square + [20, 0]]], 400), ([[square, self.HOLE, self.HOLE]], 140),
-                            ([[square, self.HOLE, np.array(self.HOLE) + [2, 0]]], 128), ([[square, square + [30, 0]]], 400)):
+                            ([[square, self.HOLE, np.array(self.HOLE) + [2, 0]]], 128), ([[square, square + [30, 0]]], 400),
+                            ([[[*square[:4], [-9, 10], *square[3:]], self.HOLE], [square + [30, 0]]], 340),
+                            ([[[*square[:-1], [0, 0], [1, 1], [1, 2], [2, 2], [2, 1], [1, 1], [0, 0]], self.HOLE]], 139)):
             coordinates = [[np.array(ring).tolist() for ring in polygon] for polygon in rings]
             scene = self.plan("overlap.geojson", ("MultiPolygon", coordinates, {"name": "A"}), height=1)
             triangles = st.corners(scene.blocks[0])

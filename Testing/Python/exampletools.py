@@ -2,9 +2,7 @@
 """What the tests of the examples share: their modules, results as numpy arrays, and comparison of pictures."""
 import os
 import pathlib
-import re
 import shutil
-import subprocess
 import sys
 
 import numpy as np
@@ -57,17 +55,14 @@ def documented_table(name):
 
 
 def assert_documented(test, table, name):
-    """The counts of a table are those of the documentation. Another processor may differ by a beam or two, and GEOS from 3.13 on
-    divides roofs into other triangles, which changes how many rays are traced."""
-    geos = tuple(map(int, re.findall(r"\d+", subprocess.run(["geos-config", "--version"], capture_output=True, text=True).stdout)[:2]))
-    traced = 0.01 if geos >= (3, 13) else 0.003
+    """The counts of a table are those of the documentation. Another processor may differ by a beam or two."""
     documented = documented_table(name)
     test.assertEqual(list(table), list(documented))
     for column, rows in documented.items():
         for row, text in rows.items():
             if text.isdigit():
                 found, wanted = int(table[column][row]), int(text)
-                test.assertAlmostEqual(found, wanted, delta=2 + (traced if row == "rays traced" else 0.003) * wanted, msg=(column, row))
+                test.assertAlmostEqual(found, wanted, delta=2 + 0.003 * wanted, msg=(column, row))
 
 
 def expected_energy(found, pulse_energy, attenuation):

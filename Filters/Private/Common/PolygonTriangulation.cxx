@@ -7,9 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <new>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 namespace avianlidar
 {
@@ -17,6 +18,8 @@ namespace
 {
 // Area of a polygon without area, as a share of the square of the perimeter.
 constexpr double NoArea = 1e-14;
+// Greatest number of flips of edges for each triangle, so that the time is linear.
+constexpr std::size_t MostFlips = 32;
 // Greatest number of polygons that a sentence names.
 constexpr std::int64_t ListedPolygons = 5;
 
@@ -49,6 +52,77 @@ void ForEdges(const std::vector<std::size_t>& ends, F f)
 double TwiceArea(const Vec3& a, const Vec3& b, const Vec3& c)
 {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// An edge between two triangles: number of a triangle, and of the edge's first corner.
+struct Side
+{
+  std::int64_t triangle = -1;
+  int corner = 0;
+};
+
+// Triangles beyond the edges of triangles.
+class Neighbours
+{
+public:
+  explicit Neighbours(const std::vector<PolygonTriangulation::Triangle>& triangles)
+    : Beyond(triangles.size())
+  {
+    std::vector<std::pair<std::array<std::int64_t, 2>, Side>> edges;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        const auto [low, high] = std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]);
+        edges.push_back({ { low, high }, { static_cast<std::int64_t>(t), k } });
+      }
+    }
+    std::sort(edges.begin(), edges.end(),
+      [](const auto& a, const auto& b)
+      {
+        return std::tie(a.first, a.second.triangle, a.second.corner) <
+          std::tie(b.first, b.second.triangle, b.second.corner);
+      });
+    for (std::size_t i = 0, end = 0; i < edges.size(); i = end)
+    {
+      while (end < edges.size() && edges[end].first == edges[i].first)
+      {
+        ++end;
+      }
+      const auto from = [&](const Side& side) { return triangles[side.triangle][side.corner]; };
+      if (end - i == 2 && from(edges[i].second) != from(edges[i + 1].second))
+      {
+        this->Join(edges[i].second, edges[i + 1].second); // other edges are on the outline
+      }
+    }
+  }
+
+  Side& operator[](const Side& side) { return this->Beyond[side.triangle][side.corner]; }
+
+  void Join(const Side& one, const Side& other)
+  {
+    (*this)[one] = other;
+    if (other.triangle >= 0)
+    {
+      (*this)[other] = one;
+    }
+  }
+
+private:
+  std::vector<std::array<Side, 3>> Beyond;
+};
+
+// Returns whether the edge ab between the triangles abc and bad must be flipped: the sum of the
+// angles at c and d exceeds pi, and the new triangles have areas.
+bool MustFlip(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+{
+  constexpr double least = 1e-12; // sine, so that rounding does not flip an edge for ever
+  const auto scalar = [](const Vec3& o, const Vec3& p, const Vec3& q)
+  { return (p.x - o.x) * (q.x - o.x) + (p.y - o.y) * (q.y - o.y); };
+  const double sc = TwiceArea(c, a, b), cc = scalar(c, a, b);
+  const double sd = TwiceArea(d, b, a), cd = scalar(d, b, a);
+  return sc * cd + cc * sd < -least * std::hypot(sc, cc) * std::hypot(sd, cd) &&
+    TwiceArea(c, a, d) > 0.0 && TwiceArea(d, b, c) > 0.0;
 }
 }
 
@@ -121,6 +195,7 @@ void PolygonTriangulation::Divide(
   if (ends.size() > 1 || corners.size() != 4 || !this->DivideQuadrilateral())
   {
     this->Sweep(ends);
+    this->FlipEdges();
   }
   for (const Triangle& t : this->Triangles)
   {
@@ -210,7 +285,7 @@ bool PolygonTriangulation::DivideQuadrilateral()
   const auto& p = this->Plane;
   const auto square = [&p](std::size_t a, std::size_t b)
   { return std::pow(p[b].x - p[a].x, 2) + std::pow(p[b].y - p[a].y, 2); };
-  const std::int64_t shorter = square(1, 3) < square(0, 2);
+  const std::int64_t shorter = square(1, 3) <= square(0, 2);
   for (const std::int64_t k : { shorter, 1 - shorter }) // the diagonal begins at this corner
   {
     const Triangle first{ k, k + 1, k + 2 };
@@ -255,6 +330,58 @@ void PolygonTriangulation::Sweep(const std::vector<std::size_t>& ends)
     if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
     {
       this->Triangles.push_back(triangle);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Flips edges until the triangles are Delaunay. Polygons of many corners may keep some edges.
+void PolygonTriangulation::FlipEdges()
+{
+  Neighbours beyond(this->Triangles);
+  std::vector<Side> edges;
+  for (std::size_t t = 0; t < this->Triangles.size(); ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      edges.push_back({ static_cast<std::int64_t>(t), k });
+    }
+  }
+  std::size_t left = MostFlips * this->Triangles.size();
+  while (!edges.empty() && left > 0)
+  {
+    const Side one = edges.back();
+    edges.pop_back();
+    const Side other = beyond[one];
+    if (other.triangle < 0)
+    {
+      continue;
+    }
+    Triangle& first = this->Triangles[one.triangle];
+    Triangle& second = this->Triangles[other.triangle];
+    const auto next = [](const Side& side, int steps) {
+      return Side{ side.triangle, (side.corner + steps) % 3 };
+    };
+    const std::int64_t a = first[one.corner], b = first[(one.corner + 1) % 3];
+    const std::int64_t c = first[(one.corner + 2) % 3], d = second[(other.corner + 2) % 3];
+    if (!MustFlip(this->Plane[a], this->Plane[b], this->Plane[c], this->Plane[d]))
+    {
+      continue;
+    }
+    --left;
+    const Side bc = beyond[next(one, 1)], ca = beyond[next(one, 2)];
+    const Side ad = beyond[next(other, 1)], db = beyond[next(other, 2)];
+    first = { c, a, d };
+    second = { d, b, c };
+    beyond.Join({ one.triangle, 0 }, ca);
+    beyond.Join({ one.triangle, 1 }, ad);
+    beyond.Join({ one.triangle, 2 }, { other.triangle, 2 });
+    beyond.Join({ other.triangle, 0 }, db);
+    beyond.Join({ other.triangle, 1 }, bc);
+    for (const std::int64_t t : { one.triangle, other.triangle })
+    {
+      edges.push_back({ t, 0 });
+      edges.push_back({ t, 1 });
     }
   }
 }

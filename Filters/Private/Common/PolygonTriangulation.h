@@ -12,8 +12,9 @@
  *
  * Differs from GLU alone: the polygon is projected onto its mean plane and moved to the origin,
  * because GLU projects along an axis and loses area far from the origin. A quadrilateral is divided
- * along the shorter diagonal that lies inside. GLU takes quadratic time only if a line meets many
- * edges: 0.5 min for 1e5 corners on a comb.
+ * along the shorter diagonal that lies inside. Edges of other polygons are flipped until the
+ * triangles are Delaunay (Lawson 1977), because boxes of GLU's slivers are large. GLU takes
+ * quadratic time only if a line meets many edges: 0.5 min for 1e5 corners on a comb.
  */
 #ifndef PolygonTriangulation_h
 #define PolygonTriangulation_h
@@ -71,6 +72,7 @@ private:
   bool Project(const std::vector<Vec3>& corners, const std::vector<std::size_t>& ends);
   bool DivideQuadrilateral();
   void Sweep(const std::vector<std::size_t>& ends);
+  void FlipEdges();
   void AddPoint(const double* place, void* const* near, const float* weights, void** point);
 
   std::unique_ptr<GLUtesselator, void (*)(GLUtesselator*)> Tessellator;
