@@ -273,7 +273,7 @@ class SceneObjects(unittest.TestCase):
         self.assertIn("House: 1 points were left out", report)
         scene = self.plan("town.geojson", *features, **options)
         self.assertEqual((scene.names, scene.blocks[0].GetNumberOfCells()), (["House"], 36))
-        for height, expected in (("12m", 12), ("0", 3), ("1e999", 3), ("40 ft", 12.192), (True, 3), ([12], 3)):
+        for height, expected in (("12m", 12), ("0", 3), ("1e999", 3), ("40 ft", 12.192), (True, 3), ([12], 12), ([12, 13], 3)):
             scene = self.plan("tall.geojson", ("Polygon", [self.SQUARE], {"h": height}), features="together", **options)
             self.assertEqual(st.corners(scene.blocks[0])[:, :, 2].max(), expected, height)
         for chosen, count in (({"kind": "ho*"}, 2), ({"label": "*"}, 2), ({"kind": "h*", "n": 3}, 1)):
