@@ -14,7 +14,7 @@
  * because GLU projects along an axis and loses area far from the origin. A quadrilateral is divided
  * along the shorter diagonal that lies inside. Edges of other polygons are flipped until the
  * triangles are Delaunay (Lawson 1977), because boxes of GLU's slivers are large. GLU takes
- * quadratic time only if a line meets many edges: 0.5 min for 1e5 corners on a comb.
+ * quadratic time if the line meets many edges: up to 0.5 min for 1e5 corners on a comb.
  */
 #ifndef PolygonTriangulation_h
 #define PolygonTriangulation_h
