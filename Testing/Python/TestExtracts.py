@@ -781,3 +781,21 @@ class Published(unittest.TestCase):
         for place, reason in ((pos(99), extract.NO_DEGREES), (pos("north"), aixm.UNREADABLE), (pos(53.603, ""), aixm.UNREADABLE),
                               (pos().replace("::4326", "::99999999"), "the unknown coordinate system 'urn:ogc:def:crs:EPSG::99999999'"), (LINE.replace("53.604 13.303", "53.603 13.302"), extract.NO_EXTENT)):
             self.assertEqual(self.read(piece(part(place=place)), sound), ([("tower", "point", 0, 9)], [reason]), place)
+
+
+class Areas(unittest.TestCase):
+    def test_courtyards_that_touch_keep_their_area(self):
+        """Random cells of a grid as courtyards, also given as islands, which GDAL makes of some. Expected: the cells by counting."""
+        random, side = np.random.default_rng(8), 6
+        for turn in range(40):
+            cells = [(x, y) for x in range(1, side - 1) for y in range(1, side - 1) if random.random() < 0.5]
+            rings = ["((0 0, {0} 0, {0} {0}, 0 {0}, 0 0)".format(side)] + [f"({x} {y}, {x} {y + 1}, {x + 1} {y + 1}, {x + 1} {y}, {x} {y})" for x, y in cells]
+            islands = turn % 3 == 0
+            text = "MULTIPOLYGON (" + ", ".join([f"{rings[0]})", *(f"({ring})" for ring in rings[1:])]) + ")" if islands else f"POLYGON {', '.join(rings)})"
+            shape = ogr.CreateGeometryFromWkt(text)
+            self.assertAlmostEqual(_gdal.valid(shape).Area(), side * side - len(cells) if cells else side * side, delta=1e-9, msg=text)
+        apart = ogr.CreateGeometryFromWkt("MULTIPOLYGON (((0 0, 4 0, 4 4, 0 4, 0 0)), ((3 3, 6 3, 6 6, 3 6, 3 3)))")
+        self.assertAlmostEqual(_gdal.valid(apart).Area(), 16 + 9 - 1, delta=1e-9)
+        self.assertEqual(_gdal.valid(ogr.CreateGeometryFromWkt("LINESTRING (0 0, 1 1)")).Length(), math.sqrt(2.0))
+
+

@@ -139,7 +139,25 @@ def moved(shape, to):
 
 
 def valid(shape):
-    return shape if shape.IsValid() else shape.MakeValid()
+    """A valid geometry. In areas each ring is made valid alone, because GEOS fills some holes that share edges. An outline
+    inside the area counts as a hole, because GDAL takes some holes for islands."""
+    if shape.IsValid():
+        return shape
+    name = shape.GetGeometryName()
+    areas = {"POLYGON": [shape], "MULTIPOLYGON": shape}.get(name)
+    if areas is None:
+        return shape.MakeValid()
+    rings = []
+    for one in areas:
+        for number, ring in enumerate(one):
+            outline = ogr.Geometry(ogr.wkbPolygon)
+            outline.AddGeometry(ring)
+            rings.append((number > 0, outline.MakeValid()))
+    rings.sort(key=lambda ring: -ring[1].Area())
+    whole = rings[0][1]
+    for is_hole, outline in rings[1:]:
+        whole = whole.Difference(outline) if is_hole or whole.Contains(outline) else whole.Union(outline)
+    return whole
 
 
 def plain(shape, to_degrees):
