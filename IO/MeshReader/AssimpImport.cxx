@@ -417,7 +417,9 @@ std::string ModelOf(const std::string& file)
 /// Refuses files that Assimp reads wrong. Adds the file's warnings and its up axis to the mesh.
 /// Returns the length of the file's unit, m.
 /// @param elements becomes the numbers of elements that ReadIfc() gives
-double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::size_t>& elements)
+/// @param schema becomes the schema that a STEP file names
+double CheckFormat(
+  AssimpFiles& files, Mesh& mesh, std::map<std::string, std::size_t>& elements, std::string& schema)
 {
   const std::string& name = files.GetMeshName();
   const std::string ending = EndingOf(name);
@@ -477,7 +479,16 @@ double CheckFormat(AssimpFiles& files, Mesh& mesh, std::map<std::string, std::si
   }
   else if (!text.empty())
   {
-    return ReadIfc(text, elements);
+    const double unit = ReadIfc(text, elements);
+    schema = SchemaOf(text);
+    if (StartsWith(schema, "IFC4"))
+    {
+      // Assimp 5.4 refuses the name, and both versions read what is as in IFC2X3.
+      std::string renamed = text;
+      renamed.replace(renamed.find('\'' + schema + '\''), schema.size() + 2, "'IFC2X3'");
+      files.Replace(ending, std::move(renamed));
+    }
+    return unit;
   }
   return 1.0;
 }
@@ -623,7 +634,8 @@ Mesh ReadAssimpMesh(const std::string& file)
   importer.SetIOHandler(files);
   Mesh mesh;
   std::map<std::string, std::size_t> elements;
-  double unit = CheckFormat(*files, mesh, elements);
+  std::string schema;
+  double unit = CheckFormat(*files, mesh, elements, schema);
   const aiScene* scene = importer.ReadFile(files->GetMeshName(), 0);
   if (scene)
   {
@@ -643,9 +655,6 @@ Mesh ReadAssimpMesh(const std::string& file)
     {
       reason.pop_back();
     }
-    const std::string schema = EndsWithAny(files->GetMeshName(), { ".ifc", ".stp", ".step" })
-      ? SchemaOf(TextOf(*files))
-      : std::string();
     failIf(!schema.empty() && schema != "IFC2X3", "is written in the schema ", schema,
       ", expected IFC2X3. Assimp cannot read it: ", reason, files->GetReason());
     fail("Assimp cannot read it: ", reason, files->GetReason());
