@@ -95,7 +95,7 @@ vtkIdType Share(const vtkAvianLidarRanks& ranks, CloudFacts& facts)
   vtkAvianLidarRequire(ranks.Same(known) ? ""
                                          : "the ranks have clouds of different times, positions or "
                                            "beam widths in field data, expected "
-                                           "those of one scan");
+                                           "one scan");
   vtkIdType before = 0;
   bool isFirst = true;
   int rank = 0;

@@ -106,8 +106,8 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   {
     const std::string beside = formats::labelFileOf(this->FileName);
     failIf(!beside.empty(), "the input has no point array '", names::ObjectId.name, "' or '",
-      names::SemanticLabel.name, "' for labels, but the file would get those of ", beside,
-      ": remove that file");
+      names::SemanticLabel.name, "' for labels, but the file would get the labels of ", beside,
+      ": remove this file");
     this->Warn(std::string(": no labels are written, because the input has no point array '") +
       names::ObjectId.name + "' or '" + names::SemanticLabel.name + "'.");
     labels.reset();

@@ -367,10 +367,12 @@ void CheckPlyRows(const std::string& header, std::string_view rows)
 std::string SchemaOf(const std::string& text)
 {
   constexpr std::size_t header = 1u << 16;
-  static const std::regex named("FILE_SCHEMA\\s*\\(\\s*\\(\\s*'([^']*)'", std::regex::icase);
-  const std::string begin = text.substr(0, header);
-  std::smatch found;
-  return std::regex_search(begin, found, named) ? found[1].str() : std::string();
+  const std::string_view begin = std::string_view(text).substr(0, header);
+  const std::size_t named = begin.find("FILE_SCHEMA");
+  const std::size_t first = begin.find('\'', std::min(named, begin.size()));
+  const std::size_t last = begin.find('\'', std::min(first, begin.size() - 1) + 1);
+  return last == std::string_view::npos ? std::string()
+                                        : std::string(begin.substr(first + 1, last - first - 1));
 }
 
 double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elements)
@@ -385,8 +387,11 @@ double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elem
     "IFCSWEPTDISKSOLIDPOLYGONAL", "IFCSECTIONEDSOLIDHORIZONTAL" };
   for (const Entity& entity : entities)
   {
-    failIf(later.count(entity.type) > 0, "is written in the schema ", SchemaOf(file), " and has a ",
-      entity.type, ", which Assimp cannot read: export it as IFC2X3");
+    if (later.count(entity.type) > 0)
+    {
+      fail("is written in the schema ", SchemaOf(file), " and has a ", entity.type,
+        ", which Assimp cannot read: export it as IFC2X3");
+    }
     if (entity.type == "IFCPRODUCTDEFINITIONSHAPE")
     {
       shapes.insert(entity.id);

@@ -51,7 +51,7 @@ std::string_view ChunkOf(const std::string& text, int number)
   return {};
 }
 
-/// Returns the document of a file, or a discarded value if the file is no JSON.
+/// Returns the document of a file, or a discarded value if the file is not JSON.
 Json DocumentOf(const std::string& text)
 {
   std::string json(ChunkOf(text, 0));
@@ -176,7 +176,9 @@ public:
       this->Document.erase(list);
     }
     GltfFiles files;
-    if (const std::string_view own = ChunkOf(this->Text, 1); !own.empty())
+    const Json& first = ValueIn(ListIn(this->Document, "buffers"), std::size_t(0));
+    if (const std::string_view own = ChunkOf(this->Text, 1);
+        !own.empty() && ValueIn(first, "uri").is_null())
     {
       this->Document["buffers"][0]["uri"] = "avian-lidar-own.bin";
       files.buffers["avian-lidar-own.bin"] = own;
@@ -362,9 +364,10 @@ private:
         this->BytesOf(what, ValueIn(what, "bufferView"), changed, size * of.size);
       for (std::size_t i = 0; i < changed; ++i)
       {
-        const auto element = static_cast<std::size_t>(index.number(at + i * atStride));
-        failIf(element >= count, "is broken: a sparse accessor changes element ", element, " of ",
-          count);
+        const double number = index.number(at + i * atStride);
+        failIf(!(number >= 0.0 && number < static_cast<double>(count)),
+          "is broken: a sparse accessor changes element ", number, " of ", count);
+        const auto element = static_cast<std::size_t>(number);
         for (std::size_t k = 0; k < size; ++k)
         {
           numbers[element * size + k] = numberAt(values + i * valueStride + k * of.size);
@@ -429,6 +432,17 @@ private:
 
 std::vector<std::string> CheckGltf(const std::string& text)
 {
+  constexpr std::size_t lengths[] = { 8, 12 }; // where the lengths of the file and of the JSON are
+  for (const std::size_t at : lengths)
+  {
+    std::uint32_t length = 0;
+    if (StartsWith(text, "glTF") && text.size() >= at + sizeof length)
+    {
+      std::memcpy(&length, &text[at], sizeof length);
+      failIf(length > text.size(), "is cut short: it says that it has ", length, " bytes and has ",
+        text.size());
+    }
+  }
   const Json document = DocumentOf(text);
   for (const char* list : { "extensionsRequired", "extensionsUsed" })
   {

@@ -292,18 +292,26 @@ bool IsCityJson(const std::string& file)
 // Returns whether a GeoJSON file has a truth value in place of a height or a width.
 bool HasTruthValues(const std::string& file, const FootprintOptions& options)
 {
-  GByte* bytes = nullptr;
-  vsi_l_offset size = 0;
-  if (!VSIIngestFile(nullptr, VirtualName(file).c_str(), &bytes, &size, -1))
-  {
-    return false;
-  }
-  const std::unique_ptr<GByte, decltype(&VSIFree)> owner(bytes, &VSIFree);
-  const std::string_view json(reinterpret_cast<const char*>(bytes), size);
+  constexpr std::size_t chunk = std::size_t(1) << 20, overlap = 4096; // bytes
+  const std::unique_ptr<VSILFILE, decltype(&VSIFCloseL)> stream(
+    VSIFOpenL(VirtualName(file).c_str(), "rb"), &VSIFCloseL);
   const std::string* const names[] = { &options.heightAttribute, &options.minHeightAttribute,
     &options.widthAttribute };
-  return std::any_of(std::begin(names), std::end(names),
-    [&](const std::string* name) { return !name->empty() && HasTruthValue(json, *name); });
+  std::string text;
+  for (std::size_t got = chunk; stream && got == chunk;)
+  {
+    text.erase(0, text.size() - std::min(text.size(), overlap));
+    const std::size_t begin = text.size();
+    text.resize(begin + chunk);
+    got = VSIFReadL(&text[begin], 1, chunk, stream.get());
+    text.resize(begin + got);
+    if (std::any_of(std::begin(names), std::end(names),
+          [&](const std::string* name) { return !name->empty() && HasTruthValue(text, *name); }))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
@@ -634,7 +642,7 @@ void AddRegions(const Feature& feature, const Object& object, const std::vector<
         region, terrain, options, options.base + under, top - under, materials, counts, mesh);
     }
   }
-  catch (const Error&)
+  catch (...)
   {
     undo();
     throw;
@@ -683,7 +691,7 @@ std::vector<Part> Raise(const std::vector<Feature>& features, const Object& obje
         parts.push_back(std::move(part));
       }
     }
-    catch (const Error& error)
+    catch (const std::runtime_error& error)
     {
       counts.AddFailure(feature.name, error.what());
     }

@@ -435,14 +435,13 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   }
   requireMemoryFor(header.points, length);
   Columns columns(header, records.fields, cloud);
-  std::vector<std::size_t> kept; // points that are not withheld
-  kept.reserve(header.points);
+  std::vector<std::uint64_t> withheld;
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
     columns.take(i, bytes);
-    if ((flagsOf(bytes, header.layout.extended) & LasWithheld) == 0)
+    if ((flagsOf(bytes, header.layout.extended) & LasWithheld) != 0)
     {
-      kept.push_back(i);
+      withheld.push_back(i);
     }
     goOn(keepGoing, i, header.points);
   };
@@ -455,12 +454,24 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
     forEachRecord(source, header.data, length, header.points, take);
   }
   columns.finish();
-  if (const std::uint64_t withheld = header.points - kept.size(); withheld > 0)
+  if (!withheld.empty())
   {
+    std::vector<std::size_t> kept;
+    auto next = withheld.begin();
+    for (std::uint64_t i = 0; i < header.points; ++i)
+    {
+      if (next != withheld.end() && *next == i)
+      {
+        ++next;
+        continue;
+      }
+      kept.push_back(i);
+    }
     keepPoints(cloud, kept);
-    cloud.warnings.push_back(std::to_string(withheld) +
-      (withheld == 1 ? " point that is" : " points that are") +
-      " flagged as withheld, which means deleted, " + (withheld == 1 ? "is" : "are") + " left out");
+    const bool one = withheld.size() == 1;
+    cloud.warnings.push_back(std::to_string(withheld.size()) +
+      (one ? " point that is" : " points that are") +
+      " flagged as withheld, which means deleted, " + (one ? "is" : "are") + " left out");
   }
   return cloud;
 }

@@ -94,6 +94,10 @@ std::string ToBytes(const std::string& text)
     bytes += same == 4 ? Metr : ToByte(characters[i]);
     i += same == 4 ? 3 : 0;
   }
+  // The time of the expressions grows with a high power of the number of blanks in a row.
+  bytes.erase(std::unique(bytes.begin(), bytes.end(),
+                [](char a, char b) { return IsSpace(a) && IsSpace(b); }),
+    bytes.end());
   bytes = Trimmed(Trimmed(Trimmed(bytes, IsSpace), [](char c) { return c == ';'; }), IsSpace);
   return bytes.size() > Longest ? std::string() : bytes;
 }

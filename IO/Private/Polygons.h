@@ -188,8 +188,8 @@ std::vector<Polygon> MakeValid(
 std::vector<Polygon> WidenLine(const Ring& line, double width);
 
 /// Triangulates a valid polygon at the height 0 (PolygonTriangulation.h). An edge is divided where
-/// another ring touches it. Throws Error if the area
-/// of the triangles differs from the area of the polygon.
+/// another ring touches it. Throws Error if the area of the triangles differs from the area of the
+/// polygon.
 Sheet Triangulate(const Polygon& polygon);
 
 /// Finds the outline of a sheet: the edges of only one triangle.

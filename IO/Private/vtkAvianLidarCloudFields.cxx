@@ -100,15 +100,17 @@ Field CoordinateField(vtkPointSet* input, int axis, bool single)
 /// a coordinate.
 double LargestRounding(vtkPointSet* input)
 {
+  const bool isDegrees = formats::hasDegrees(FindText(input, names::CrsWkt.name));
+  const double across = isDegrees ? MetresPerDegree : 1.0; // length of a unit of x and y, m
   double most = 0.0;
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
   {
     Point p;
     input->GetPoint(i, p.data());
-    most = std::max(most, RoundingOf(p));
+    most =
+      std::max({ most, across * RoundingOf({ p[0], p[1], 0.0 }), RoundingOf({ 0.0, 0.0, p[2] }) });
   }
-  const bool isDegrees = formats::hasDegrees(FindText(input, names::CrsWkt.name));
-  return isDegrees ? most * MetresPerDegree : most;
+  return most;
 }
 
 vtkSmartPointer<vtkDataArray> ToArray(const formats::Column& column)

@@ -4,6 +4,7 @@ import csv
 import gzip
 import io
 import math
+import os
 import pathlib
 import re
 import unicodedata
@@ -23,6 +24,7 @@ from ._writers import refuse, suffixes, write
 # Limits of compressed files, as in UnpackedSize.h: the greatest number of bytes after decompression, and the greatest
 # growth of files larger than SMALL. Text grows 5 to 30 times.
 LARGEST, SMALL, GROWTH = 256 << 20, 16 << 20, 100
+MOST_PACKED = 1000  # greatest number of points for each byte of a file
 LONGEST = 200  # bytes of a name; the names of files add suffixes
 MOST_LINES = 1000  # greatest number of lines above the first row of a table
 COMMENTS = ("#", "//", "%", "!")  # beginnings of lines above the rows
@@ -283,6 +285,15 @@ def _check_xml(path: pathlib.Path) -> None:
         raise Error(f"{path}: {errors[0]}")
 
 
+def _check_size(path) -> None:
+    """Refuses a VTK XML file that says that it has far more points than its bytes can hold: VTK ends the process."""
+    with open(path, "rb") as stream:
+        points = sum(int(text) for text in re.findall(rb'\bNumberOfPoints\s*=\s*["\']\s*(\d{1,18})', stream.read(1 << 20)))
+    size = os.path.getsize(path)
+    if points > MOST_PACKED * size:
+        raise ValueError(f"{path}: says that it has {points} points, but has only {size} bytes")
+
+
 def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
     """Reads a cloud from .vtp, .csv (as `save` and other programs write it), .xyz, or another format for which this
     build has a reader (Documentation/reference/formats.md); `properties` are properties of the reader, by name.
@@ -312,6 +323,7 @@ def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
             if b"<VTKFile" not in stream.read(4096):  # VTK reports several errors for such files
                 raise ValueError(f"{path}: this is not a VTK XML file")
         _check_xml(path)
+        _check_size(path)
     else:
         reader = getattr(_wrapped, READERS[suffix])()
     set_properties(reader, **properties)

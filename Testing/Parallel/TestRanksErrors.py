@@ -354,6 +354,7 @@ def test_abort():
         observer = filters[asked].AddObserver("ProgressEvent", heard)
         update(filters[-1])
         assert sizes(filters[-1]) == {"0 0"} and not any(heard_by_all(messages))
+        assert not filters[-1].GetOutput().GetFieldData().GetAbstractArray("error")
         filters[asked].RemoveObserver(observer)
         for algorithm in filters:
             algorithm.SetAbortExecute(0)

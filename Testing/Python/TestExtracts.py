@@ -593,6 +593,8 @@ class Surveyed(unittest.TestCase):
                 ("longitude,latitude,height\n13.302,53.603,45\n", [("obstacle", 13.302, 53.603, 45, said + ", m assumed")]),
                 ("OAS,LATDEC,LONDEC,TYPE,QUANTITY,AGL,AMSL\n01-1,53.603,13.302,BLDG-TWR,1,00120,00240\n", [("tower", 13.302, 53.603, 36.576, said)])):
             self.assertEqual(read(text), (expected, []), text)
+        pylons = "# obstacles\n# of a State\nlongitude,latitude,height,kind\n13.302,53.603,45,TRANSMISSION_LINE\n13.303,53.603,45,T-L\n"
+        self.assertEqual([one[0] for one in read(pylons)[0]], ["mast", "mast"])
         twice = "longitude,latitude,height,unit,kind\n13.302,53.603,100,ft,mast\n13.302,53.603,30.48,m,mast\n13.302,53.603,31,m,mast\n"
         self.assertEqual(read(twice)[1], [aixm.TWICE])
         kinds = "longitude,latitude,height,unit,kind\n" + "".join(f"13.3{n},53.603,45,{unit},{kind}\n" for n, (unit, kind) in enumerate((

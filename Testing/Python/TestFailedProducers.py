@@ -184,6 +184,27 @@ class Producers(InFolder):
             self.assert_emptied(reader)
             self.assertTrue(heard.errors)
 
+    def test_the_error_is_that_of_the_last_update(self):
+        """After an own error that is mended, an error upstream, and other ones, in plain VTK."""
+        first, source = surfaces(), beams()
+        tree = al.vtkAvianLidarCollisionTree()
+        tree.SetInputConnection(first.port)
+        echo = scan(tree, source.algorithm, **SETTINGS)
+        heard = [Messages(one) for one in (first.algorithm, tree, echo, source.algorithm)]
+        echo.SetRaysPerBeam(-1)
+        self.assertEqual(update(echo), 0)
+        self.assert_emptied(echo, "RaysPerBeam")
+        echo.SetRaysPerBeam(20)
+        first.set(-1.0)
+        self.assertEqual(update(echo), 0)
+        self.assert_emptied(echo, "Input port 1: its producer failed")
+        self.assertNotIn("RaysPerBeam", error_of(outputs(echo)[0]))
+        first.set(0.3)
+        source.algorithm.SetBeamOutline(2)
+        self.assertEqual(update(echo), 0)
+        self.assert_emptied(echo, "Input port 0: its producer failed")
+        self.assertTrue(heard[0].errors)
+
     def test_every_class_with_inputs_is_here(self):
         found = {name[len("vtkAvianLidar"):] for name in dir(al) if name.startswith("vtkAvianLidar")}
         found = {name for name in found - {"CloudWriter", "ScanFilter"} if make(name).GetNumberOfInputPorts()}

@@ -131,6 +131,10 @@ class Files(InFolder):
         for kind, words, call in cases:
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 call()
+        lying = self.folder / "lying.vtp"
+        lying.write_text('<VTKFile type="PolyData" version="1.0"><PolyData><Piece NumberOfPoints="4000000000" NumberOfPolys="0"/></PolyData></VTKFile>')
+        with self.assertRaisesRegex(ValueError, "lying.vtp: says that it has 4000000000 points, but has only [0-9]+ bytes"):
+            al.load_cloud(lying)
         damaged = self.folder / "damaged.vtp"
         self.scan.save(damaged)
         whole = damaged.read_bytes()

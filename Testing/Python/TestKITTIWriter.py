@@ -121,7 +121,7 @@ class TestKITTIWriter(InFolder):
         before = pathlib.Path(FILE).read_bytes()  # these labels would label other points
         heard = Messages(self.writer)
         self.assertEqual(given(self.writer, InputData=near, FileName=FILE).Write(), 0)
-        self.assertRegex(heard.errors[0], f"would get those of .*{LABELS}: remove that file")
+        self.assertRegex(heard.errors[0], f"would get the labels of .*{LABELS}: remove this file")
         self.assertEqual(pathlib.Path(FILE).read_bytes(), before)
 
     def test_read_again(self):

@@ -340,6 +340,8 @@ class MeshFiles(InFolder):
                 ([codes], [{**instanced, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"SCALE": 77}}}}], {}, "SCALE of instances is 77")):
             with self.subTest(words):
                 self.assert_refused(self.read(self.gltf_of(parts, [0, 1, 2], nodes, **more)), words)
+        (self.folder / "short.glb").write_bytes(struct.pack("<4sIIII", b"glTF", 2, 0xFFFFFFFF, 0xFFFFFFF0, 0x4E4F534A) + b"{}")
+        self.assert_refused(self.read("short.glb"), "is cut short: it says that it has 4294967295 bytes and has 22")
         name = self.gltf_of([codes], [0, 1, 2], [{"mesh": 0}], "file")
         (self.folder / "ein Puffer.bin").unlink()
         self.assert_refused(self.read(name), "names the file ein%20Puffer.bin, which cannot be read")

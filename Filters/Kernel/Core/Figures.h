@@ -16,6 +16,7 @@
 
 namespace avianlidar
 {
+/// Returns a number with up to `digits` significant digits, and without an exponent from 1 to 1e15.
 inline std::string figures(double value, int digits)
 {
   char text[64];

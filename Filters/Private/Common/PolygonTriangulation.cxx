@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PolygonTriangulation.h"
 
+#include "Figures.h"
+
 #include <GL/glu.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -18,6 +19,8 @@ namespace
 {
 // Area of a polygon without area, as a share of the square of the perimeter.
 constexpr double NoArea = 1e-14;
+// Greatest coordinate of a polygon that is divided; GLU accepts 1e150.
+constexpr double Most = 1e30;
 // Greatest number of flips of edges for each triangle, so that the time is linear.
 constexpr std::size_t MostFlips = 32;
 // Greatest number of polygons that a sentence names.
@@ -167,13 +170,7 @@ PolygonTriangulation::PolygonTriangulation()
     });
   set(
     GLU_TESS_ERROR_DATA,
-    +[](GLenum error, void* self)
-    {
-      static_cast<Self*>(self)->Failure = error == GLU_OUT_OF_MEMORY
-        ? std::make_exception_ptr(std::bad_alloc())
-        : std::make_exception_ptr(
-            std::runtime_error("GLU cannot divide a polygon: error " + std::to_string(error)));
-    });
+    +[](GLenum error, void* self) { static_cast<Self*>(self)->ErrorOfGlu = error; });
   // With this callback, even an empty one, GLU gives triangles instead of strips and fans.
   set(
     GLU_TESS_EDGE_FLAG_DATA, +[](GLboolean, void*) {});
@@ -227,7 +224,7 @@ bool PolygonTriangulation::Project(
       this->Largest = std::max(
         { this->Largest, std::abs(corners[i].x), std::abs(corners[i].y), std::abs(corners[i].z) });
     });
-  if (!isFinite(area) || !std::isfinite(this->Perimeter * this->Perimeter))
+  if (!isFinite(area) || !std::isfinite(this->Perimeter * this->Perimeter) || this->Largest > Most)
   {
     this->Perimeter = this->Largest = 0.0;
     for (std::size_t i = 2; i < corners.size(); ++i)
@@ -255,6 +252,7 @@ bool PolygonTriangulation::Project(
     area = cross(first, second - this->Origin);
     if (safeLength(area) <= least)
     {
+      this->OutlineArea = 0.0;
       return false;
     }
   }
@@ -305,6 +303,7 @@ void PolygonTriangulation::Sweep(const std::vector<std::size_t>& ends)
 {
   this->Swept.clear();
   this->Failure = nullptr;
+  this->ErrorOfGlu = 0;
   GLUtesselator* tessellator = this->Tessellator.get();
   gluTessBeginPolygon(tessellator, this);
   std::size_t corner = 0;
@@ -322,6 +321,15 @@ void PolygonTriangulation::Sweep(const std::vector<std::size_t>& ends)
   if (this->Failure)
   {
     std::rethrow_exception(this->Failure);
+  }
+  if (this->ErrorOfGlu == GLU_OUT_OF_MEMORY)
+  {
+    throw std::bad_alloc();
+  }
+  if (this->ErrorOfGlu != 0)
+  {
+    throw std::runtime_error(
+      "GLU cannot divide a polygon: error " + std::to_string(this->ErrorOfGlu));
   }
   for (std::size_t i = 0; i + 2 < this->Swept.size(); i += 3)
   {
@@ -430,10 +438,9 @@ void LostAreas::Check(const PolygonTriangulation& polygon, std::int64_t name, do
                                               : std::string();
   if (this->Count++ == 0)
   {
-    std::ostringstream text;
-    text << "triangles of " << polygon.GetTriangleArea() << " m2 for an outline of "
-         << polygon.GetOutlineArea() << " m2";
-    this->Areas = text.str();
+    const double triangles = polygon.GetTriangleArea(), outline = polygon.GetOutlineArea();
+    this->Share = figures(100.0 * std::abs(triangles - outline) / std::max(triangles, outline), 2) +
+      (triangles < outline ? " % smaller" : " % larger");
   }
 }
 
@@ -448,7 +455,9 @@ std::string LostAreas::Sentence(const std::string& kind) const
   const bool all = this->Count <= ListedPolygons;
   return (one ? "polygon " : std::to_string(this->Count) + " polygons ") + "(" + kind +
     (one ? " " : "s ") + this->Names + (all ? "" : ", ...") + ")" +
-    (one ? " crosses or overlaps itself: " : " cross or overlap themselves: ") + this->Areas +
-    "; what an outline surrounds twice is taken as a hole";
+    (one ? " crosses or overlaps itself: its"
+         : " cross or overlap themselves: the first polygon's") +
+    " triangles are " + this->Share +
+    " in area than its outline. What an outline surrounds twice is taken as a hole";
 }
 }

@@ -87,6 +87,7 @@ private:
   std::vector<Vec3> Plane;        ///< corners, then added points, along the axes
   std::vector<std::size_t> Swept; ///< corners of triangles, as GLU gives them
   std::exception_ptr Failure;     ///< exception of a callback, which must not leave GLU
+  unsigned int ErrorOfGlu = 0;    ///< last error that GLU has reported
 };
 
 /// Counts polygons whose triangles do not have the area of the outline.
@@ -103,7 +104,7 @@ public:
 private:
   std::int64_t Count = 0;
   std::string Names; ///< of the first polygons
-  std::string Areas; ///< of the first polygon
+  std::string Share; ///< difference of the first polygon's areas
 };
 }
 

@@ -6,6 +6,7 @@
 #include "vtkObjectFactory.h"
 
 #include <cstring>
+#include <vector>
 
 namespace
 {
@@ -20,10 +21,13 @@ public:
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override
   {
+    // VTK refuses a request that comes while the algorithm fills the outputs.
+    const bool isFilling = this->InAlgorithm != 0;
+    const std::vector<vtkMTimeType> before = vtkAvianLidarGuard::TimesOf(outputs);
     const vtkTypeBool done = this->Superclass::ProcessRequest(request, inputs, outputs);
-    if (!done && !this->InLocalLoop && this->Algorithm)
+    if (!done && !isFilling && !this->InLocalLoop && this->Algorithm)
     {
-      vtkAvianLidarGuard::EmptyUnlessFailed(this->Algorithm, outputs);
+      vtkAvianLidarGuard::EmptyUnlessChanged(this->Algorithm, outputs, before);
     }
     return done;
   }

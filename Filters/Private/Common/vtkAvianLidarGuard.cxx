@@ -92,17 +92,30 @@ void vtkAvianLidarGuard::CheckStart(vtkAlgorithm* self)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGuard::EmptyUnlessFailed(
-  vtkAlgorithm* self, vtkInformationVector* outputs) noexcept
-try
+std::vector<vtkMTimeType> vtkAvianLidarGuard::TimesOf(vtkInformationVector* outputs)
 {
-  const std::string known = ErrorOfInputs(self);
-  const std::string error =
-    Sentence(known.empty() ? "An input is missing, or its producer failed" : known);
+  std::vector<vtkMTimeType> times;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* output = vtkDataObject::GetData(outputs, port);
-    if (output && ErrorOf(output).empty())
+    times.push_back(output ? output->GetMTime() : 0);
+  }
+  return times;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarGuard::EmptyUnlessChanged(vtkAlgorithm* self, vtkInformationVector* outputs,
+  const std::vector<vtkMTimeType>& before) noexcept
+try
+{
+  const std::vector<vtkMTimeType> now = TimesOf(outputs);
+  const std::string known = ErrorOfInputs(self);
+  const std::string error =
+    Sentence(known.empty() ? "An input is missing, or its producer failed" : known);
+  for (std::size_t port = 0; port < now.size() && port < before.size(); ++port)
+  {
+    vtkDataObject* output = vtkDataObject::GetData(outputs, static_cast<int>(port));
+    if (output && now[port] == before[port])
     {
       output->Initialize();
       Arrays::SetFieldStrings(output->GetFieldData(), Arrays::Error, { error });

@@ -21,6 +21,7 @@
 #include <new>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 class vtkInformationVector;
 
@@ -33,9 +34,14 @@ constexpr char NoMemory[] = "There is not enough memory for this";
 /// at progress 0, which the executive reports before RequestData.
 void CheckStart(vtkAlgorithm* self);
 
-/// Empty the outputs that do not hold the error of an execution, after a request that failed. The
-/// field data `error` then says which producer failed.
-void EmptyUnlessFailed(vtkAlgorithm* self, vtkInformationVector* outputs) noexcept;
+/// Times at which the outputs were changed, by port. @return 0 for a port without an output
+std::vector<vtkMTimeType> TimesOf(vtkInformationVector* outputs);
+
+/// Empty the outputs after a request that failed. The field data `error` then says which producer
+/// failed. Outputs that the request has changed stay: they hold the error of the algorithm, or are
+/// empty because the work was stopped. @param before from TimesOf(), before the request
+void EmptyUnlessChanged(vtkAlgorithm* self, vtkInformationVector* outputs,
+  const std::vector<vtkMTimeType>& before) noexcept;
 
 /// The problem as UTF-8, with a full stop.
 std::string Sentence(const std::string& problem);

@@ -257,7 +257,7 @@ private:
       warning += (warning.empty() || text.empty() ? "" : " Also, ") + text;
       return !text.empty();
     };
-    add(this->AreaWarning);
+    add(this->AreaWarning.empty() ? "" : this->AreaWarning + ".");
     std::any_of(leaves.begin(), leaves.end(), // only the first such leaf is named
       [&add](const Leaf& leaf) { return add(leaf.WarningOnPoints()); });
   }

@@ -103,8 +103,9 @@ def levels_of(text: Any) -> Optional[float]:
 
 
 def _greatest(text: Any, one: Callable[[str], Optional[float]], most: float) -> Optional[float]:
-    said = str(text if text is not None else "").strip().strip(";").strip()
-    if not said or len(said) > LONGEST_LENGTH:  # the time of the expressions grows with the third power of the length
+    # The time of the expressions grows with a high power of the number of blanks in a row.
+    said = re.sub(r"(\s)\s+", r"\1", str(text if text is not None else "")).strip().strip(";").strip()
+    if not said or len(said) > LONGEST_LENGTH:
         return None
     values = [one(part.strip()) for part in re.split(r"[;/](?!-)|\.\.|(?<=[\w.])\s*[-–]\s*(?=\d)", said)]
     known = [value for value in values if value is not None]

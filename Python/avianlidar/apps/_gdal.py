@@ -152,8 +152,8 @@ def valid(shape):
         for number, ring in enumerate(one):
             outline = ogr.Geometry(ogr.wkbPolygon)
             outline.AddGeometry(ring)
-            rings.append((number > 0, outline.MakeValid()))
-    rings.sort(key=lambda ring: -ring[1].Area())
+            rings.append((number > 0, outline if outline.IsValid() else outline.MakeValid()))
+    rings.sort(key=lambda ring: -ring[1].Area() if ring[1].GetDimension() == 2 else 0.0)
     whole = rings[0][1]
     for is_hole, outline in rings[1:]:
         whole = whole.Difference(outline) if is_hole or whole.Contains(outline) else whole.Union(outline)

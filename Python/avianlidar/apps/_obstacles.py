@@ -38,6 +38,7 @@ GROUP, NO_WALL = "a group of obstacles without places", "a line that is not a wa
 FARM = re.compile(r"farms?$", re.IGNORECASE)
 PLANTS = ("tree", "wood")
 WIDE = ("building", "tank", "tree")  # kinds whose radius is always their own
+PYLON = re.compile(r"(?i)(?:transmission|power)[-_ ]lines?|\bt-l\b")  # such a point is a pylon of the line
 GUYED = ("mast", "pole", "crane", "turbine")  # kinds whose radius is that of wires, of a jib or of a rotor
 SLENDER = 15.0  # greatest radius that a tower, a chimney or a tree has, m; a larger one is that of wires, or of a wood
 LONGEST = 400  # characters of a text in which words are looked for
@@ -84,6 +85,8 @@ def _feature(file: pathlib.Path, row: Row, known: Dict[str, Any]) -> Feature:
     if not kind:
         kind = _kind_of(tags.get("name", ""), known)
         kind = "" if kind in ("ground", "balloon", "town") else kind  # a mast on a hill may have the hill's name
+    if kind == "wire" and form == "point" and PYLON.search(word):
+        kind = "mast"
     said = known["not_modelled"].get(kind) or ""
     if not said and form != "point" and kind not in PLANTS and (tags.get("group") or FARM.search(word)):
         said = GROUP
@@ -171,9 +174,10 @@ def _csv(file: pathlib.Path, content: bytes) -> Iterator[Row]:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = content.decode("latin-1")
-    head = text.split("\n", 1)[0]
+    text = re.sub(r"(?m)\A(?:[ \t]*#.*\n)+", lambda comments: "\n" * comments[0].count("\n"), text)
+    head = text.lstrip("\n").split("\n", 1)[0]
     rows = csv_rows(file, text, max(",;\t", key=head.count))
-    names = [name.strip().lower() for name in next(rows, [])]
+    names = [name.strip().lower() for name in next(filter(any, rows), [])]
     plain_names = [UNIT.sub("", name) for name in names]
     at: Dict[str, int] = {}
     for column, words in COLUMNS.items():
