@@ -78,7 +78,7 @@ class Page(unittest.TestCase):
         self.assertRegex(first, "^In short: Search905, at its best site, detects [a-z ]+ of the crossing targets at least twice. Search905 is an idea: nobody sells this lidar. At the same place, each of 2 lidars on sale detects under "
                          "[0-9.]+.% of the same birds by one scan, and under [0-9.]+.% at least twice while they cross.$")
         shown = self.browser.run("return [...document.querySelectorAll('#offers tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
-        self.assertEqual([row[1] for row in shown], ["nobody", "Velodyne", "Velodyne"])
+        self.assertEqual([row[1] for row in shown], ["nobody", *2 * ["Ouster (formerly Velodyne)"]])
         self.assertEqual([row[2] for row in shown], ["2\u00a0s", "0.1\u00a0s", "0.1\u00a0s"])
         self.assertEqual({row[0] for row in shown[1:]}, set(ON_SALE))
         asked = Plan(read_plan(HERE / "report.coverage.json"))
