@@ -111,8 +111,8 @@ def say(text: str) -> None:
 
 def warn(text: str) -> None:
     """Prints one line to the error stream, above a progress bar."""
-    for shown in _shown:
-        shown.clear()
+    for one in _shown:
+        one.clear()
     print(f"avianlidar: warning: {_in_line(text)}", file=sys.stderr)
 
 

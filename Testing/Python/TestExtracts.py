@@ -269,6 +269,15 @@ class Formats(unittest.TestCase):
             self.assertEqual({(one.kind, one.reason) for one in found.left if one.kind != "node"}, {(kind, extract.NO_DEGREES) for kind in ("way", "building", "wood")}, word)
             self.assertEqual([row[:2] for row in things(file)], [row[:2] for row in whole if row[0] in ("runway", "fence")][:2], word)
         plan = runway(ta.Map())
+        plan.area((0, 300), (8, 310), building="yes")
+        file = plan.write("nameless.osm")
+        whole = things(file)
+        file.write_text(file.read_text(encoding="utf-8").replace(
+            "<node ", '<node lat="200" lon="13"/><node lat="53" lon="13"/><node id="x1" lat="53" lon="13"/><way id=""/><node ', 1), encoding="utf-8")
+        self.assertEqual([row[:2] for row in things(file)], [row[:2] for row in whole])
+        lost = [(one.kind, one.id, one.reason) for one in _osm.read_extract(file, KNOWN).left]
+        self.assertEqual(sorted(lost), sorted([*2 * [("node", "", _osm.NO_ID)], ("node", "x1", _osm.NO_ID), ("way", "", _osm.NO_ID)]))
+        plan = runway(ta.Map())
         plan.way([(-800, 500), (0, 500), (800, 500)], aeroway="runway", ref="09R/27L")
         file = plan.write("nowhere.osm")
         file.write_text(file.read_text(encoding="utf-8").replace('<node id="4" version="1" lat="53', '<node id="4" version="1" lat="253'), encoding="utf-8")
@@ -483,7 +492,8 @@ class LeftOut(unittest.TestCase):
 
 
     def test_storeys_and_layers(self):
-        """`layer` orders drawings and is not a height; `level` is a storey; `indoor` is in a building. What is said not to be a building is none."""
+        """`layer` orders drawings and is not a height; `level` is a storey; `indoor` is in a building. A feature with
+        `building=no` does not become a building."""
         for tags, reason in (({"building": "terminal", "layer": "-1"}, ""), ({"building__part": "yes", "layer": "-2"}, ""), ({"man_made": "chimney", "layer": "-1"}, ""),
                              ({"building": "terminal", "level": "-1;0;1"}, ""), ({"building": "yes", "level": "-1"}, "below ground"), ({"building": "yes", "level": "-3--1"}, "below ground"),
                              ({"building": "yes", "layer": "-1", "location": "underground"}, "below ground"), ({"building": "yes", "indoor": "room", "level": "1"}, "indoors"),

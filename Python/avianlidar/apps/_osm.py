@@ -10,7 +10,7 @@ import pathlib
 import re
 import tempfile
 import xml.parsers.expat
-from typing import Any, Callable, Collection, Dict, List, Set, Tuple
+from typing import Any, Callable, Collection, Dict, List, Optional, Set, Tuple
 from xml.etree import ElementTree
 
 from osgeo import gdal, ogr, osr
@@ -22,6 +22,7 @@ from ._gdal import accuracy_words, degrees, expect_file, moved, open_file, plain
 from ._json import naming
 
 SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # suffixes with GDAL's drivers
+ID, NO_ID = re.compile(r"-?\d{1,18}"), "without a whole number as id"
 LARGEST = 256 << 20  # greatest size of an extract, bytes
 # control characters, and marks of text direction, which would disorder a line
 CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
@@ -98,13 +99,18 @@ def _check_system(file: pathlib.Path) -> None:
         raise Error(f"{file}: the coordinate system is {name[:80]!r}, expected a system of EPSG, or degrees") from None
 
 
-def _in_order(file: pathlib.Path, out: pathlib.Path, without: Collection[str] = ()) -> pathlib.Path:
+def _in_order(file: pathlib.Path, out: pathlib.Path, left: List[Feature],
+              without: Collection[str] = ()) -> pathlib.Path:
     """Writes a copy of XML of OpenStreetMap with nodes, then ways, then relations, each object once, by id.
-    @param without ids of nodes that are left out"""
+    @param left gets the objects without an id @param without ids of nodes that are left out"""
     found: Dict[str, Dict[int, Tuple[int, bytes]]] = {"node": {}, "way": {}, "relation": {}}
     places: Dict[Tuple[str, str], str] = {}
 
-    def keep(tag: str, number: str, size: int, text: bytes) -> None:
+    def keep(tag: str, number: Optional[str], size: int, text: bytes) -> None:
+        if not ID.fullmatch(number or ""):
+            left.append(Feature(tag, {"id": (number or "")[:40]}, reason=NO_ID))
+            return
+        assert number is not None
         found[tag][int(number)] = max(found[tag].get(int(number), (-1, b"")), (size, text), key=lambda one: one[0])
 
     root = None
@@ -179,11 +185,12 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
             folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
             try:
                 with naming(f"{file}: its nodes, ways and relations"):
-                    source = _in_order(file, folder / "in_order.osm") if _needs_order(file) else file
+                    source = _in_order(file, folder / "in_order.osm", found.left) if _needs_order(file) else file
                     nowhere = _nodes_nowhere(source)
                     if nowhere:
+                        nowhere = {number: words for number, words in nowhere.items() if ID.fullmatch(number)}
                         found.wrong = _of_nodes(source, nowhere)
-                        source = _in_order(source, folder / "placed.osm", nowhere)
+                        source = _in_order(source, folder / "placed.osm", found.left, nowhere)
             except ElementTree.ParseError as error:
                 raise Error(f"{file}: GDAL cannot read it as an extract ({error})") from None
             found.left += [Feature("node", {"id": number, "name": words}, reason=NO_DEGREES)
