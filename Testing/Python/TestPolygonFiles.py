@@ -145,7 +145,7 @@ class PolygonFiles(InFolder):
         found, said = areas_of(poly_data(flat), len(flat))
         np.testing.assert_allclose(found[:6], [0, 0, 12, 6, 12, 8], atol=1e-12)
         self.assertEqual(len(said), 1)
-        self.assertIn("2 polygons (cells 5, 6) cross or overlap themselves: the first polygon's triangles are 100 % larger in area than its outline. What", said[0])
+        self.assertIn("2 polygons (cells 5, 6) cross or overlap themselves: the areas of the outline and of the triangles of the first polygon differ by 100 % of the larger area. What", said[0])
         broken = np.vstack([flat[2][:-1], [np.nan, 0, 0]])
         self.assertIn("has a coordinate that is not finite", tree_of(poly_data([broken]))[1][0])
 
@@ -196,7 +196,7 @@ class PolygonFiles(InFolder):
                 number = ((triangles[..., 0].mean(axis=1) + 50) // 100).astype(int)
                 np.testing.assert_allclose(np.bincount(number, st.areas(triangles)), [1088, 600, 8], rtol=1e-6)
                 self.assertEqual((len(scene.warnings), scene.errors), (1, []))
-                self.assertIn(f"polygon ({what}) crosses or overlaps itself: its triangles are 100 % larger in area than its outline. What", scene.warnings[0])
+                self.assertIn(f"polygon ({what}) crosses or overlaps itself: the areas of the outline and of the triangles of the first polygon differ by 100 % of the larger area. What", scene.warnings[0])
 
     def test_movers_and_media(self):
         """A mover with a bow is named; a medium whose closed surface has keyholes is filled."""

@@ -439,8 +439,7 @@ void LostAreas::Check(const PolygonTriangulation& polygon, std::int64_t name, do
   if (this->Count++ == 0)
   {
     const double triangles = polygon.GetTriangleArea(), outline = polygon.GetOutlineArea();
-    this->Share = figures(100.0 * std::abs(triangles - outline) / std::max(triangles, outline), 2) +
-      (triangles < outline ? " % smaller" : " % larger");
+    this->Share = figures(100.0 * std::abs(triangles - outline) / std::max(triangles, outline), 2);
   }
 }
 
@@ -455,9 +454,8 @@ std::string LostAreas::Sentence(const std::string& kind) const
   const bool all = this->Count <= ListedPolygons;
   return (one ? "polygon " : std::to_string(this->Count) + " polygons ") + "(" + kind +
     (one ? " " : "s ") + this->Names + (all ? "" : ", ...") + ")" +
-    (one ? " crosses or overlaps itself: its"
-         : " cross or overlap themselves: the first polygon's") +
-    " triangles are " + this->Share +
-    " in area than its outline. What an outline surrounds twice is taken as a hole";
+    (one ? " crosses or overlaps itself: " : " cross or overlap themselves: ") +
+    "the areas of the outline and of the triangles of the first polygon differ by " + this->Share +
+    " % of the larger area. What an outline surrounds twice is taken as a hole";
 }
 }

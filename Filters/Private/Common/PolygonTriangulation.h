@@ -104,7 +104,7 @@ public:
 private:
   std::int64_t Count = 0;
   std::string Names; ///< of the first polygons
-  std::string Share; ///< difference of the first polygon's areas
+  std::string Share; ///< difference of the first polygon's areas, %
 };
 }
 
