@@ -288,7 +288,8 @@ def _check_xml(path: pathlib.Path) -> None:
 def _check_size(path) -> None:
     """Refuses a VTK XML file that says that it has far more points than its bytes can hold: VTK ends the process."""
     with open(path, "rb") as stream:
-        points = sum(int(text) for text in re.findall(rb'\bNumberOfPoints\s*=\s*["\']\s*(\d{1,18})', stream.read(1 << 20)))
+        said = re.findall(rb'\bNumberOfPoints\s*=\s*["\']\s*(\d{1,18})', stream.read(1 << 20))
+    points = sum(map(int, said))
     size = os.path.getsize(path)
     if points > MOST_PACKED * size:
         raise ValueError(f"{path}: says that it has {points} points, but has only {size} bytes")

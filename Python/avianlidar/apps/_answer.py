@@ -352,7 +352,7 @@ def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
     together = listed([f"{count} detect {share}" for count, share in zip(counts, more)])
     return {"head": "Weigh a second lidar.", "more": "#sites", "command": "",
             "words": (f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, "
-                      f"{together}. Lidars miss a bird of a heading and a size independently.")}
+                      f"{together}. They see a bird with one heading and size, and otherwise miss it independently.")}
 
 
 def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:

@@ -70,8 +70,8 @@ def read_obstacles(files: Sequence[pathlib.Path], known: Dict[str, Any]) -> Tupl
         if not any(one.tags["file"] == str(file) for one in found.values()):
             reasons = collections.Counter(one.reason for one in left if one.tags["file"] == str(file))
             words = ", ".join(f"{count:,} {reason}" for reason, count in reasons.most_common(3))
-            warnings.warn(f"{file}: none of its obstacles can stand in the scene: {words or 'it holds none'}", RuntimeWarning,
-                          stacklevel=2)
+            warnings.warn(f"{file}: none of its obstacles can stand in the scene: {words or 'it holds none'}",
+                          RuntimeWarning, stacklevel=2)
     return list(found.values()), left
 
 
