@@ -43,8 +43,9 @@ def draw(axes, found: AirportScene, place: Place) -> None:
             continue
         colour, order = PARTS.get(word, PARTS["building"])
         shown[word] = colour
+        line = 0.2 if order < 8 else 2.5 if word in SMALL else 1.0
         axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour,
-                                           linewidths=0.2 if order < 8 else 2.5 if word in SMALL else 1.0, zorder=order))
+                                           linewidths=line, zorder=order))
     axes.plot(*place.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=20)
     axes.legend(handles=[Patch(color=colour, label=word) for word, colour in shown.items()],
                 loc="upper left").set_zorder(30)

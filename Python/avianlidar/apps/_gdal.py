@@ -139,8 +139,8 @@ def moved(shape, to):
 
 
 def valid(shape):
-    """A valid geometry. In areas each ring is made valid alone, because GEOS fills some holes that share edges. An outline
-    inside the area counts as a hole, because GDAL takes some holes for islands."""
+    """A valid geometry. In areas each ring is made valid alone, because GEOS fills some holes that share edges. An
+    outline inside the area counts as a hole, because GDAL takes some holes for islands."""
     if shape.IsValid():
         return shape
     name = shape.GetGeometryName()
