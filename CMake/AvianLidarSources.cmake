@@ -54,6 +54,7 @@ set(scene_sources
   IO/Private/LengthText.cxx
   IO/Private/MeshImport.cxx
   IO/Private/MeshStream.cxx
+  IO/Private/OsmNodes.cxx
   IO/Private/Polygons.cxx
   IO/Private/SceneBuilder.cxx
   IO/Private/SceneDescription.cxx

@@ -4,6 +4,7 @@
 #include "Extrusion.h"
 #include "LengthText.h"
 #include "MeshFormats.h"
+#include "OsmNodes.h"
 #include "RegularFile.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -67,6 +69,7 @@ private:
 struct Counts
 {
   int filtered = 0;
+  Names nodes;
   Names placeless;
   Names surfaces;
   int points = 0;
@@ -313,6 +316,41 @@ bool HasTruthValues(const std::string& file, const FootprintOptions& options)
   }
   return false;
 }
+
+// OpenStreetMap's XML without the nodes that have no place, in memory.
+class OsmFile
+{
+public:
+  OsmFile(const std::string& file, Names& nodes)
+    : Name("/vsimem/avian_lidar_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ".osm")
+  {
+    constexpr std::size_t chunk = std::size_t(1) << 20;
+    const std::unique_ptr<VSILFILE, decltype(&VSIFCloseL)> stream(
+      VSIFOpenL(VirtualName(file).c_str(), "rb"), &VSIFCloseL);
+    for (std::size_t got = chunk; stream && got == chunk;)
+    {
+      const std::size_t begin = this->Text.size();
+      this->Text.resize(begin + chunk);
+      got = VSIFReadL(&this->Text[begin], 1, chunk, stream.get());
+      this->Text.resize(begin + got);
+    }
+    for (const std::string& id : LeaveOutNodes(this->Text))
+    {
+      nodes.Add(id);
+    }
+    VSIFCloseL(VSIFileFromMemBuffer(
+      this->Name.c_str(), reinterpret_cast<GByte*>(this->Text.data()), this->Text.size(), FALSE));
+  }
+  ~OsmFile() { VSIUnlink(this->Name.c_str()); }
+  OsmFile(const OsmFile&) = delete;
+  OsmFile& operator=(const OsmFile&) = delete;
+
+  const std::string& GetName() const { return this->Name; }
+
+private:
+  std::string Name;
+  std::string Text;
+};
 
 OGRLayer& OpenLayer(GDALDataset& data, const std::string& wanted)
 {
@@ -716,6 +754,7 @@ void AddNote(const Object& object, int count, const std::string& what, const std
 void AddNotes(const Object& object, const Counts& counts, std::vector<std::string>& notes)
 {
   const std::pair<const Names&, std::string> named[] = {
+    { counts.nodes, "nodes whose place is not in degrees were left out" },
     { counts.repaired, "footprints with crossing or overlapping rings were repaired" },
     { counts.failed, "features that cannot be made (" + counts.failure + ") were left out" },
     { counts.empty, "features without an area were left out" },
@@ -759,8 +798,12 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   const bool keepsJson =
     ending.find("json") != std::string::npos && HasTruthValues(object.file, object.footprints);
   const char* const whole[] = { "NATIVE_DATA=YES", nullptr };
+  Counts counts;
+  const std::optional<OsmFile> xml =
+    ending == ".osm" ? std::make_optional<OsmFile>(object.file, counts.nodes) : std::nullopt;
   const GDALDatasetUniquePtr data(
-    GDALDataset::Open(VirtualName(object.file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers,
+    GDALDataset::Open((xml ? xml->GetName() : VirtualName(object.file)).c_str(),
+      GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers,
       isTable       ? columns
         : keepsJson ? whole
                     : nullptr));
@@ -768,7 +811,6 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
     "is CityJSON, which is not read: convert it to a mesh or to footprints in GeoJSON");
   failIf(!data, "GDAL cannot read it", quiet.Reason());
   OGRLayer& layer = OpenLayer(*data, object.footprints.layer);
-  Counts counts;
   std::vector<Feature> features = ReadFeatures(layer, object, counts, keepGoing);
   failIf(quiet.Failed() && !IsOfOneFeature(*data, quiet.Reason()), "GDAL cannot read all of it",
     quiet.Reason());

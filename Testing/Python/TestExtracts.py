@@ -173,6 +173,23 @@ class Formats(unittest.TestCase):
         self.assertEqual(left(file), {("building", "no extent"): 1, ("wood", "no extent"): 1})
         ta.run("airport", file, "-o", ta.fresh("back"))
 
+    def test_crossing_rings_are_named(self):
+        """A bow tie is two triangles, and is said to be repaired; a sound building beside it is not."""
+        text = runway(ta.Map()).write("bow.osm").read_text(encoding="utf-8")
+        corners = ((0, 0), (2, 2), (2, 0), (0, 2), (5, 0), (6, 0), (6, 1), (5, 1))
+        nodes = "".join(f'<node id="{900 + i}" lat="{53.603 + 1e-4 * x}" lon="{13.301 + 1e-4 * y}"/>' for i, (x, y) in enumerate(corners))
+        ways = "".join(f'<way id="{910 + k}">' + "".join(f'<nd ref="{900 + 4 * k + i}"/>' for i in (0, 1, 2, 3, 0))
+                       + f'<tag k="building" v="yes"/><tag k="name" v="{name}"/></way>' for k, name in enumerate(("Bow", "Sound")))
+        file = ta.FOLDER / "bow.osm"
+        file.write_text(text.replace("<way", nodes + ways + "<way", 1), encoding="utf-8")
+        folder = ta.fresh("bow")
+        ta.run("airport", file, "-o", folder)
+        readme = (folder / "README.txt").read_text(encoding="utf-8")
+        self.assertIn(f"  1 {extract.CROSSING}: building Bow\n", readme)
+        ground = {one["properties"]["name"]: ogr.CreateGeometryFromJson(json.dumps(one["geometry"])).Area() for one in json.loads(
+            (folder / "airport.geojson").read_text(encoding="utf-8"))["features"] if one["properties"]["kind"] == "building"}
+        self.assertAlmostEqual(ground["Bow"], 2 * ground["Sound"], delta=1e-11)  # square degrees: 2e-8 and 1e-8
+
     def test_rings_of_too_few_corners(self):
         """Alone, as a hole, and beside a good part, in GeoJSON, where nothing closes or checks a ring."""
         whole = ta.FOLDER / "rings.geojson"

@@ -420,6 +420,19 @@ class SceneObjects(unittest.TestCase):
         self.assertAlmostEqual(triangles[:, :, 0].max(), 111.3195, places=3)
         self.assertAlmostEqual(triangles[:, :, 1].max(), 110.5743, places=3)
 
+    def test_nodes_of_a_raw_osm_file_without_a_place(self):
+        """The square loses the corner, and is the triangle of the others. A value may hold what ends a tag."""
+        whole = [(1, "0", "0"), (2, "0", "0.001"), (3, "+1e-3", " 0.001 "), (4, "0.001", "0")]
+        for lat, lon in (("200", "0.001"), ("0.001", "180.1"), ("-90.5", "0.001"), ("nan", "0.001"), ("0,001", "0.001"), ("", "0.001"), ("0x1", "0.001")):
+            for form in ('<node id="{}" note="a>b" lat="{}" lon="{}"/>', "<node\n id='{}' lat = '{}' lon='{}' ><tag k='note' v='>'/></node>"):
+                town = "".join(form.format(i, lat if i == 3 else y, lon if i == 3 else x) for i, y, x in whole)
+                self.save("town.osm", f'<osm version="0.6">{town}<way id="9"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>'
+                                      '<tag k="building" v="yes"/></way></osm>')
+                scene = self.read({"footprints": "town.osm", "layer": "multipolygons", "height": 3}, origin={"latitude": 0, "longitude": 0, "height": 0})
+                self.assertIn("town: 1 nodes whose place is not in degrees were left out: 3", scene.strings("scene_report"))
+                roof = np.unique(np.vstack([one for one in st.corners(scene.blocks[0]) if (one[:, 2] == 3).all()])[:, :2].round(3), axis=0)
+                np.testing.assert_allclose(roof, [(0, 0), (0, 110.574), (111.320, 0)], atol=0.01)
+
     # --- what is said, and what is not
 
     def test_what_is_likely_wrong_is_a_warning(self):

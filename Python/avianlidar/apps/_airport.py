@@ -42,8 +42,8 @@ class Kept:
                         "this one to have all files made again")
         strange = [name for name in WHAT if (folder / name).exists() and name not in self.made]
         if strange:
-            raise Error(f"{folder}: {strange[0]} exists and was not made by this command, as {RECORD} has no checksum of "
-                        "it; choose another folder, or empty this one to have all files made again")
+            raise Error(f"{folder}: {strange[0]} exists and was not made by this command, as {RECORD} has no checksum "
+                        "of it; choose another folder, or empty this one to have all files made again")
 
     def put(self, name: str, make: Callable[[], bytes]) -> pathlib.Path:
         """Makes a file unless a user has edited the file, and returns its path."""
@@ -80,7 +80,8 @@ def _checked_features(file: pathlib.Path, kinds: Sequence[str]) -> List[Dict[str
         row = feature["properties"]
         if row.get("kind") not in kinds:
             raise Error(f"{file}: kind is {str(row.get('kind'))!r}, expected one of {', '.join(kinds)}")
-        what = f"{file}: features[{number}] ({row['kind']} {row.get('id', '')})"
+        called = f"{row['kind']} {row.get('name') or row.get('id') or ''}".strip()
+        what = f"{file}: features[{number}] ({called})"
         for name in ("height", "top", "width", "min_height"):
             value = row.get(name, 1.0)
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not (

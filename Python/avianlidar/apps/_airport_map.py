@@ -107,8 +107,8 @@ class AirportMap:
         said = length_of(self.tags.get("ele"), HIGHEST)
         if said is not None:
             return round(said, 3), "the elevation (ele) of the aerodrome in the map"
-        warnings.warn(f"{self.extract}: there are no --heights, and the map does not say the aerodrome's elevation: level "
-                      "ground at 0 m is assumed. For birds with heights above the sea, give the elevation in metres, "
+        warnings.warn(f"{self.extract}: there are no --heights, and the map does not say the aerodrome's elevation: "
+                      "level ground at 0 m is assumed. For birds with heights above the sea, give the elevation in metres, "
                       "for example --heights 69.5", RuntimeWarning, stacklevel=4)
         return 0.0, "assumed"
 

@@ -13,7 +13,7 @@ from .._scene import Scene
 from .._writers import as_csv
 from ._airport_plans import AirportScene, Place
 from ._candidates import ground_of
-from ._extract import CUT, UNKNOWN
+from ._extract import CROSSING, CUT, UNKNOWN
 from ._features import Feature
 from ._placing import Label, place_labels
 from ._regions import end_names, ends_of
@@ -125,9 +125,12 @@ def _counts_by_kind(found: AirportScene) -> str:
             lines.append(f"  {kind or 'others'}: {there[kind] + sum(out.values()):,} read, {there[kind]:,} in the "
                          f"scene; left out: {reasons_of_kind}")
     named = [f"{name} ({count:,})" for name, count in found.map.unknown.most_common(7) if name != "others"]
+    crossing = [f"{one.kind} {one.name or one.id}".strip() for one in found.chosen if CROSSING in one.tags]
+    some = ", ".join(crossing[:5]) + (", ..." if len(crossing) > 5 else "")
     cut = collections.Counter(one.kind for one in found.chosen if one.tags.get(CUT) == CUT)
     lists = {f"all {outside}": away, "among those of unknown kind": named[:6],
-             f"{CUT}, and shorter than they are": [f"{count:,} {kind}" for kind, count in cut.items()]}
+             f"{CUT}, and shorter than they are": [f"{count:,} {kind}" for kind, count in cut.items()],
+             f"{len(crossing):,} {CROSSING}": [some] * bool(crossing)}
     lines += [f"  {words}: {', '.join(some)}" for words, some in lists.items() if some]
     if cut or any(one.reason == CUT for one in left):
         lines.append("  `osmium extract --strategy smart` makes an extract whose features are whole at the border")

@@ -16,6 +16,7 @@ from ._gdal import corners_of, geometry, is_closed, parts_of, solid, union, vali
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
+CROSSING = "with rings that cross, overlap or share edges, repaired"
 NO_DEGREES, NO_EXTENT = "coordinates that are not degrees (longitude, latitude)", "no extent"
 STRAY = "a hole outside its outline"
 NEAR_ROOF = 3e-5  # greatest distance from the outline of a roof that something stands on, degrees
@@ -189,9 +190,10 @@ class Extract:
             self._leave_unknown(one, form, use)
         reason = self.reasons.find(tags) if kinds else None
         for kind, taken in kinds:
-            one = Feature(kind, tags, shape)
+            one = Feature(kind, {**tags}, shape)
             if not reason and taken == "area":
-                one.shape = solid(shape, functools.partial(self.leave, one, STRAY))
+                one.shape = solid(shape, functools.partial(self.leave, one, STRAY),
+                                  functools.partial(one.tags.setdefault, CROSSING, "yes"))
             elif taken != form:
                 one.shape = _proper(ogr.ForceToMultiLineString(shape), "line")
             if reason or not has_extent(one.shape, corners, taken):

@@ -193,9 +193,10 @@ def is_closed(shape) -> bool:
     return len(points or ()) > 3 and points[0][:2] == points[-1][:2]
 
 
-def solid(shape, stray: Callable[[], Any] = lambda: None):
+def solid(shape, stray: Callable[[], Any] = lambda: None, crossing: Callable[[], Any] = lambda: None):
     """The polygons in a closed line or an area, without rings that enclose nothing and without holes outside the outer
-    rings. May be empty. @param stray is called for each hole outside the outer rings"""
+    rings. May be empty. @param stray is called for each hole outside the outer rings @param crossing is called if other
+    rings cross, overlap or share edges"""
     area = shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
     polygons = [[ring.GetPoints() or () for ring in part] for part in parts_of(area)]
     if all(len(ring) > 3 for rings in polygons for ring in rings) and area.IsValid():
@@ -209,7 +210,10 @@ def solid(shape, stray: Callable[[], Any] = lambda: None):
             if hole.Area() > 0.0 == hole.Intersection(outside).Area():
                 rings.remove(ring)
                 stray()
-    return union([geometry("MultiPolygon", kept)])
+    whole = geometry("MultiPolygon", kept)
+    if not whole.IsValid():
+        crossing()
+    return union([whole])
 
 
 def union(areas: List[Any]):

@@ -215,7 +215,7 @@ class Simulation:
                        f"{least}{f' to {most}' if least != most else ''}{why and '; '}{why}")
 
     def _warn_of_levels(self, flights: Flights, end: float, origin: Any) -> None:
-        """Warns if all birds within the range gate of a level sensor stay above or below its beams, until a time (s)."""
+        """Warns if all birds in the range gate of a level sensor stay above or below its beams, until a time (s)."""
         off, count = flights.within(self.sensor.position, self.sensor.range_gate, end)
         if count == 0 or any(self.sensor.orientation[1:]):
             return
@@ -232,8 +232,8 @@ class Simulation:
                            f"gate of {gate} m {'stays' if count == 1 else 'stay'} {side} the beams "
                            f"({lowest:.1f} to {highest:.1f} deg): the {'lowest' if side == 'above' else 'highest'} "
                            f"elevation is {up[nearest]:.1f} deg, {abs(off[nearest, 2]):.0f} m "
-                           f"{'above' if off[nearest, 2] >= 0.0 else 'below'} the lidar; check height_reference (heights "
-                           f"count from the {flights.level or 'origin'}){words}")
+                           f"{'above' if off[nearest, 2] >= 0.0 else 'below'} the lidar; check height_reference "
+                           f"(heights count from the {flights.level or 'origin'}){words}")
 
     @staticmethod
     def _warn(text: str) -> None:
