@@ -48,6 +48,12 @@ constexpr double ViewShare = 0.9;
 constexpr double BytesPerPlace =
   sizeof(avianlidar::CoverageSight) + 4 * sizeof(float) + sizeof(int) + 1;
 
+/// Laws of all coverages of this process.
+std::shared_ptr<avianlidar::DetectionLaws> SharedLaws()
+{
+  static const auto laws = std::make_shared<avianlidar::DetectionLaws>();
+  return laws;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -56,7 +62,7 @@ struct vtkAvianLidarCoverage::vtkTargets
   vtkAvianLidarBirdTargets Birds;
   std::vector<vtkAvianLidarBirdTargets::Target> Wanted; ///< the image shows the first target
   vtkAvianLidarPlaces Places;
-  avianlidar::CoverageSurvey Survey;
+  avianlidar::CoverageSurvey Survey{ SharedLaws() };
   avianlidar::SurveyRules Rules;
   double TracedPlaces = 0.0;
   bool Warned = false; ///< whether scans differed in the last execution

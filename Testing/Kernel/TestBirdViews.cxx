@@ -29,12 +29,12 @@ TEST(BirdViews, HaveTheMeanAreaOfTheBird)
   {
     const double area = meanEffectiveArea(HerringGull, gliding);
     const TargetViews views = birdViews(HerringGull, gliding, area);
-    EXPECT_NEAR(meanArea(views.from(3.0 * Pi / 180.0)), 1.0, 0.015);
+    EXPECT_NEAR(meanArea(*views.from(3.0 * Pi / 180.0)), 1.0, 0.015);
     // A larger bird shows the same of its area.
     const BirdShape large = HerringGull.scaled(2.0);
     EXPECT_NEAR(meanEffectiveArea(large, gliding), 4.0 * area, 1e-6 * area);
     EXPECT_NEAR(
-      meanArea(birdViews(large, gliding, 4.0 * area).from(0.2)), meanArea(views.from(0.2)), 1e-5);
+      meanArea(*birdViews(large, gliding, 4.0 * area).from(0.2)), meanArea(*views.from(0.2)), 1e-5);
   }
 }
 
@@ -45,7 +45,7 @@ TEST(BirdViews, NothingLiesBeyondTheirReach)
     const TargetViews views = birdViews(HerringGull.scaled(size), false, 1.0);
     for (const double elevation : { -1.57, -0.3, 0.0, 0.4, 1.57 })
     {
-      const TargetPoses poses = views.from(elevation);
+      const TargetPoses poses = *views.from(elevation);
       EXPECT_EQ(poses.size(), BirdHeadings * BirdPhases);
       for (const Silhouette& pose : poses)
       {
@@ -60,7 +60,7 @@ TEST(BirdViews, APoseIsSeenFromTheSideThatItsHeadingSays)
 {
   // A bird that heads to the right of the line of sight has its body across: it reaches as far as
   // from the left, and is the mirror image.
-  const TargetPoses poses = birdViews(HerringGull, true, 1.0).from(0.1);
+  const TargetPoses poses = *birdViews(HerringGull, true, 1.0).from(0.1);
   const std::size_t n = GlidingHeadings;
   for (std::size_t k = 0; k < n; ++k)
   {

@@ -61,7 +61,9 @@ struct Site
   {
     Sensor sensor = this->setup.sensor;
     sensor.receiverAperture *= aperture;
-    return CoverageTarget(sensor, 8.9e-5, area, reflectance, views, this->coverage);
+    return CoverageTarget(sensor, 8.9e-5, area, reflectance,
+      std::make_shared<const DetectionLaw>(sensor, views, this->coverage.lowest(),
+        this->coverage.highest(), this->coverage.mostBeams()));
   }
 
   std::vector<CoverageValue> values(const std::vector<Vec3>& places, const CoverageTarget& target,
@@ -227,7 +229,7 @@ TEST(Coverage, MoreAreaLightOrBeamsSeeNoLess)
   // Nor does it matter whether the probabilities of the poses are asked for; their mean is about
   // the same: one is tabulated.
   const CoverageTarget target = site.target(0.03, 0.3, 1.0, GullViews);
-  std::vector<float> poses(target.law.poses());
+  std::vector<float> poses(target.law->poses());
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     const double p = site.coverage.valueAt(places[i], sights[i], target, poses.data()).probability;

@@ -96,7 +96,9 @@ TEST(CoverageSurvey, IsThatOfEachPlaceAndSumsThoseWithARegion)
 
   const Coverage coverage(site.setup, site.beams, Vec3(0.0, 0.0, 1.0), site.still);
   const CoverageTarget target(site.setup.sensor, site.setup.settings.attenuationCoefficient,
-    Gull.area, Gull.reflectance, *Gull.views, coverage);
+    Gull.area, Gull.reflectance,
+    std::make_shared<const DetectionLaw>(
+      site.setup.sensor, *Gull.views, coverage.lowest(), coverage.highest(), coverage.mostBeams()));
   std::vector<CoverageSight> sights(around.points.size());
   ASSERT_TRUE(coverage.look(around.places.at, sights.size(), 1, {}, sights.data()));
   std::vector<CoverageShares> wanted(8);
@@ -183,6 +185,36 @@ TEST(CoverageSurvey, LooksAgainOnlyWhereSomethingIsAnother)
     origin.z += 1.0;
   }
   EXPECT_EQ(traced(2), 500u);
+}
+
+TEST(CoverageSurvey, SurveysShareLawsOfEqualInputs)
+{
+  // A law of 64 beams and one view takes 1 MB: the sixty-sixth pushes the first out.
+  DetectionLaws laws;
+  const auto views = std::make_shared<const TargetViews>(viewsOf({ Silhouette() }));
+  Sensor sensor = search905();
+  const auto of = [&](double limit)
+  {
+    sensor.lowerEnergyLimit = limit;
+    return laws.get(sensor, views, 0.0, 0.0, DetectionLaw::MostBeams);
+  };
+  const auto first = of(1e-17);
+  EXPECT_EQ(of(1e-17), first);
+  EXPECT_NE(laws.get(sensor, views, 0.0, 4.0, DetectionLaw::MostBeams), first);
+  EXPECT_NE(laws.get(sensor, gullOf(1.0), 0.0, 0.0, 1), first);
+  sensor.receiverModel = search905().receiverModel == ReceiverModel::Photons
+    ? ReceiverModel::EnergyLimits
+    : ReceiverModel::Photons;
+  EXPECT_NE(of(1e-17), first);
+  sensor.receiverModel = search905().receiverModel;
+  EXPECT_EQ(of(1e-17), first);
+  const std::weak_ptr<const DetectionLaw> second = of(2e-17);
+  for (int i = 0; i < 66; ++i)
+  {
+    of(1e-16 * (i + 1));
+  }
+  EXPECT_TRUE(second.expired());
+  EXPECT_EQ(of(66e-16), of(66e-16));
 }
 
 TEST(CoverageSurvey, KeepsNoTargetForAnother)

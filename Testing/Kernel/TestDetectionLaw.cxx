@@ -188,7 +188,7 @@ TEST(DetectionLaw, ElevationsAreInterpolatedPoseByPose)
   TargetViews views = viewsOf(TargetPoses(60));
   views.step = 0.1;
   views.from = [](double elevation)
-  { return TargetPoses(60, Silhouette(elevation > 0.05 ? 2.0 : 0.5)); };
+  { return std::make_shared<const TargetPoses>(60, Silhouette(elevation > 0.05 ? 2.0 : 0.5)); };
   const DetectionLaw law(sensor, views, 0.0, 0.1, 2);
   ASSERT_EQ(law.views(), 2u);
   const BeamAtTarget beam{ 1.0, 0.0, 0.0 };

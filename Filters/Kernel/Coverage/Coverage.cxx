@@ -185,24 +185,15 @@ bool Coverage::look(const PlaceAt& placeAt, std::size_t count, int threads,
 }
 
 CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea, double reflected,
-  const TargetViews& views, const Coverage& coverage)
+  std::shared_ptr<const DetectionLaw> ofSensor)
   : attenuation(air)
   , area(meanArea)
   , reflectance(reflected)
   , electronsPerJoule(sensor.receiverModel == ReceiverModel::Photons
         ? PhotonReceiver(sensor).electronsPerJoule
         : 0.0)
-  , law(sensor, views, coverage.lowest(), coverage.highest(), coverage.mostBeams())
-  , headings(views.headings)
+  , law(std::move(ofSensor))
 {
-  for (std::size_t view = 0; view < this->law.views(); ++view)
-  {
-    std::vector<double>& half = this->halfEnergies.emplace_back();
-    for (int beams = 0; beams <= std::clamp(coverage.mostBeams(), 1, 255); ++beams)
-    {
-      half.push_back(this->law.energyFor(0.5, beams, view));
-    }
-  }
 }
 
 /// A target at a place, and the energies that beams receive from the target.
@@ -219,21 +210,20 @@ struct Coverage::PlacedTarget
 
   double probability(double step, int beams) const
   {
-    return this->target.law.probabilityAt(step, beams, this->elevation);
+    return this->target.law->probabilityAt(step, beams, this->elevation);
   }
 
   /// Sets the results for `beams` beams, each of which contains the whole target.
   void fill(CoverageValue& value, int beams) const
   {
     const double received = std::min(this->energy, this->filling);
-    value.probability = this->target.law.probability(received, beams, this->elevation);
+    value.probability = this->target.law->probability(received, beams, this->elevation);
     value.photoelectrons = this->target.electronsPerJoule * this->energy * this->growth;
     if (beams > 0)
     {
       const std::size_t view = this->elevation.below + (this->elevation.share > 0.5 ? 1 : 0);
-      const std::vector<double>& half = this->target.halfEnergies[view];
-      value.leastArea = this->target.area / this->energy *
-        half[std::min(half.size() - 1, static_cast<std::size_t>(beams))];
+      value.leastArea =
+        this->target.area / this->energy * this->target.law->energyFor(0.5, beams, view);
     }
   }
 };
@@ -297,14 +287,14 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   const Vec3 right =
     glm::dot(across, across) > 0.0 ? unitVector(across) : Vec3(this->Up.y, this->Up.z, this->Up.x);
   return { target, range, direction, right, glm::cross(right, direction), filling / growth,
-    energy / growth, growth, target.law.betweenAt(elevationOf(to, this->Up)) };
+    energy / growth, growth, target.law->betweenAt(elevationOf(to, this->Up)) };
 }
 
 /// True if no number of beams detects the target and no beam that may be near has clutter.
 bool Coverage::isHopeless(const PlacedTarget& at, double step) const
 {
   return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
-    at.target.law.reach() < this->Directions->leastMargin() * at.range &&
+    at.target.law->reach() < this->Directions->leastMargin() * at.range &&
     at.probability(step, this->Most) < Negligible &&
     !this->HasClutter[this->Directions->cellOf(at.direction)];
 }
@@ -314,7 +304,7 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
   // A beam whose border does not cross the target lights all or nothing of it.
   const double halfBeamwidth = this->Shape.width().half;
   const double reach =
-    std::min(angleOf(at.target.law.reach(), at.range), this->Directions->largestMargin());
+    std::min(angleOf(at.target.law->reach(), at.range), this->Directions->largestMargin());
   const double within = reach < halfBeamwidth ? std::cos(halfBeamwidth - reach) : 1.0;
   const double beyond = std::cos(halfBeamwidth + reach);
   NearBeams near;
@@ -324,7 +314,7 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
       const bool isHeld = this->holds(beam, at.direction, cosine);
       // The cone around a beam that is not round is larger than the beam.
       const double away = this->Shape.isRound() ? 0.0 : this->beamAt(at, beam).beyond();
-      const bool isNear = isHeld || (cosine > beyond && away < at.target.law.reach());
+      const bool isNear = isHeld || (cosine > beyond && away < at.target.law->reach());
       if (isNear && !this->isInClutter(beam, at.range))
       {
         near.clear += isHeld;
@@ -341,7 +331,7 @@ bool Coverage::isCertain(const PlacedTarget& at, double step, const NearBeams& n
   const int all = static_cast<int>(near.count);
   return this->Setup.sensor.beamProfile != BeamProfile::Gaussian &&
     (near.whole >= all ||
-      (all <= at.target.law.mostBeams() &&
+      (all <= at.target.law->mostBeams() &&
         at.probability(step, all) - at.probability(step, near.whole) < Negligible));
 }
 
@@ -384,7 +374,7 @@ void Coverage::share(
     beams[b] = this->beamAt(at, near.beams[b].number);
     irradiance += near.beams[b].isHeld ? beams[b].irradiance() : 0.0;
   }
-  value.probability = at.target.law.probability(
+  value.probability = at.target.law->probability(
     at.energy, at.filling, beams.data(), near.count, at.elevation, ofPoses);
   if (near.clear > 0)
   {
@@ -406,13 +396,13 @@ CoverageValue Coverage::valueOf(
   {
     return value;
   }
-  const double step = at.target.law.stepOf(at.energy); // upper bound: parts receive no more
+  const double step = at.target.law->stepOf(at.energy); // upper bound: parts receive no more
   if (sight.beams > 0 && this->isHopeless(at, step))
   {
     at.fill(value, sight.beams);
     if (ofPoses)
     {
-      at.target.law.ofPoses(at.energy, sight.beams, at.elevation, ofPoses);
+      at.target.law->ofPoses(at.energy, sight.beams, at.elevation, ofPoses);
     }
     return value;
   }
@@ -426,7 +416,7 @@ CoverageValue Coverage::valueOf(
     }
     else if (ofPoses)
     {
-      at.target.law.ofPoses(at.energy, near.clear, at.elevation, ofPoses);
+      at.target.law->ofPoses(at.energy, near.clear, at.elevation, ofPoses);
     }
   }
   if (value.probability >= WeakProbability)
@@ -443,7 +433,7 @@ CoverageValue Coverage::valueOf(
 CoverageValue Coverage::valueAt(
   const Vec3& place, const CoverageSight& sight, const CoverageTarget& target, float* ofPoses) const
 {
-  const std::size_t poses = ofPoses ? target.law.poses() : 0;
+  const std::size_t poses = ofPoses ? target.law->poses() : 0;
   std::fill_n(ofPoses, poses, 0.0F);
   if (!sight.isNear || sight.isHidden)
   {
@@ -461,7 +451,7 @@ CoverageValue Coverage::valueAt(
   // interpolated linearly.
   std::vector<double> found(poses, 0.0);
   const CoverageValue value = this->valueOf(at, sight, found.data());
-  const std::size_t headings = target.headings;
+  const std::size_t headings = target.law->headings();
   const double turn = std::atan2(at.direction.x, at.direction.y) / (2.0 * Pi);
   const double shift = (1.0 - turn) * static_cast<double>(headings); // 0.5 to 1.5 turns
   const auto whole = static_cast<std::size_t>(shift);

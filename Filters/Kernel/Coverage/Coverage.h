@@ -88,19 +88,16 @@ struct CoverageTarget
   /// @param attenuation extinction coefficient, 1/m
   /// @param area mean effective area (silhouette weighted by cosine), m^2 @param reflectance
   /// reflectance of the target, 0 to 1
-  /// @param views areas relative to the mean @param coverage coverage whose number and elevations
-  /// of beams are used
+  /// @param law law of the sensor and the target's views, for the number and the elevations of the
+  /// coverage's beams
   CoverageTarget(const Sensor& sensor, double attenuation, double area, double reflectance,
-    const TargetViews& views, const Coverage& coverage);
+    std::shared_ptr<const DetectionLaw> law);
 
   double attenuation;
   double area;
   double reflectance;
   double electronsPerJoule; ///< electrons per joule of light; 0 without a photon receiver
-  DetectionLaw law;
-  /// Energy at which half of the targets are detected, J; by view of the law, then number of beams.
-  std::vector<std::vector<double>> halfEnergies;
-  std::size_t headings; ///< number of headings of the views
+  std::shared_ptr<const DetectionLaw> law;
 };
 
 /// Function that returns the position of a place, m, from the number of the place.

@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace avianlidar
 {
 namespace
 {
 constexpr std::size_t PlacesOfSum = 4096;
-constexpr std::size_t MostTargets = 16;
 
 std::uint64_t hashOfBeams(const std::vector<Vec3>& vectors, double number, std::uint64_t seed)
 {
@@ -84,38 +84,17 @@ bool CoverageSurvey::look(const ScanSetup& setup, const ScanBeams& beams, const 
   return true;
 }
 
-/// Returns a kept target if its inputs are equal, as they often are from site to site.
-const CoverageTarget& CoverageSurvey::targetOf(const SurveyTarget& wanted)
-{
-  const Sensor& sensor = this->Covered->setup().sensor;
-  const double air = this->Covered->setup().attenuation();
-  std::vector<double> of = { air, wanted.reflectance, wanted.area,
-    static_cast<double>(this->Covered->mostBeams()), this->Covered->lowest(),
-    this->Covered->highest(), static_cast<double>(sensor.receiverModel) };
-  for (const SensorField& field : sensorFields())
-  {
-    of.push_back(sensor.*field.member);
-  }
-  const auto found = std::find_if(this->Targets.begin(), this->Targets.end(),
-    [&](const KeptTarget& kept) { return kept.views == wanted.views && kept.numbers == of; });
-  if (found != this->Targets.end())
-  {
-    return *found->target;
-  }
-  auto target = std::make_unique<const CoverageTarget>(
-    sensor, air, wanted.area, wanted.reflectance, *wanted.views, *this->Covered);
-  if (this->Targets.size() >= MostTargets)
-  {
-    this->Targets.erase(this->Targets.begin());
-  }
-  this->Targets.push_back({ std::move(of), wanted.views, std::move(target) });
-  return *this->Targets.back().target;
-}
-
 bool CoverageSurvey::evaluate(const SurveyTarget& wanted, const SurveyRules& rules, int threads,
   const KeepGoing& keepGoing, const EachPlace& each, CoverageShares* sums, const PosesOf& posesOf)
 {
-  const CoverageTarget* target = this->Covered ? &this->targetOf(wanted) : nullptr;
+  std::optional<CoverageTarget> target;
+  if (this->Covered)
+  {
+    const Sensor& sensor = this->Covered->setup().sensor;
+    target.emplace(sensor, this->Covered->setup().attenuation(), wanted.area, wanted.reflectance,
+      this->Laws->get(sensor, wanted.views, this->Covered->lowest(), this->Covered->highest(),
+        this->Covered->mostBeams()));
+  }
   std::vector<std::map<std::size_t, CoverageShares>> ofBlock(
     (this->size() + PlacesOfSum - 1) / PlacesOfSum);
   const auto body = [&](std::size_t begin, std::size_t end, int)

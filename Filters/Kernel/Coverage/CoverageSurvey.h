@@ -3,9 +3,9 @@
  * @file CoverageSurvey.h
  * @brief Coverage of many places: the value of each place, and sums over regions and height bands.
  *
- * Lines of sight, beam directions and detection laws are kept from one target or scan to the next,
- * and are recomputed only if their inputs change. Blocks of places are summed in a fixed order, so
- * the sums are the same for any number of threads.
+ * Lines of sight and beam directions are kept from one target or scan to the next, and are
+ * recomputed only if their inputs change. Surveys may share detection laws. Blocks of places are
+ * summed in a fixed order, so the sums are the same for any number of threads.
  *
  * Source: none.
  * Valid: see Coverage.h.
@@ -15,6 +15,7 @@
 #define avianlidar_CoverageSurvey_h
 
 #include "CoverageShares.h"
+#include "DetectionLaws.h"
 
 #include <cstdint>
 #include <functional>
@@ -61,6 +62,12 @@ std::string checkRules(const SurveyRules& rules);
 class CoverageSurvey
 {
 public:
+  /// @param laws laws that surveys share; each survey may have its own
+  explicit CoverageSurvey(std::shared_ptr<DetectionLaws> laws = std::make_shared<DetectionLaws>())
+    : Laws(std::move(laws))
+  {
+  }
+
   /// Function that receives the result of a place and the probability of a track. Any thread may
   /// call the function.
   using EachPlace =
@@ -92,22 +99,13 @@ public:
   std::size_t traced() const { return this->Traced; }
 
 private:
-  const CoverageTarget& targetOf(const SurveyTarget& wanted);
-
   SurveyPlaces Places;
   std::vector<CoverageSight> Sights;
   std::uint64_t SightsOf = 0;        ///< hash of the inputs of Sights
   std::unique_ptr<Coverage> Covered; ///< null without beams
   std::uint64_t DirectionsOf = 0;    ///< hash of the inputs of the BeamDirections in Covered
   std::size_t Traced = 0;
-  /// A target and its inputs.
-  struct KeptTarget
-  {
-    std::vector<double> numbers;
-    std::shared_ptr<const TargetViews> views;
-    std::unique_ptr<const CoverageTarget> target;
-  };
-  std::vector<KeptTarget> Targets; ///< targets of the last calls
+  std::shared_ptr<DetectionLaws> Laws;
 };
 
 /// Returns, for each echo of a scan without noise, the share of scans with noise in which the echo

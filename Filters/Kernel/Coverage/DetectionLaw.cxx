@@ -119,7 +119,8 @@ TargetViews viewsOf(TargetPoses poses, double reach)
   TargetViews views;
   views.reach = reach;
   views.poses = poses.size();
-  views.from = [all = std::move(poses)](double) { return all; };
+  views.from = [all = std::make_shared<const TargetPoses>(std::move(poses))](double)
+  { return all; };
   return views;
 }
 
@@ -132,6 +133,7 @@ DetectionLaw::DetectionLaw(
   , Deepest(DeepestOfReach * views.reach)
   , Lowest(views.step * std::floor(lowest / views.step))
   , Step(views.step)
+  , Headings(views.headings)
 {
   const PhotonReceiver receiver(sensor);
   const double width = sensor.pulseWidth / sensor.samplingInterval;
@@ -159,7 +161,7 @@ DetectionLaw::DetectionLaw(
   for (int view = 0; view <= std::max(0.0, steps); ++view)
   {
     this->Views.push_back(views.from(this->Lowest + view * this->Step));
-    this->tabulate(this->Views.back());
+    this->tabulate(*this->Views.back());
   }
   for (std::size_t i = 0; i < this->poses(); ++i)
   {
@@ -308,7 +310,7 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
   for (std::size_t i = 0; i < this->poses(); ++i)
   {
     const std::size_t view = this->viewOf(i, at);
-    const Silhouette& shown = this->Views[view][i];
+    const Silhouette& shown = (*this->Views[view])[i];
     std::array<std::uint8_t, MostBeams> crossing;
     std::size_t crossings = 0;
     std::size_t whole = 0;

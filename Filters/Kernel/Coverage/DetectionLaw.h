@@ -40,6 +40,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -47,13 +48,16 @@ namespace avianlidar
 /// Silhouettes of a target in equally likely poses.
 using TargetPoses = std::vector<Silhouette>;
 
+/// Silhouettes that several laws share.
+using SharedPoses = std::shared_ptr<const TargetPoses>;
+
 /// Silhouettes of a target from all directions.
 struct TargetViews
 {
   /// Function that returns the poses at an elevation of the line of sight, rad, positive if the
   /// target is above the sensor. Each elevation has the same poses in the same order. Areas are
   /// relative to one mean over all poses.
-  std::function<TargetPoses(double elevation)> from;
+  std::function<SharedPoses(double elevation)> from;
   double reach = 0.0;    ///< largest distance of any part from the middle, m
   double step = Pi;      ///< step between the elevations that are drawn, rad
   std::size_t poses = 1; ///< number of poses
@@ -113,7 +117,12 @@ public:
   /// of the target.
   double reach() const { return this->Reach; }
 
-  std::size_t poses() const { return this->Views[0].size(); }
+  std::size_t poses() const { return this->Views[0]->size(); }
+
+  std::size_t headings() const { return this->Headings; } ///< value of TargetViews::headings
+
+  /// Memory of the tables, bytes.
+  std::size_t bytes() const { return this->views() * this->Most * Points * sizeof(double); }
 
   /// Largest number of beams in the tables; more beams count as this number.
   int mostBeams() const { return this->Most; }
@@ -153,7 +162,8 @@ private:
   double Deepest;                 ///< standard deviation of the last depth class, m
   double Lowest;                  ///< elevation of the first view, rad
   double Step;                    ///< step from one view to the next, rad
-  std::vector<TargetPoses> Views; ///< poses by elevation
+  std::size_t Headings;           ///< value of headings()
+  std::vector<SharedPoses> Views; ///< poses by elevation
   /// Light that a beam receives from each whole pose at an energy of 1 J; by elevation, pose.
   std::vector<std::vector<Received>> Whole;
   std::vector<double> Thresholds; ///< share above which a pose is taken from the next view, by pose

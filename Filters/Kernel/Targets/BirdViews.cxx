@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace avianlidar
@@ -12,6 +15,13 @@ namespace
 constexpr double ElevationStep = 4.0 * RadiansPerDegree;
 /// Largest elevation of a line of sight, which must not be vertical.
 constexpr double Steepest = 89.9 * RadiansPerDegree;
+
+/// Poses by elevation, rad, that a law still uses.
+struct KeptPoses
+{
+  std::mutex mutex;
+  std::map<double, std::weak_ptr<const TargetPoses>> byElevation;
+};
 }
 
 TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
@@ -32,9 +42,16 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
   views.step = ElevationStep;
   views.poses = phases * headings;
   views.headings = headings;
-  views.from = [=](double elevation)
+  const auto kept = std::make_shared<KeptPoses>();
+  views.from = [=](double elevation) -> SharedPoses
   {
     const double up = std::clamp(elevation, -Steepest, Steepest);
+    const std::lock_guard<std::mutex> lock(kept->mutex);
+    std::weak_ptr<const TargetPoses>& known = kept->byElevation[up];
+    if (const SharedPoses there = known.lock())
+    {
+      return there;
+    }
     TargetPoses poses;
     for (std::size_t phase = 0; phase < phases; ++phase)
     {
@@ -49,7 +66,9 @@ TargetViews birdViews(const BirdShape& shape, bool gliding, double meanArea)
           meanArea);
       }
     }
-    return poses;
+    const auto drawn = std::make_shared<const TargetPoses>(std::move(poses));
+    known = drawn;
+    return drawn;
   };
   return views;
 }

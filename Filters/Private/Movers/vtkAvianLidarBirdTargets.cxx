@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <tuple>
 #include <utility>
 
@@ -14,22 +15,42 @@ namespace
 /// Number of sizes that are kept for one bird, because sites are compared for larger and smaller
 /// birds.
 constexpr std::size_t MostSizes = 8;
+/// Number of birds that are kept, more than the built-in species.
+constexpr std::size_t MostBirds = 64;
+
+/// A species with its targets, which are kept from one filter to the next.
+struct Bird
+{
+  avianlidar::BirdSpecies Species;
+  bool Gliding;
+  double MeanArea; ///< mean area of the species, m^2
+  std::vector<vtkAvianLidarBirdTargets::Target> Sizes;
+};
+
+std::mutex Mutex;
+std::vector<Bird> Known;
 }
 
 //------------------------------------------------------------------------------
-const vtkAvianLidarBirdTargets::Target& vtkAvianLidarBirdTargets::TargetOf(
+vtkAvianLidarBirdTargets::Target vtkAvianLidarBirdTargets::TargetOf(
   const avianlidar::BirdSpecies& species, bool gliding, double area)
 {
   const auto numbersOf = [](const avianlidar::BirdSpecies& s)
   { return std::tie(s.name, s.mass, s.length, s.span, s.wingArea, s.passerine); };
   const avianlidar::BirdShape shape(species);
-  auto bird = std::find_if(this->Known.begin(), this->Known.end(),
+  const std::lock_guard<std::mutex> lock(Mutex);
+  auto bird = std::find_if(Known.begin(), Known.end(),
     [&](const Bird& known)
     { return known.Gliding == gliding && numbersOf(known.Species) == numbersOf(species); });
-  if (bird == this->Known.end())
+  if (bird == Known.end())
   {
-    this->Known.push_back({ species, gliding, avianlidar::meanEffectiveArea(shape, gliding), {} });
-    bird = this->Known.end() - 1;
+    const double meanArea = avianlidar::meanEffectiveArea(shape, gliding);
+    if (Known.size() >= MostBirds)
+    {
+      Known.erase(Known.begin());
+    }
+    Known.push_back({ species, gliding, meanArea, {} });
+    bird = Known.end() - 1;
   }
   const double wanted = area > 0.0 ? area : bird->MeanArea;
   const auto found = std::find_if(bird->Sizes.begin(), bird->Sizes.end(),

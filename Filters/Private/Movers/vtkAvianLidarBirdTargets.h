@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file vtkAvianLidarBirdTargets.h
- * @brief Makes targets of birds: the silhouettes of a species from all sides. Not installed.
+ * @brief Makes targets of birds: the silhouettes of a species from all sides. All filters of a
+ * process share the targets. Not installed.
  */
 #ifndef vtkAvianLidarBirdTargets_h
 #define vtkAvianLidarBirdTargets_h
@@ -31,17 +32,8 @@ public:
     bool gliding, double area, bool all);
 
 private:
-  /// A species with its targets, which are kept from one execution to the next.
-  struct Bird
-  {
-    avianlidar::BirdSpecies Species;
-    bool Gliding;
-    double MeanArea; ///< mean area of the species, m^2
-    std::vector<Target> Sizes;
-  };
-  const Target& TargetOf(const avianlidar::BirdSpecies& species, bool gliding, double area);
+  static Target TargetOf(const avianlidar::BirdSpecies& species, bool gliding, double area);
 
-  std::vector<Bird> Known;
   /// The target without a species.
   Target Point{ "", 0.0,
     std::make_shared<const avianlidar::TargetViews>(
