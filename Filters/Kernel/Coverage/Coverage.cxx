@@ -13,7 +13,7 @@ namespace avianlidar
 {
 namespace
 {
-constexpr std::size_t PlacesOfBlock = 4096;
+constexpr std::size_t PlacesOfBlock = 512;
 /// Largest angles outside a beam at which the beam is found, rad: for far, near and very near
 /// targets.
 constexpr double Margins[] = { 4e-3, 4e-2, 0.4 };

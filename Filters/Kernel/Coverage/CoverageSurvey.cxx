@@ -14,7 +14,7 @@ namespace avianlidar
 {
 namespace
 {
-constexpr std::size_t PlacesOfSum = 4096;
+constexpr std::size_t PlacesOfSum = 512;
 
 std::uint64_t hashOfBeams(const std::vector<Vec3>& vectors, double number, std::uint64_t seed)
 {

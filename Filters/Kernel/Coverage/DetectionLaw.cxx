@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -17,14 +19,12 @@ namespace
 {
 /// Positions in half a range unit over which the mean is taken.
 constexpr int PlacesInHalfUnit = 20;
-/// Positions in a whole range unit where beams light parts: every fifth of the positions in a unit.
-constexpr int PlacesOfParts = 8;
 /// A pose represents similar poses. The logarithm of the energies of similar poses is normally
 /// distributed with this standard deviation. One quantile (k + 0.5)/PlacesOfParts is sampled for
 /// each position.
 constexpr double SpreadOfEnergies = 0.15;
-constexpr double Quantiles[PlacesOfParts] = { 1.5341, -0.4888, -0.8871, -0.1570, 0.1570, 0.8871,
-  0.4888, -1.5341 };
+constexpr double Quantiles[] = { 1.5341, -0.4888, -0.8871, -0.1570, 0.1570, 0.8871, 0.4888,
+  -1.5341 };
 /// Change of a pose's probability below which the lit parts are not computed.
 constexpr double NegligiblePart = 0.004;
 /// Standard deviations at which a normal distribution is cut.
@@ -53,6 +53,26 @@ double between(const double* table, std::size_t count, double at)
   const auto below = static_cast<std::size_t>(at);
   const double share = at - static_cast<double>(below);
   return table[below] + share * (table[below + 1] - table[below]);
+}
+
+template <std::size_t N>
+std::array<double, N> powers(const std::array<double, N>& factors, std::size_t exponent)
+{
+  std::array<double, N> found;
+  found.fill(1.0);
+  for (std::size_t n = 0; n < exponent; ++n)
+  {
+    std::transform(found.begin(), found.end(), factors.begin(), found.begin(), std::multiplies<>());
+  }
+  return found;
+}
+
+/// Probability that beams perceive something, mean over positions. @param missed probabilities that
+/// all beams perceive nothing
+template <std::size_t N>
+double detectedBy(const std::array<double, N>& missed)
+{
+  return 1.0 - std::accumulate(missed.begin(), missed.end(), 0.0) / static_cast<double>(N);
 }
 
 /// Share of an echo that lies before `t`, counted from its middle. @param width of the pulse
@@ -138,22 +158,21 @@ DetectionLaw::DetectionLaw(
   const PhotonReceiver receiver(sensor);
   const double width = sensor.pulseWidth / sensor.samplingInterval;
   const std::size_t classes = this->Deepest > 0.0 ? DepthClasses : 1;
-  const int places = width > 0.0 || this->Deepest > 0.0 ? PlacesInHalfUnit : 1;
-  this->Missed.assign(
-    classes, std::vector<std::vector<double>>(places, std::vector<double>(Points)));
+  this->Places = width > 0.0 || this->Deepest > 0.0 ? PlacesInHalfUnit : 1;
+  this->Missed.reserve(classes * this->Places * Points);
   for (std::size_t depth = 0; depth < classes; ++depth)
   {
     const double deviation = this->Deepest / this->UnitLength * static_cast<double>(depth) /
       static_cast<double>(DepthClasses - 1);
-    for (int place = 0; place < places; ++place)
+    for (int place = 0; place < this->Places; ++place)
     {
       // The two halves of a unit are mirror images.
-      const Shares shares = sharesOf(0.5 * (place + 0.5) / places, width, deviation);
+      const Shares shares = sharesOf(0.5 * (place + 0.5) / this->Places, width, deviation);
       for (std::size_t k = 0; k < Points; ++k)
       {
         const double decade = FirstDecade + static_cast<double>(k) / PointsPerDecade;
-        this->Missed[depth][place][k] =
-          missedBy(sensor, receiver, this->Limit * std::pow(10.0, decade), shares);
+        this->Missed.push_back(
+          missedBy(sensor, receiver, this->Limit * std::pow(10.0, decade), shares));
       }
     }
   }
@@ -176,7 +195,7 @@ void DetectionLaw::tabulate(const TargetPoses& poses)
 {
   std::vector<double>& table = this->Tables.emplace_back(this->Most * Points, 0.0);
   std::vector<Received>& whole = this->Whole.emplace_back();
-  const std::size_t places = this->Missed[0].size();
+  const std::size_t places = this->Places;
   const double weight = 1.0 / static_cast<double>(poses.size() * places);
   for (const Silhouette& pose : poses)
   {
@@ -184,11 +203,11 @@ void DetectionLaw::tabulate(const TargetPoses& poses)
     whole.push_back(this->received(pose.all().area, pose.all()));
     for (std::size_t place = 0; place < places; ++place)
     {
-      const std::vector<double>& missedAt = this->Missed[whole.back().spread][place];
+      const double* const missedAt = &this->Missed[(whole.back().spread * places + place) * Points];
       const double shift = shiftOfPose + this->spreadAt(place % PlacesOfParts);
       for (std::size_t k = 0; k < Points; ++k)
       {
-        const double missed = between(missedAt.data(), Points, static_cast<double>(k) + shift);
+        const double missed = between(missedAt, Points, static_cast<double>(k) + shift);
         double byAll = 1.0;
         for (int beams = 1; beams <= this->Most; ++beams)
         {
@@ -202,6 +221,17 @@ void DetectionLaw::tabulate(const TargetPoses& poses)
   {
     p = std::min(1.0, p); // rounding of the sums may exceed 1
   }
+}
+
+std::size_t DetectionLaw::bytes() const
+{
+  std::size_t sum = (this->views() * this->Most * Points + this->Missed.size()) * sizeof(double);
+  for (const SharedPoses& view : this->Views)
+  {
+    sum += std::accumulate(view->begin(), view->end(), std::size_t(0),
+      [](std::size_t all, const Silhouette& pose) { return all + pose.bytes(); });
+  }
+  return sum;
 }
 
 DetectionLaw::Between DetectionLaw::betweenAt(double elevation) const
@@ -246,47 +276,22 @@ double DetectionLaw::spreadAt(std::size_t quantile) const
   return this->Deepest > 0.0 ? steps * Quantiles[quantile] : 0.0;
 }
 
-/// Probability that a beam perceives nothing.
-/// @param place of the target's middle in its range unit, 0 to 1
-/// @param shift of the energy, in steps
-double DetectionLaw::missed(const Received& beam, double place, double shift) const
+/// Probabilities that a beam perceives nothing.
+DetectionLaw::ByPlace DetectionLaw::missed(const Received& beam) const
 {
-  const auto& tables = this->Missed[beam.spread];
-  const double at = place + beam.depth;
-  const double inUnit = at - std::floor(at);
-  const double half = std::min(inUnit, 1.0 - inUnit);
-  const auto number = static_cast<std::size_t>(2.0 * half * static_cast<double>(tables.size()));
-  return between(tables[std::min(number, tables.size() - 1)].data(), Points, beam.step + shift);
-}
-
-/// Probability that a beam perceives something, mean over positions in the range unit.
-/// @param parts received by beams that light parts @param count of parts
-/// @param all received by each beam that contains the whole target
-/// @param whole number of such beams
-double DetectionLaw::detected(
-  const Received* parts, std::size_t count, const Received& all, std::size_t whole) const
-{
-  double missed = 0.0;
+  static_assert(std::size(Quantiles) == PlacesOfParts);
+  const double* const tables = &this->Missed[beam.spread * this->Places * Points];
+  ByPlace missed;
   for (int place = 0; place < PlacesOfParts; ++place)
   {
-    const double at = (place + 0.5) / PlacesOfParts;
-    const double shift = this->spreadAt(place);
-    double byAll = 1.0;
-    if (whole > 0)
-    {
-      const double byOne = this->missed(all, at, shift);
-      for (std::size_t b = 0; b < whole; ++b)
-      {
-        byAll *= byOne;
-      }
-    }
-    for (std::size_t b = 0; b < count; ++b)
-    {
-      byAll *= this->missed(parts[b], at, shift);
-    }
-    missed += byAll;
+    const double at = (place + 0.5) / PlacesOfParts + beam.depth;
+    const double inUnit = at - std::floor(at);
+    const double half = std::min(inUnit, 1.0 - inUnit);
+    const int number = static_cast<int>(2.0 * half * this->Places);
+    missed[place] = between(&tables[std::min(number, this->Places - 1) * Points], Points,
+      beam.step + this->spreadAt(place));
   }
-  return 1.0 - missed / PlacesOfParts;
+  return missed;
 }
 
 /// Index of the view that a pose is taken from.
@@ -306,6 +311,7 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
   }
   const double stepOfAll = std::log10(energy) * PointsPerDecade;
   const double mostStep = this->stepOf(most);
+  const bool isUniform = used == 0 || beams[0].profile == BeamProfile::Uniform;
   double sum = 0.0;
   for (std::size_t i = 0; i < this->poses(); ++i)
   {
@@ -327,23 +333,29 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
     }
     Received all = this->Whole[view][i];
     all.step = std::min(mostStep, all.step + stepOfAll);
-    double p = whole > 0 ? this->detected(nullptr, 0, all, whole) : 0.0;
+    ByPlace byWhole{}; // used where the target is, or could be, whole in a beam
+    if (whole > 0 || (crossings > 0 && isUniform))
+    {
+      byWhole = this->missed(all);
+    }
+    ByPlace byAll = powers(byWhole, whole);
+    double p = whole > 0 ? detectedBy(byAll) : 0.0;
     // A beam receives no more from a part than from the whole target, which bounds the change.
     if (crossings > 0 &&
-      (beams[0].profile != BeamProfile::Uniform ||
-        this->detected(nullptr, 0, all, whole + crossings) - p > NegligiblePart))
+      (!isUniform || detectedBy(powers(byWhole, whole + crossings)) - p > NegligiblePart))
     {
-      std::array<Received, MostBeams> parts;
-      std::size_t lit = 0;
       for (std::size_t c = 0; c < crossings; ++c)
       {
         const LitPart part = shown.litBy(beams[crossing[c]]);
         if (part.area > 0.0)
         {
-          parts[lit++] = this->received(std::min(most, energy * part.area), part);
+          const ByPlace byPart =
+            this->missed(this->received(std::min(most, energy * part.area), part));
+          std::transform(
+            byAll.begin(), byAll.end(), byPart.begin(), byAll.begin(), std::multiplies<>());
         }
       }
-      p = this->detected(parts.data(), lit, all, whole);
+      p = detectedBy(byAll);
     }
     if (ofPoses)
     {
@@ -361,7 +373,7 @@ void DetectionLaw::ofPoses(double energy, int beams, const Between& at, double* 
     Received all = this->Whole[this->viewOf(i, at)][i];
     all.step += std::log10(energy) * PointsPerDecade;
     const auto whole = static_cast<std::size_t>(std::clamp(beams, 0, this->Most));
-    probabilities[i] = this->detected(nullptr, 0, all, whole);
+    probabilities[i] = detectedBy(powers(this->missed(all), whole));
   }
 }
 

@@ -38,6 +38,7 @@
 
 #include "Silhouette.h"
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -121,8 +122,8 @@ public:
 
   std::size_t headings() const { return this->Headings; } ///< value of TargetViews::headings
 
-  /// Memory of the tables, bytes.
-  std::size_t bytes() const { return this->views() * this->Most * Points * sizeof(double); }
+  /// Memory of tables and silhouettes, bytes.
+  std::size_t bytes() const;
 
   /// Largest number of beams in the tables; more beams count as this number.
   int mostBeams() const { return this->Most; }
@@ -139,6 +140,9 @@ private:
   static constexpr double FirstDecade = -3.0; ///< log10 of the first energy divided by Qlow
   static constexpr std::size_t Decades = 7;
   static constexpr std::size_t Points = Decades * PointsPerDecade + 1;
+  /// Positions in a whole range unit where beams light parts: every fifth of the positions in a
+  /// unit.
+  static constexpr int PlacesOfParts = 8;
 
   /// Light that a beam receives from a pose.
   struct Received
@@ -149,9 +153,9 @@ private:
   };
   Received received(double energy, const LitPart& lit) const;
   double spreadAt(std::size_t quantile) const;
-  double missed(const Received& beam, double place, double shift) const;
-  double detected(
-    const Received* parts, std::size_t count, const Received& all, std::size_t whole) const;
+  /// A probability at each position of the target in a range unit.
+  using ByPlace = std::array<double, PlacesOfParts>;
+  ByPlace missed(const Received& beam) const;
   std::size_t viewOf(std::size_t pose, const Between& at) const;
   void tabulate(const TargetPoses& poses);
 
@@ -168,7 +172,8 @@ private:
   std::vector<std::vector<Received>> Whole;
   std::vector<double> Thresholds; ///< share above which a pose is taken from the next view, by pose
   /// Probability that a beam perceives nothing, by depth class, position in the unit, energy.
-  std::vector<std::vector<std::vector<double>>> Missed;
+  std::vector<double> Missed;
+  int Places;                              ///< number of positions in half a unit
   std::vector<std::vector<double>> Tables; ///< probability by elevation; then beams and energy
 };
 

@@ -22,7 +22,7 @@ namespace avianlidar
 class DetectionLaws
 {
 public:
-  /// Most memory of the tables of kept laws, bytes, without the law that was used last.
+  /// Most memory of kept laws, bytes, without the law that was used last.
   static constexpr std::size_t MostBytes = 64u << 20;
 
   /// Returns the law of these inputs (see DetectionLaw), kept or new.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace avianlidar
 {
@@ -311,6 +312,12 @@ LitPart Silhouette::litByOther(const BeamAtTarget& beam) const
   LitPart lit = partOf(area, depth, square);
   lit.area *= beam.radius * beam.across / (wide.radius * wide.across);
   return lit;
+}
+
+std::size_t Silhouette::bytes() const
+{
+  return std::accumulate(this->Images.begin(), this->Images.end(), std::size_t(0),
+    [](std::size_t sum, const Image& image) { return sum + image.pixels.size() * sizeof(Sums); });
 }
 
 LitPart Silhouette::litBy(const BeamAtTarget& beam) const

@@ -116,6 +116,9 @@ public:
   /// Largest distance of any point from the middle, across the line of sight, m.
   double reach() const { return this->Reach; }
 
+  /// Memory of the images, bytes.
+  std::size_t bytes() const;
+
   /// Returns the part that a beam lights.
   LitPart litBy(const BeamAtTarget& beam) const;
 

@@ -37,9 +37,8 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
          progress: Optional[Callable[[int, int], Any]] = None, array: str = "detection_probability",
          area_factor: float = 1.0, airs: Sequence[Mapping[str, Any]] = ({},), **settings: Any) -> np.ndarray:
     """Results of a lidar at each site for each place: float32, sites x species x places. With several airs: sites x
-    (species x airs) x places, where the airs of a species are neighbours. Clutter is off unless `clutter` is on. One
-    thread is used unless `number_of_threads` is larger, which is faster only for many places; ranks share sites more
-    efficiently.
+    (species x airs) x places, where the airs of a species are neighbours. Clutter is off unless `clutter` is on. The
+    default `number_of_threads` is all cores, and 1 on several ranks, which share the sites.
 
     sensor       a Sensor; its position is changed and restored
     sites        n x 3, m
@@ -63,7 +62,7 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
     if ranks.size > 1 and folder is None:
         raise ValueError("folder is not given: ranks share their results there")
     before = sensor.position
-    cover = Coverage(scene, sensor, places=places, clutter=False, number_of_threads=1)
+    cover = Coverage(scene, sensor, places=places, clutter=False, number_of_threads=int(ranks.size > 1))
     cover.set(**settings)
     with ranks.together():
         try:
@@ -123,7 +122,7 @@ def value_of_same_birds(scene, sensor, sites, places, species: Sequence[str], we
     if not (np.isfinite(weights).all() and np.min(weights, initial=0.0) >= 0):
         raise ValueError(f"weights have {np.min(weights):g} among them, expected finite numbers of at least 0")
     before, value = sensor.position, 0.0
-    cover = Coverage(scene, sensor, clutter=False, number_of_threads=1)
+    cover = Coverage(scene, sensor, clutter=False)
     cover.set(**settings)
     cover.pose_probabilities = True
     try:

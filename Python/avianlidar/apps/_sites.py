@@ -113,7 +113,7 @@ class Sites:
         self.options = plan.plan.get("siting", {})
         self.masts = tuple(self.options.get("masts", (5.0,)))
         self.settings = {name: value for name, value in plan.settings.items()
-                         if name not in ("species", "all_species", "height_limits", "number_of_threads")}
+                         if name not in ("species", "all_species", "height_limits")}
         self.count, self.draws = int(self.options.get("sensors", 3)), int(self.options.get("draws", DRAWS))
         self.airs = plan.year or [Air(plan.air, 1.0, {})]
         if beside and not plan.year:
