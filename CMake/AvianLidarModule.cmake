@@ -37,6 +37,7 @@ vtk_module_link(AvianLidar::AvianLidar
     avianlidarVolumeTree
     avianlidarKernel
     AvianLidar::boost
+    AvianLidar::expat
     AvianLidar::xxhash
     AvianLidar::geos
     AvianLidar::glu

@@ -54,11 +54,12 @@ set(scene_sources
   IO/Private/LengthText.cxx
   IO/Private/MeshImport.cxx
   IO/Private/MeshStream.cxx
-  IO/Private/OsmNodes.cxx
+  IO/Private/OsmXml.cxx
   IO/Private/Polygons.cxx
   IO/Private/SceneBuilder.cxx
   IO/Private/SceneDescription.cxx
   IO/Private/SceneFrame.cxx
+  IO/Private/ShownNames.cxx
   IO/Private/Terrain.cxx
   IO/Private/VirtualFiles.cxx)
 

@@ -428,6 +428,24 @@ private:
   std::map<std::size_t, std::string> Buffers;
   std::string Floats;
 };
+
+/// Returns whether a URI of a file names a place outside the folder of the file that gives it.
+bool IsOutside(const std::string& uri)
+{
+  int depth = 0;
+  const std::string path = PercentDecoded(uri);
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1)
+  {
+    end = path.find_first_of("/\\", begin);
+    const std::string step = path.substr(begin, end - begin);
+    depth += step == ".." ? -1 : step.empty() || step == "." ? 0 : 1;
+    if (depth < 0)
+    {
+      return true;
+    }
+  }
+  return path.find_first_of("/\\") == 0;
+}
 }
 
 std::vector<std::string> CheckGltf(const std::string& text)
@@ -454,6 +472,15 @@ std::vector<std::string> CheckGltf(const std::string& text)
         isRequired ? "requires" : "uses", " the glTF extension ", name,
         ", which is not supported: export it without this extension");
     }
+  }
+  for (const Json& buffer : ListIn(document, "buffers"))
+  {
+    const Json& uri = ValueIn(buffer, "uri");
+    failIf(uri.is_string() && !StartsWith(uri.get_ref<const std::string&>(), "data:") &&
+        IsOutside(uri.get_ref<const std::string&>()),
+      "names the buffer ", uri.dump(),
+      ", which is not in its folder: copy the buffer into the "
+      "folder and correct the name");
   }
   std::vector<std::string> warnings;
   if (ListIn(document, "skins").size() > 0)

@@ -4,10 +4,11 @@
 #include "Extrusion.h"
 #include "LengthText.h"
 #include "MeshFormats.h"
-#include "OsmNodes.h"
+#include "OsmXml.h"
 #include "RegularFile.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"
+#include "ShownNames.h"
 #include "VirtualFiles.h"
 
 #include <cpl_vsi.h>
@@ -48,36 +49,20 @@ struct Feature
   }
 };
 
-// Counts features, and names the first.
-class Names
-{
-public:
-  void Add(const std::string& name)
-  {
-    this->Text += this->Count < Listed ? (this->Count > 0 ? ", " : "") + name : "";
-    ++this->Count;
-  }
-  int GetCount() const { return this->Count; }
-  std::string GetText() const { return this->Text + (this->Count > Listed ? ", ..." : ""); }
-
-private:
-  static constexpr int Listed = 5;
-  int Count = 0;
-  std::string Text;
-};
-
 struct Counts
 {
   int filtered = 0;
-  Names nodes;
+  OsmNotes map;
   Names placeless;
   Names surfaces;
   int points = 0;
   int thinLines = 0;
   Names repaired;
+  Names strayHoles;
   Names empty;
   Names assumedHeights;
   Names minHeights;
+  Names lowest; // features with a least height that is not a length
   int beyond = 0;
   Names failed;
   std::string failure; // error of the first feature that failed
@@ -279,16 +264,22 @@ void RequireRegularNeighbours(const std::filesystem::path& file)
   }
 }
 
-// Returns whether a file begins as CityJSON does. The allowed drivers do not read CityJSON.
-bool IsCityJson(const std::string& file)
+// Returns the first bytes of a file. @param source VirtualName() of the file
+std::string StartOf(const std::string& source)
 {
   std::string start(4096, '\0');
-  VSILFILE* stream = VSIFOpenL(VirtualName(file).c_str(), "rb");
+  VSILFILE* stream = VSIFOpenL(source.c_str(), "rb");
   start.resize(stream ? VSIFReadL(start.data(), 1, start.size(), stream) : 0);
   if (stream)
   {
     VSIFCloseL(stream);
   }
+  return start;
+}
+
+// Returns whether a file begins as CityJSON does. The allowed drivers do not read CityJSON.
+bool IsCityJson(const std::string& start)
+{
   return start.find("\"CityJSON") != std::string::npos;
 }
 
@@ -317,34 +308,39 @@ bool HasTruthValues(const std::string& file, const FootprintOptions& options)
   return false;
 }
 
-// OpenStreetMap's XML without the nodes that have no place, in memory.
+// OpenStreetMap's XML in memory, as GDAL reads it.
 class OsmFile
 {
 public:
-  OsmFile(const std::string& file, Names& nodes)
+  // @param source VirtualName() of the file
+  OsmFile(const std::string& source, const FootprintOptions& options, OsmNotes& notes,
+    const std::function<bool()>& keepGoing)
     : Name("/vsimem/avian_lidar_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ".osm")
   {
     constexpr std::size_t chunk = std::size_t(1) << 20;
     const std::unique_ptr<VSILFILE, decltype(&VSIFCloseL)> stream(
-      VSIFOpenL(VirtualName(file).c_str(), "rb"), &VSIFCloseL);
-    for (std::size_t got = chunk; stream && got == chunk;)
+      VSIFOpenL(source.c_str(), "rb"), &VSIFCloseL);
+    const auto read = [&stream](std::string& piece)
     {
-      const std::size_t begin = this->Text.size();
-      this->Text.resize(begin + chunk);
-      got = VSIFReadL(&this->Text[begin], 1, chunk, stream.get());
-      this->Text.resize(begin + got);
-    }
-    for (const std::string& id : LeaveOutNodes(this->Text))
+      piece.resize(chunk);
+      piece.resize(stream ? VSIFReadL(piece.data(), 1, chunk, stream.get()) : 0);
+      return piece.size() == chunk;
+    };
+    std::optional<std::string> text =
+      InOrder(read, { options.layer, options.filters }, notes, keepGoing);
+    if (text)
     {
-      nodes.Add(id);
+      this->Text = std::move(*text);
+      VSIFCloseL(VSIFileFromMemBuffer(
+        this->Name.c_str(), reinterpret_cast<GByte*>(this->Text.data()), this->Text.size(), FALSE));
     }
-    VSIFCloseL(VSIFileFromMemBuffer(
-      this->Name.c_str(), reinterpret_cast<GByte*>(this->Text.data()), this->Text.size(), FALSE));
   }
   ~OsmFile() { VSIUnlink(this->Name.c_str()); }
   OsmFile(const OsmFile&) = delete;
   OsmFile& operator=(const OsmFile&) = delete;
 
+  // Returns whether the XML is not damaged.
+  bool IsWhole() const { return !this->Text.empty(); }
   const std::string& GetName() const { return this->Name; }
 
 private:
@@ -380,6 +376,12 @@ double HeightUnit(OGRLayer& layer, const std::string& attribute)
   return isObstacleFile && (attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0;
 }
 
+// Returns whether a text says that an object begins at the ground.
+bool IsNone(const std::string& text)
+{
+  return text.find_first_not_of("0. m") == std::string::npos;
+}
+
 Feature ReadFeature(const OGRFeature& source, const OGRGeometry& geometry, const Object& object,
   double unit, std::size_t number, Counts& counts)
 {
@@ -390,7 +392,12 @@ Feature ReadFeature(const OGRFeature& source, const OGRGeometry& geometry, const
   const bool isElevation = options.heightAttribute == "AMSL";
   feature.height =
     ReadLength(feature.heightText, unit, isElevation ? HighestElevation : LargestLength);
-  feature.minHeight = ReadLength(FindNumber(source, options.minHeightAttribute), 1, LargestLength);
+  const std::string under = FindNumber(source, options.minHeightAttribute);
+  feature.minHeight = ReadLength(under, 1, LargestLength);
+  if (!feature.minHeight && !IsNone(under))
+  {
+    counts.lowest.Add(feature.name + " (\"" + under + "\")");
+  }
   feature.width = ReadLength(FindNumber(source, options.widthAttribute), 1, LargestLength);
   // Arcs are replaced by chords.
   const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
@@ -502,8 +509,8 @@ double GetHeight(const Feature& feature, const Object& object, Counts& counts)
   {
     return *feature.height;
   }
-  failIf(!options.height, "feature \"", feature.name, "\" has no usable ", options.heightAttribute,
-    ", and there is no height to assume");
+  failIf(!options.height, "feature \"", ShownName(feature.name), "\" has no usable ",
+    options.heightAttribute, ", and there is no height to assume");
   if (!options.heightAttribute.empty())
   {
     counts.assumedHeights.Add(
@@ -535,14 +542,18 @@ std::vector<Region> GetRegions(
   const Feature& feature, const FootprintOptions& options, bool isMedium, Counts& counts)
 {
   std::vector<Region> regions;
-  bool repaired = false;
-  for (Polygon& valid : MakeValid(feature.polygons, feature.isNested, repaired))
+  Repairs repairs;
+  for (Polygon& valid : MakeValid(feature.polygons, feature.isNested, repairs))
   {
     regions.push_back({ std::move(valid), isMedium });
   }
-  if (repaired)
+  if (repairs.isRepaired)
   {
     counts.repaired.Add(feature.name);
+  }
+  for (int i = 0; i < repairs.strayHoles; ++i)
+  {
+    counts.strayHoles.Add(feature.name);
   }
   const std::optional<double> width = feature.width ? feature.width : options.width;
   for (const Ring& line : isMedium ? std::vector<Ring>() : feature.lines)
@@ -753,15 +764,20 @@ void AddNote(const Object& object, int count, const std::string& what, const std
 
 void AddNotes(const Object& object, const Counts& counts, std::vector<std::string>& notes)
 {
+  for (const auto& [what, names] : counts.map)
+  {
+    AddNote(object, names.GetCount(), what, names.GetText(), notes);
+  }
   const std::pair<const Names&, std::string> named[] = {
-    { counts.nodes, "nodes whose place is not in degrees were left out" },
     { counts.repaired, "footprints with crossing or overlapping rings were repaired" },
+    { counts.strayHoles, "holes outside their outlines were left out" },
     { counts.failed, "features that cannot be made (" + counts.failure + ") were left out" },
     { counts.empty, "features without an area were left out" },
     { counts.placeless, "features without a geometry were left out" },
     { counts.surfaces, "surfaces in space were left out" },
     { counts.assumedHeights,
       "features have no usable height attribute and got the default height" },
+    { counts.lowest, "features have a least height that is not a length, and stand on the ground" },
     { counts.minHeights,
       "features have a least height that is not below their height, and stand on the ground" },
   };
@@ -773,6 +789,18 @@ void AddNotes(const Object& object, const Counts& counts, std::vector<std::strin
   AddNote(object, counts.points, "points were left out", "", notes);
   AddNote(object, counts.beyond,
     "areas and points beyond " + object.footprints.on + " were left out", "", notes);
+}
+
+// Returns what was left out of a map, for an error.
+std::string FaultsOf(const Counts& counts)
+{
+  std::string text;
+  for (const auto& [what, names] : counts.map)
+  {
+    text += names.GetCount() > 0 ? joined("; ", names.GetCount(), " ", what, ": ", names.GetText())
+                                 : std::string();
+  }
+  return text;
 }
 
 // Returns whether an error of GDAL concerns one feature, which then has no geometry.
@@ -799,15 +827,20 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
     ending.find("json") != std::string::npos && HasTruthValues(object.file, object.footprints);
   const char* const whole[] = { "NATIVE_DATA=YES", nullptr };
   Counts counts;
-  const std::optional<OsmFile> xml =
-    ending == ".osm" ? std::make_optional<OsmFile>(object.file, counts.nodes) : std::nullopt;
+  std::string source = VirtualName(object.file);
+  const std::string start = StartOf(source);
+  std::optional<OsmFile> xml;
+  if (IsOsmXml(start))
+  {
+    xml.emplace(source, object.footprints, counts.map, keepGoing);
+    source = xml->IsWhole() ? xml->GetName() : source;
+  }
   const GDALDatasetUniquePtr data(
-    GDALDataset::Open((xml ? xml->GetName() : VirtualName(object.file)).c_str(),
-      GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers,
+    GDALDataset::Open(source.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, Drivers,
       isTable       ? columns
         : keepsJson ? whole
                     : nullptr));
-  failIf(!data && IsCityJson(object.file),
+  failIf(!data && IsCityJson(start),
     "is CityJSON, which is not read: convert it to a mesh or to footprints in GeoJSON");
   failIf(!data, "GDAL cannot read it", quiet.Reason());
   OGRLayer& layer = OpenLayer(*data, object.footprints.layer);
@@ -822,7 +855,8 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   failIf(features.empty(),
     counts.filtered == 0
       ? "holds no features"
-      : "none of its " + std::to_string(counts.filtered) + " features fits the filter");
+      : "none of its " + std::to_string(counts.filtered) + " features fits the filter",
+    FaultsOf(counts));
   const bool isNested = std::string(data->GetDriverName()) == "OSM";
   for (Feature& feature : features)
   {
@@ -835,7 +869,7 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
     "its features are surfaces in space, expected areas, lines or points in plan: give it as a "
     "mesh");
   failIf(parts.empty(), "its features have no area (points, or lines without width)",
-    std::string(terrain ? ", or lie beyond " + object.footprints.on : ""));
+    std::string(terrain ? ", or lie beyond " + object.footprints.on : ""), FaultsOf(counts));
   AddNotes(object, counts, notes);
   return parts;
 }

@@ -52,6 +52,56 @@ Polygon WithoutRepeats(const Polygon& polygon)
   }
   return clean;
 }
+
+double AreaOf(const Geos& geos, const GEOSGeometry* geometry)
+{
+  double area = 0;
+  GEOSArea_r(geos.Get(), geometry, &area);
+  return area;
+}
+
+// Returns whether a hole has an area, and none of it lies in the outline.
+bool IsOutside(const Geos& geos, const GEOSGeometry* hole, const GEOSGeometry* outline)
+{
+  return AreaOf(geos, hole) > 0 &&
+    AreaOf(geos, geos.Own(GEOSIntersection_r(geos.Get(), hole, outline)).get()) == 0;
+}
+
+// Exchanges the first ring with a ring around it, which is the outline.
+void PutOutlineFirst(const Geos& geos, std::vector<Geos::Geometry>& rings)
+{
+  for (Geos::Geometry& ring : rings)
+  {
+    if (AreaOf(geos, ring.get()) > AreaOf(geos, rings[0].get()) &&
+      GEOSContains_r(geos.Get(), ring.get(), rings[0].get()) == 1)
+    {
+      std::swap(ring, rings[0]);
+    }
+  }
+}
+
+// Returns the geometries, equal ones once. Two equal rings would leave nothing of each other.
+std::vector<Geos::Geometry> WithoutEqual(const Geos& geos, std::vector<Geos::Geometry> all)
+{
+  std::vector<Geos::Geometry> kept;
+  std::vector<double> areas;
+  for (Geos::Geometry& one : all)
+  {
+    const double area = AreaOf(geos, one.get());
+    bool isNew = true;
+    for (std::size_t i = 0; i < kept.size() && isNew; ++i)
+    {
+      isNew = std::abs(areas[i] - area) > 1e-9 * area ||
+        GEOSEquals_r(geos.Get(), kept[i].get(), one.get()) != 1;
+    }
+    if (isNew)
+    {
+      kept.push_back(std::move(one));
+      areas.push_back(area);
+    }
+  }
+  return kept;
+}
 }
 
 double Perimeter(const Polygon& polygon)
@@ -90,7 +140,8 @@ double Area(const Polygon& polygon)
   return area;
 }
 
-std::vector<Polygon> MakeValid(const std::vector<Polygon>& polygons, bool areNested, bool& repaired)
+std::vector<Polygon> MakeValid(
+  const std::vector<Polygon>& polygons, bool areNested, Repairs& repairs)
 {
   const Geos geos;
   std::vector<Polygon> clean;
@@ -106,7 +157,7 @@ std::vector<Polygon> MakeValid(const std::vector<Polygon>& polygons, bool areNes
   {
     return clean;
   }
-  repaired = true;
+  repairs.isRepaired = true;
   std::vector<Geos::Geometry> parts;
   for (const Polygon& polygon : clean)
   {
@@ -120,12 +171,19 @@ std::vector<Polygon> MakeValid(const std::vector<Polygon>& polygons, bool areNes
     }
     if (!areNested && rings.size() > 1)
     {
+      PutOutlineFirst(geos, rings);
       const Geos::Geometry shell = std::move(rings[0]);
+      repairs.strayHoles += static_cast<int>(std::count_if(rings.begin() + 1, rings.end(),
+        [&](const Geos::Geometry& hole) { return IsOutside(geos, hole.get(), shell.get()); }));
       const Geos::Geometry holes = geos.Combine(&GEOSUnion_r, rings.begin() + 1, rings.end());
       rings.clear();
-      rings.push_back(geos.Own(GEOSSymDifference_r(geos.Get(), shell.get(), holes.get())));
+      rings.push_back(geos.Own(GEOSDifference_r(geos.Get(), shell.get(), holes.get())));
     }
     std::move(rings.begin(), rings.end(), std::back_inserter(parts));
+  }
+  if (areNested)
+  {
+    parts = WithoutEqual(geos, std::move(parts));
   }
   std::vector<Polygon> valid;
   geos.Collect(

@@ -171,18 +171,24 @@ double SignedArea(const Ring& ring);
 /// Returns the area of the outer ring minus the areas of the holes, m2.
 double Area(const Polygon& polygon);
 
+/// What MakeValid() has repaired.
+struct Repairs
+{
+  bool isRepaired = false; ///< whether more changes than repeated vertices
+  int strayHoles = 0;      ///< number of holes outside their outlines, which are left out
+};
+
 /**
  * Returns valid polygons for the region of `polygons`, without repeated vertices and without
- * crossing or overlapping rings. The result is empty if no region with an area is left. `repaired`
- * becomes true if the repair changes more than repeated vertices.
+ * crossing or overlapping rings. The result is empty if no region with an area is left.
  *
  * Each ring is made valid alone (GEOS MakeValid), because GEOS fills some holes that share edges.
- * A hole outside its polygon becomes a polygon. Polygons that overlap are united.
+ * Polygons that overlap are united. Equal nested polygons count once.
  * @param areNested true if a place inside an even number of all rings is outside: GDAL takes some
  * holes of OpenStreetMap that share edges for islands
  */
 std::vector<Polygon> MakeValid(
-  const std::vector<Polygon>& polygons, bool areNested, bool& repaired);
+  const std::vector<Polygon>& polygons, bool areNested, Repairs& repairs);
 
 /// Returns the region within half of `width`, m, of a line, with flat ends and mitred corners.
 std::vector<Polygon> WidenLine(const Ring& line, double width);

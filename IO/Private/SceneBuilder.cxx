@@ -6,6 +6,7 @@
 #include "MeshImport.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"
+#include "ShownNames.h"
 #include "Vector.h"
 #include "VirtualFiles.h"
 
@@ -423,6 +424,7 @@ void ReportExtents(BuiltScene& built)
   std::vector<std::string> distant;
   for (const Part& part : built.parts)
   {
+    const std::string name = ShownName(part.name);
     Extent extent;
     std::size_t degenerate = 0;
     for (const auto& t : part.mesh.triangles)
@@ -444,21 +446,21 @@ void ReportExtents(BuiltScene& built)
     const std::size_t triangles = part.mesh.triangles.size();
     if (triangles == 0 && part.crowns.empty())
     {
-      built.report.push_back(part.name + ": a medium that is not bounded by triangles");
+      built.report.push_back(name + ": a medium that is not bounded by triangles");
       continue;
     }
     const std::string counts = triangles > 0
       ? joined(triangles, " triangles, ", degenerate, " degenerate")
       : joined(part.crowns.size(), " ellipsoids");
-    built.report.push_back(part.name + ": " + counts + extent.Text());
+    built.report.push_back(name + ": " + counts + extent.Text());
     if (degenerate > 0 && degenerate == triangles)
     {
-      built.warnings.push_back(part.name + ": all " + std::to_string(degenerate) +
+      built.warnings.push_back(name + ": all " + std::to_string(degenerate) +
         " triangles are points or lines, which no ray meets: is the scale wrong?");
     }
     if (extent.IsFar())
     {
-      distant.push_back(part.name);
+      distant.push_back(name);
     }
   }
   if (!distant.empty())
@@ -490,7 +492,7 @@ void ReportLidar(BuiltScene& built)
     below += counts[1];
     if (std::all_of(counts.begin(), counts.end(), [](int count) { return count % 2 == 1; }))
     {
-      container = part.name;
+      container = ShownName(part.name);
     }
   }
   built.report.push_back("lidar: " + std::to_string(above) + " surfaces above, " +

@@ -103,8 +103,8 @@ std::vector<TerrainPiece> Terrain::Cut(const Polygon& polygon) const
       this->Context.Own(GEOSIntersection_r(context, whole.get(), triangle.get())).get(), shared);
     for (const Polygon& part : shared)
     {
-      bool repaired = false;
-      for (Polygon& piece : MakeValid({ part }, false, repaired))
+      Repairs repairs;
+      for (Polygon& piece : MakeValid({ part }, false, repairs))
       {
         if (Area(piece) > std::max(smallestPiece, smallestWidth * Perimeter(piece) / 2))
         {

@@ -129,6 +129,7 @@ class Formats(unittest.TestCase):
                            ("after", relations + "".join(plan.ways + plan.rows)),
                            ("negative", re.sub(r'(id|ref)="', r'\1="-', "".join(plan.rows + plan.ways) + relations)),
                            ("geometry", tagged + in_ways + relations),
+                           ("repeated", "".join(row.replace('version="1"', "") for row in plan.rows + plan.rows[-1:] + plan.ways + plan.ways) + relations + relations),
                            ("deleted", deleted + "".join(plan.rows + plan.ways) + relations)):
             other = ta.FOLDER / f"{name}.osm"
             other.write_text(f'<?xml version="1.0"?><osm version="0.6">{body}</osm>', encoding="utf-8")
@@ -176,19 +177,48 @@ class Formats(unittest.TestCase):
     def test_crossing_rings_are_named(self):
         """A bow tie is two triangles, and is said to be repaired; a sound building beside it is not."""
         text = runway(ta.Map()).write("bow.osm").read_text(encoding="utf-8")
-        corners = ((0, 0), (2, 2), (2, 0), (0, 2), (5, 0), (6, 0), (6, 1), (5, 1))
+        corners = ((0, 0), (2, 2), (2, 0), (0, 2), (5, 0), (6, 0), (6, 1), (5, 1), (8, 0), (10, 2), (10, 0), (8, 2))
         nodes = "".join(f'<node id="{900 + i}" lat="{53.603 + 1e-4 * x}" lon="{13.301 + 1e-4 * y}"/>' for i, (x, y) in enumerate(corners))
         ways = "".join(f'<way id="{910 + k}">' + "".join(f'<nd ref="{900 + 4 * k + i}"/>' for i in (0, 1, 2, 3, 0))
-                       + f'<tag k="building" v="yes"/><tag k="name" v="{name}"/></way>' for k, name in enumerate(("Bow", "Sound")))
+                       + f'<tag k="building" v="yes"/><tag k="name" v="{name}"/>' * bool(name) + "</way>" for k, name in enumerate(("Bow", "Sound", "")))
+        relation = '<relation id="920"><member type="way" ref="912" role="outline"/><tag k="type" v="building"/><tag k="building" v="yes"/><tag k="name" v="Of parts"/></relation>'
         file = ta.FOLDER / "bow.osm"
-        file.write_text(text.replace("<way", nodes + ways + "<way", 1), encoding="utf-8")
+        file.write_text(text.replace("<way", nodes + ways + "<way", 1).replace("</osm>", relation + "</osm>"), encoding="utf-8")
         folder = ta.fresh("bow")
         ta.run("airport", file, "-o", folder)
         readme = (folder / "README.txt").read_text(encoding="utf-8")
-        self.assertIn(f"  1 {extract.CROSSING}: building Bow\n", readme)
+        self.assertRegex(readme, f"  2 {extract.CROSSING}: (building Bow, building Of parts|building Of parts, building Bow)\n")
         ground = {one["properties"]["name"]: ogr.CreateGeometryFromJson(json.dumps(one["geometry"])).Area() for one in json.loads(
             (folder / "airport.geojson").read_text(encoding="utf-8"))["features"] if one["properties"]["kind"] == "building"}
         self.assertAlmostEqual(ground["Bow"], 2 * ground["Sound"], delta=1e-11)  # square degrees: 2e-8 and 1e-8
+
+    def test_rings_given_twice_and_inside_others(self):
+        """Equal rings are one area. A polygon inside another polygon of GeoJSON is no hole. Corners that are not numbers cost one feature."""
+        whole = ta.FOLDER / "equal.geojson"
+        gdal.VectorTranslate(str(whole), str(runway(ta.Map()).write("equal.osm")), layers=["lines"])
+        text = json.loads(whole.read_text(encoding="utf-8"))
+
+        def square(x, size=1e-3):
+            return [[x, 53.603], [x + size, 53.603], [x + size, 53.603 + size], [x, 53.603 + size], [x, 53.603]]
+
+        one, other, inside = square(13.301), square(13.305), [[x + 3e-4, y + 3e-4] for x, y in square(13.301, 4e-4)]
+        for kind, coordinates, area in (("MultiPolygon", [[one], [one]], 1), ("MultiPolygon", [[one], [one[2:] + one[1:3]], [other]], 2), ("MultiPolygon", [[one], [inside]], 1),
+                                        ("MultiPolygon", [[one, inside], [inside]], 1), ("MultiPolygon", [[one, inside], [other]], 1.84), ("Polygon", [[["13.301", 53.6], *one[1:]]], None),
+                                        ("Polygon", [[one[0], "x", *one[1:]]], None), ("Polygon", [[[None, 53.6], *one[1:]]], None)):
+            features = [{"type": "Feature", "properties": {"building": "yes", "name": name}, "geometry": {"type": which, "coordinates": at}}
+                        for name, which, at in (("A", kind, coordinates), ("B", "Polygon", [square(13.31)]))]
+            for order in (features, features[::-1]):
+                whole.write_text(json.dumps({**text, "features": [*order, *text["features"]]}), encoding="utf-8")
+                found = _osm.read_extract(whole, KNOWN)
+                areas = {one.name: round(one.shape.Area() * 1e6, 6) for one in found.features if one.kind == "building"}
+                self.assertEqual(areas, {"A": area, "B": 1.0} if area else {"B": 1.0}, coordinates)
+                self.assertEqual([(one.name, one.reason) for one in found.left], [] if area else [("A", "without a geometry")], coordinates)
+        for second in (None, (0, 1, 2, 3), (2, 3, 0, 1), (3, 2, 1, 0)):
+            plan = runway(ta.Map())
+            corners = [(0, 300), (40, 300), (40, 340), (0, 340)]
+            way = plan.way(corners, True)
+            plan.relation([way, way if second is None else plan.way([corners[i] for i in second], True)], [], building="yes")
+            self.assertEqual([row for row in things(plan.write("equal.osm")) if row[0] == "building"], [("building", "area", "", 1600)], second)
 
     def test_rings_of_too_few_corners(self):
         """Alone, as a hole, and beside a good part, in GeoJSON, where nothing closes or checks a ring."""
@@ -256,12 +286,14 @@ class Formats(unittest.TestCase):
     def test_what_is_not_a_whole_extract(self):
         whole = fenced().write("whole.osm")
         system = b'{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:99999999"}}, "features": []}'
+        link = b'{"type": "FeatureCollection", "crs": {"type": "link", "properties": {"href": "utm.prj", "type": "esriwkt"}}, "features": []}'
         for name, content, words in (
                 ("none.osm", b"", "is empty"), ("page.osm", b"\n<html><body>too many requests</body></html>", "is a web page"),
                 ("own.geojson", b'{"version": 0.6, "generator": "Overpass API", "elements": []}', "is Overpass's own JSON"),
                 ("wide.osm", "<osm/>".encode("utf-16"), "is in UTF-16"), ("half.osm", whole.read_bytes()[:6000], "cannot be read to its end"),
                 ("nodes.osm", re.sub(b'lat="53[.]', b'lat="53,', whole.read_bytes()), "holds no runway.*; node 1: lat is '53,"),
                 ("system.geojson", system, "the coordinate system is 'EPSG:99999999'"),
+                ("link.geojson", link, "the coordinate system is 'a link to utm.prj'"),
                 ("half.osm.pbf", ta.pbf(whole).read_bytes()[:-200], "cannot be read to its end")):
             file = ta.FOLDER / name
             file.write_bytes(content)
@@ -530,7 +562,7 @@ class LeftOut(unittest.TestCase):
         plan.area((200, 300), (240, 340), building="yes")
         for x, tags in ((10, {"man_made": "mast", "height": "6"}), (30, {"man_made": "antenna", "height": "6"}), (5, {"man_made": "mast", "height": "26", "min_height": "20"}),
                         (220, {"man_made": "mast"}), (-0.5, {"man_made": "mast", "height": "5"}), (100, {"man_made": "mast", "height": "5"}), (12, {"natural": "tree", "height": "4"})):
-            plan.point(x, 320, location="rooftop" if x == 30 else "roof", name=str(x), **tags)
+            plan.point(x, 320, location={30: "rooftop", 10: "Roof", 5: "outdoor; roof", 220: "roof;outdoor"}.get(x, "on_roof"), name=str(x), **tags)
         plan.area((2, 302), (8, 308), power="generator", height="2", location="roof", name="solar")
         x = np.arange(-3200, 3201, 50.0)
         dem = ta.write_heights("roofs.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
@@ -801,7 +833,9 @@ class Published(unittest.TestCase):
             self.assertIn(("tower", "point", 0, 9), found, one)
             if isinstance(expected, float):
                 self.assertEqual(out, [], one)
-                shape = obstacles.read_obstacles([ta.FOLDER / "one.xml"], KNOWN)[0][0].shape
+                one_found = obstacles.read_obstacles([ta.FOLDER / "one.xml"], KNOWN)[0][0]
+                self.assertEqual(extract.CROSSING in one_found.tags, expected == metres / 2, one)
+                shape = one_found.shape
                 shape.Transform(to_local())
                 self.assertAlmostEqual(shape.Area(), expected, delta=0.02 * expected, msg=one)
             else:
@@ -822,7 +856,7 @@ class Areas(unittest.TestCase):
             islands = turn % 3 == 0
             text = "MULTIPOLYGON (" + ", ".join([f"{rings[0]})", *(f"({ring})" for ring in rings[1:])]) + ")" if islands else f"POLYGON {', '.join(rings)})"
             shape = ogr.CreateGeometryFromWkt(text)
-            self.assertAlmostEqual(_gdal.valid(shape).Area(), side * side - len(cells) if cells else side * side, delta=1e-9, msg=text)
+            self.assertAlmostEqual(_gdal.valid(shape, nested=islands).Area(), side * side - len(cells) if cells else side * side, delta=1e-9, msg=text)
         apart = ogr.CreateGeometryFromWkt("MULTIPOLYGON (((0 0, 4 0, 4 4, 0 4, 0 0)), ((3 3, 6 3, 6 6, 3 6, 3 3)))")
         self.assertAlmostEqual(_gdal.valid(apart).Area(), 16 + 9 - 1, delta=1e-9)
         self.assertEqual(_gdal.valid(ogr.CreateGeometryFromWkt("LINESTRING (0 0, 1 1)")).Length(), math.sqrt(2.0))

@@ -346,6 +346,20 @@ class MeshFiles(InFolder):
         (self.folder / "ein Puffer.bin").unlink()
         self.assert_refused(self.read(name), "names the file ein%20Puffer.bin, which cannot be read")
 
+    def test_gltf_buffers_of_other_folders(self):
+        """Each name leads to a whole buffer. A name that passes through a folder inside is read."""
+        corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="f4")
+        name = self.gltf_of([corners], [0, 1, 2], [{"mesh": 0}], "file")
+        text = (self.folder / name).read_text(encoding="utf-8").replace('"KHR_mesh_quantization", "EXT_mesh_gpu_instancing"', "")
+        (self.folder / "a").mkdir()
+        for step in ("../", "%2e%2e/", "..%2F", "./a/../../", str(self.folder.parent) + "/", "..\\\\"):
+            uri = f"{step}{self.folder.name}/ein%20Puffer.bin"
+            (self.folder / name).write_text(text.replace("ein%20Puffer.bin", uri), encoding="utf-8")
+            self.assert_refused(self.read(name), f'names the buffer "{uri}", which is not in its folder')
+        for step in ("", "./", "a/../"):
+            (self.folder / name).write_text(text.replace("ein%20Puffer.bin", f"{step}ein%20Puffer.bin"), encoding="utf-8")
+            self.assertEqual(len(self.places(self.read(name, up_axis="z"))), 3, step)
+
     def test_off_faces_of_many_corners(self):
         """A disc of n corners in one face has the area n / 2 sin(2 pi / n)."""
         for corners in (9, 10, 40, 1000):

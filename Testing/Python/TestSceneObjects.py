@@ -346,10 +346,10 @@ class SceneObjects(unittest.TestCase):
             self.assertAlmostEqual(st.volume(st.corners(scene.blocks[0])) / (area(rings[0]) - sum(map(area, rings[1:]))), 1, places=6, msg=case)
 
     def test_polygons_that_overlap(self):
-        """Polygons of a feature are united, holes too; a hole outside its polygon is a polygon."""
+        """Polygons of a feature are united, holes too; a hole outside its polygon is left out."""
         square = np.array(self.SQUARE)
         for rings, area in (([[square], [square + [5, 0]]], 250), ([[square], [square + [20, 0]]], 400), ([[square, self.HOLE, self.HOLE]], 140),
-                            ([[square, self.HOLE, np.array(self.HOLE) + [2, 0]]], 128), ([[square, square + [30, 0]]], 400),
+                            ([[square, self.HOLE, np.array(self.HOLE) + [2, 0]]], 128), ([[square, self.HOLE, square + [30, 0]]], 140), ([[self.HOLE, square]], 140), ([[square], [square]], 200),
                             ([[[*square[:4], [-9, 10], *square[3:]], self.HOLE], [square + [30, 0]]], 340),
                             ([[[*square[:-1], [0, 0], [1, 1], [1, 2], [2, 2], [2, 1], [1, 1], [0, 0]], self.HOLE]], 139)):
             coordinates = [[np.array(ring).tolist() for ring in polygon] for polygon in rings]
@@ -358,6 +358,8 @@ class SceneObjects(unittest.TestCase):
             self.assertAlmostEqual(st.volume(triangles), area, places=9)
             self.assertTrue(st.is_closed(triangles))
             self.assertIn("overlap: 1 footprints with crossing or overlapping rings were repaired: A", scene.strings("scene_report"))
+            is_stray = len(coordinates[0]) == 3 and coordinates[0][2][0] == [30, 0]
+            self.assertEqual("overlap: 1 holes outside their outlines were left out: A" in scene.strings("scene_report"), is_stray)
 
     def test_undersides(self):
         """A canopy from 6 to 8 m, one whose underside is above its top."""
@@ -365,6 +367,9 @@ class SceneObjects(unittest.TestCase):
                           ("Polygon", [self.SQUARE], {"h": 5}), height_attribute="h", height=3, min_height_attribute="u", base=0.5, features="separate")
         self.assertEqual([(z.min(), z.max()) for z in (st.corners(block)[:, :, 2] for block in scene.blocks)], [(6.5, 8.5), (0.5, 5.5), (0.5, 5.5)])
         self.assertIn("1 features have a least height that is not below their height", " ".join(scene.strings("scene_report")))
+        for under, is_wrong in (("abc", True), ("-5", True), ("0", False), ("0.0 m", False), ("", False), (0, False)):
+            scene = self.plan("roofs.geojson", ("Polygon", [self.SQUARE], {"u": under, "name": "A"}), height=3, min_height_attribute="u")
+            self.assertEqual(f'roofs: 1 features have a least height that is not a length, and stand on the ground: A ("{under}")' in scene.strings("scene_report"), is_wrong)
 
     def test_features_without_places(self):
         """What is left out is counted, and an error says what is wrong, whether there is a filter or not."""
@@ -432,6 +437,95 @@ class SceneObjects(unittest.TestCase):
                 self.assertIn("town: 1 nodes whose place is not in degrees were left out: 3", scene.strings("scene_report"))
                 roof = np.unique(np.vstack([one for one in st.corners(scene.blocks[0]) if (one[:, 2] == 3).all()])[:, :2].round(3), axis=0)
                 np.testing.assert_allclose(roof, [(0, 0), (0, 110.574), (111.320, 0)], atol=0.01)
+
+    def osm(self, body, name="town.osm", **keys):
+        """A scene of the buildings of OpenStreetMap's XML, one part each, 3 m high."""
+        self.save(name, body if "<osm" in body else f'<?xml version="1.0"?><osm version="0.6">{body}</osm>')
+        return {"version": 1, "origin": {"latitude": 53.6, "longitude": 13.3, "height": 0}, "objects": [
+            {"name": "town", "footprints": name, "layer": "multipolygons", "filter": {"building": "*"}, "height": 3, "features": "separate", "material": "Wall", **keys}]}
+
+    def volumes(self, body, *notes, **keys):
+        """The buildings' volumes as shares of one whole square, and whether the notes are there, and no more."""
+        scene = st.Read(st.write_scene(self.folder, "town", self.osm(body, **keys)))
+        self.assertEqual(scene.errors, [], body)
+        self.assertEqual([one for one in scene.strings("scene_report") if "triangles" not in one], [f"town: {note}" for note in notes], body)
+        return [round(st.volume(st.corners(block)) / 22104, 2) for block in scene.blocks]
+
+    @staticmethod
+    def way(number, *nodes, more=""):
+        return f'<way id="{number}">' + "".join(f'<nd ref="{one}"/>' for one in nodes) + more + "</way>"
+
+    @staticmethod
+    def area(number, *members, more='<tag k="building" v="yes"/>'):
+        return (f'<relation id="{number}">' + "".join(f'<member type="way" ref="{ref}" role="{role}"/>' for ref, role in members)
+                + f'<tag k="type" v="multipolygon"/>{more}</relation>')
+
+    # Squares of a thousandth of a degree: one of nodes 1 to 4, its courtyard (5 to 8) with 0.36 of the area, and another building.
+    NODES = "".join(f'<node id="{i}" lat="{53.6 + 1e-3 * y:.4f}" lon="{13.3 + 1e-3 * x:.4f}"/>' for i, x, y in (
+        (1, 0, 0), (2, 1, 0), (3, 1, 1), (4, 0, 1), (5, 0.2, 0.2), (6, 0.8, 0.2), (7, 0.8, 0.8), (8, 0.2, 0.8), (11, 5, 0), (12, 6, 0), (13, 6, 1), (14, 5, 1)))
+    BUILDING = '<tag k="building" v="yes"/>'
+
+    def test_incomplete_areas_of_osm_are_named(self):
+        """As an extract's border leaves them, in every order, and what fits no filter is not named."""
+        ring, court, other = self.way(1, 1, 2, 3, 4, 1), self.way(2, 5, 6, 7, 8, 5), self.way(19, 11, 12, 13, 14, 11, more=self.BUILDING)
+        half = self.way(1, 1, 2, 3), self.way(3, 3, 4, 1)
+        with_court = self.area(200, (1, "outer"), (2, "inner"))
+        for body, expected, *notes in (
+                (ring + court + with_court, [0.64, 1]), (with_court + court + ring, [0.64, 1]),
+                (ring + with_court, [1, 1], "1 relations lack courtyards whose ways are missing or do not close: relation 200"),
+                (ring + self.way(2, 5, 6, 7) + with_court, [1, 1], "1 relations lack courtyards whose ways are missing or do not close: relation 200"),
+                (court + with_court, [1], "1 relations with missing ways were left out: relation 200"),
+                (half[0] + self.area(200, (1, "outer"), (3, "outer")), [1], "1 relations with missing ways were left out: relation 200"),
+                ("".join(half) + self.area(200, (1, "outer"), (3, "outer")), [1, 1]),
+                ('<node id="33" lat="53.601" lon="13.301"/>' + half[0] + self.way(3, 33, 4, 1) + self.area(200, (1, "outer"), (3, "outer")), [1, 1]),
+                (half[0] + self.area(200, (1, "outer")), [1], "1 relations whose outer ways do not close were left out: relation 200"),
+                (self.area(200), [1], "1 relations without ways were left out: relation 200"),
+                (self.area(200, more='<tag k="natural" v="wood"/>') + half[0].replace("</way>", '<tag k="highway" v="path"/></way>'), [1]),
+                (self.way(1, 1, 2, 3, 4, more=self.BUILDING), [1], "1 ways that are not closed were left out: way 1"),
+                (self.way(1, 1, 2, 3, 77, 1, more=self.BUILDING), [0.5, 1], "1 ways and relations lack corners whose nodes are missing: way 1"),
+                (self.way(1, 77, 1, 2, 3, 77, more=self.BUILDING), [0.5, 1], "1 ways and relations lack corners whose nodes are missing: way 1"),
+                (self.way(1, 1, 2, 77, 78, 1, more=self.BUILDING), [1], "1 ways of which too few nodes are in the file were left out: way 1"),
+                (ring + self.area(200, (1, "outer"), (1, "outer")), [1, 1]), (ring + self.way(3, 3, 4, 1, 2, 3) + self.area(200, (1, "outer"), (3, "outer")), [1, 1],
+                                                                              "1 footprints with crossing or overlapping rings were repaired: town N")):
+            for text in (self.NODES + body + other, body + other + self.NODES):
+                found = self.volumes(text, *(note.replace("N", "1" if text.startswith("<node") else "1") for note in notes))
+                self.assertEqual(sorted(found), sorted(expected), body)
+
+    def test_repeated_and_deleted_objects_of_osm(self):
+        ring, other = self.way(1, 1, 2, 3, 4, 1, more=self.BUILDING), self.way(19, 11, 12, 13, 14, 11, more=self.BUILDING)
+        tagged = '<node id="1" lat="53.6" lon="13.3"><tag k="entrance" v="yes"/></node>'
+        for body in (self.NODES + self.NODES + ring + ring, self.NODES + self.way(1, 1, 2) + ring + self.way(1), tagged + self.NODES + ring, self.NODES + ring + tagged):
+            self.assertEqual(self.volumes(body), [1])
+        for mark in ("action='delete'", 'visible="false"'):
+            self.assertEqual(self.volumes(self.NODES + ring + other.replace("<way", f"<way {mark}") + f'<node id="1" {mark} lat="0" lon="0"/>'), [1])
+
+    def test_marks_of_xml_in_osm(self):
+        ring = self.way(1, 1, 2, 3, 4, 1, more='<tag k="building" v="a &lt; &quot;b&quot;&#10;&amp; c"/>')
+        wrong = '<node id="1" lat="x" lon="1">'
+        for body in (f"<!-- it's {wrong} -->" + self.NODES, f"<note><![CDATA[{wrong}]]></note><?none {wrong}?>" + self.NODES,
+                     self.NODES.replace('lat="53.6', 'lat="5&#51;.6'), self.NODES.replace("/>", "><!-- </node> '--></node >")):
+            self.assertEqual(self.volumes(body + ring, filter={"building": 'a < "b"*& c'}), [1])
+        corner = self.NODES.replace('id="3" lat="53', 'id="3" lat="{}53') + ring
+        for name, sign in (("map.xml", "2"), ("x.osm.xml", "+-"), ("map", "2")):
+            for head in ("", "\ufeff<?xml version='1.0' encoding='UTF-8'?>\n<!-- a map -->\n"):
+                text = f'{head}<osm version="0.6">{corner.format(sign)}</osm>'
+                self.assertEqual(self.volumes(text, "1 nodes whose place is not in degrees were left out: 3", "1 ways and relations lack corners whose nodes are missing: way 1",
+                                              name=name), [0.5])
+        nowhere = st.write_scene(self.folder, "town", self.osm(self.NODES.replace('lat="53', 'lat="253') + ring))
+        self.assertIn("holds no features; 12 nodes whose place is not in degrees were left out: 1, 2, 3, 4, 5, ...; 1 ways of which too few", " ".join(st.Read(nowhere).errors))
+        self.assertEqual(self.volumes(self.NODES + ring + '<node id="1&#10;x" lat="1" lon="1"/>', '1 objects without a whole number as id were left out: node "1\\x0ax"'), [1])
+        cut = st.write_scene(self.folder, "town", self.osm('<osm version="0.6">' + self.NODES + ring))
+        self.assertIn("GDAL cannot read all of it: ", " ".join(st.Read(cut).errors))
+
+    def test_long_names_and_line_breaks(self):
+        square = [self.SQUARE]
+        scene = self.plan("names.geojson", ("Polygon", square, {"name": "\u00e4" * 5000, "h": "x\ny"}), ("Polygon", square, {"name": "a\navianlidar: error: fake"}),
+                          features="separate", height_attribute="h", height=3)
+        report = scene.strings("scene_report")
+        self.assertLess(max(map(len, report)), 300)
+        self.assertFalse([one for one in report if "\n" in one])
+        self.assertIn("\u00e4" * 40 + "...: 12 triangles", " ".join(report))
+        self.assertIn("a\\x0aavianlidar: error: fake: 12 triangles", " ".join(report))
 
     # --- what is said, and what is not
 

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import dataclasses
 import datetime
+import functools
 import math
 import pathlib
 import re
-from typing import Any, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 from xml.etree import ElementTree
 
 from osgeo import ogr, osr
 
 from .._pipeline import Error
-from ._extract import NO_DEGREES, NO_EXTENT, are_degrees, has_extent
+from ._extract import CROSSING, NO_DEGREES, NO_EXTENT, are_degrees, has_extent
 from ._features import DECIMAL, form_of
 from ._gdal import corners_of, degrees, plain, quiet, solid
 
@@ -197,7 +198,8 @@ def _part(part, whole, known: Dict[str, str], note: str, is_single: bool, metres
             tags["note"] += ", m assumed" if is_used and not one.get("uom") else ""
             tags[column] = f"{value:.3f}"
     try:
-        return tags, _shape(place) if place is not None else None, reason
+        crosses = functools.partial(tags.setdefault, CROSSING, "yes")
+        return tags, _shape(place, crosses) if place is not None else None, reason
     except ValueError as error:
         return tags, None, reason or str(error)
 
@@ -261,8 +263,9 @@ def _close_rings(place) -> None:
         corners.text = " ".join(word for at in found for word in at)
 
 
-def _shape(place):
-    """The place of a part (ogr, degrees), or None. `ValueError` has the reason why the part is left out."""
+def _shape(place, crosses: Callable[[], Any]):
+    """The place of a part (ogr, degrees), or None. `ValueError` has the reason why the part is left out.
+    @param crosses is called for rings that cross"""
     srs = next((one.get("srsName") for one in place.iter() if one.get("srsName")), "urn:ogc:def:crs:EPSG::4326")
     words = " ".join(one.text or "" for one in place.iter() if _local(one) in ("pos", "posList", "coordinates"))
     if not words.strip():
@@ -283,7 +286,7 @@ def _shape(place):
     if not are_degrees(corners):
         raise ValueError(NO_DEGREES)
     with quiet():
-        shape = solid(shape) if form == "area" else shape
+        shape = solid(shape, crossing=crosses) if form == "area" else shape
     if not has_extent(shape, corners, form):
         raise ValueError(NO_EXTENT)
     return shape

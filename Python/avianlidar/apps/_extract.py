@@ -85,8 +85,9 @@ def _as_osm(tags: Dict[str, str], known: Dict[str, Any]) -> Dict[str, str]:
 class Extract:
     """What an extract holds. It takes features one by one."""
 
-    def __init__(self, known: Dict[str, Any]):
-        self.known = known
+    def __init__(self, known: Dict[str, Any], are_nested: bool = False):
+        """@param are_nested whether outlines inside an area are holes, as `valid` says"""
+        self.known, self.are_nested = known, are_nested
         kinds = known["kinds"].items()
         self.kinds = {form: Table((kind, tags) for kind, rule in kinds if form in rule["from"] for tags in rule["tags"])
                       for form in ("point", "line", "area")}
@@ -141,7 +142,9 @@ class Extract:
         tags, form = _as_osm(tags, self.known), form_of(shape)
         if tags.get("type") == "building" and "building" in tags and not form and shape is not None:
             # a relation of outlines and parts
-            areas = [solid(part) for part in parts_of(shape) if form_of(part) == "area" or is_closed(part)]
+            crosses = functools.partial(tags.setdefault, CROSSING, "yes")
+            areas = [solid(part, crossing=crosses, nested=self.are_nested) for part in parts_of(shape)
+                     if form_of(part) == "area" or is_closed(part)]
             shape, form = union(areas), "area"
         shape = _proper(shape, form) if form else shape
         one = Feature("", tags, shape)
@@ -175,12 +178,12 @@ class Extract:
             use = "threshold"
             self.thresholds.append(one)
         elif tags.get("aeroway") == "aerodrome" and "heliport" not in map(tags.get, ("aerodrome:type", "aerodrome")):
-            outline = solid(shape) if closed else shape
+            outline = solid(shape, nested=self.are_nested) if closed else shape
             if not outline.IsEmpty():
                 use = "aerodrome"
                 self.aerodromes.append(Feature("", tags, outline))
         if is_coast and form != "point":
-            shape = solid(shape) if form == "area" else shape
+            shape = solid(shape, nested=self.are_nested) if form == "area" else shape
             if has_extent(shape, corners, form):
                 self._keep(Feature(COAST, tags, shape), form, corners)
             else:
@@ -193,7 +196,7 @@ class Extract:
             one = Feature(kind, {**tags}, shape)
             if not reason and taken == "area":
                 one.shape = solid(shape, functools.partial(self.leave, one, STRAY),
-                                  functools.partial(one.tags.setdefault, CROSSING, "yes"))
+                                  functools.partial(one.tags.setdefault, CROSSING, "yes"), self.are_nested)
             elif taken != form:
                 one.shape = _proper(ogr.ForceToMultiLineString(shape), "line")
             if reason or not has_extent(one.shape, corners, taken):
@@ -295,13 +298,20 @@ def without_parts(features: List[Feature], known: Dict[str, Any]) -> Tuple[List[
     return kept, drawn
 
 
+def _find_in_lists(table: Table, tags: Dict[str, str]) -> Optional[str]:
+    """The name in a table of small words for tags with lists of words, as "Roof;outdoor"."""
+    found = (table.find({name: word.strip().replace(" ", "_")}) for name in table.rows
+             for word in re.split("[;,]", tags.get(name, "").lower()))
+    return next((name for name in found if name), None)
+
+
 def on_roofs(features: List[Feature], known: Dict[str, Any],
              base: Callable[[Any, Any], float]) -> Tuple[List[Feature], List[Feature]]:
     """What stands on roofs by its tags gets the height of the highest roof below it, unless a least height is given.
     @param base height of the lowest ground below an area above the ground at a point, m
     @return features, and features that are left out, with the reason"""
     table = Table(("roof", tags) for tags in known["on_roofs"])
-    above = [one for one in features if "height" in known["kinds"][one.kind] and table.find(one.tags)
+    above = [one for one in features if "height" in known["kinds"][one.kind] and _find_in_lists(table, one.tags)
              and "min_height" not in properties_of(one, known)]
     standing = {id(one) for one in above}
     hosts = [one for one in features if form_of(one.shape) == "area" and id(one) not in standing

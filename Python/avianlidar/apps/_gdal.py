@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import functools
+import itertools
 import json
 import os
 import pathlib
@@ -18,8 +20,9 @@ from ._features import form_of
 GRID_ACCURACY = 1.0  # m: worse accuracies of coordinates are reported
 ACCURACIES = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 30.0, 50.0, 100.0, 1000.0)  # m
 
-for module in (gdal, ogr, osr):
-    module.UseExceptions()
+MODULES = gdal, ogr, osr
+for one in MODULES:
+    one.UseExceptions()
 
 
 HARMLESS = "Non closed ring detected"  # start of a warning; all rings are closed
@@ -85,6 +88,37 @@ def open_file(file: pathlib.Path, what: str, drivers: List[str], kind: int, opti
             raise Error(f"{file}: GDAL cannot read it as {what} ({error})") from None
 
 
+def features_of_json(data) -> List[Tuple[Any, Any]]:
+    """The features of GeoJSON with their layers. A feature whose coordinates are not numbers has no geometry. Raises
+    `RuntimeError` for other errors."""
+    found: List[Tuple[Any, Any]] = []
+    failed: List[str] = []
+
+    def hear(severity: int, _: int, words: str) -> None:
+        if severity > gdal.CE_Warning:
+            failed.append(words)
+
+    for module in reversed(MODULES):  # an exception would take the place of a feature
+        module.DontUseExceptions()
+    try:
+        with quiet():
+            gdal.PushErrorHandler(hear)
+            try:
+                feature, layer = data.GetNextFeature()
+                while feature is not None:
+                    found.append((feature, layer))
+                    feature, layer = data.GetNextFeature()
+            finally:
+                gdal.PopErrorHandler()
+    finally:
+        for module in MODULES:
+            module.UseExceptions()
+    failed = [words for words in failed if not words.startswith("Invalid ")]
+    if failed:
+        raise RuntimeError(failed[0])
+    return found
+
+
 def accuracy_of(system, place: Sequence[float]) -> Optional[float]:
     """Accuracy by PROJ of the transformation from a system to WGS84 at a place, m, rounded up to one of ACCURACIES;
     None if PROJ does not know it. @param place longitude and latitude, deg"""
@@ -138,25 +172,47 @@ def moved(shape, to):
     return shape
 
 
-def valid(shape):
-    """A valid geometry. In areas each ring is made valid alone, because GEOS fills some holes that share edges. An
-    outline inside the area counts as a hole, because GDAL takes some holes for islands."""
+def valid(shape, nested: bool = False):
+    """A valid geometry. In areas each ring is made valid alone, because GEOS fills some holes that share edges. A hole
+    around its outline changes places with it. @param nested whether an outline inside the area is a hole, because GDAL's
+    OSM driver takes some holes for islands; equal rings count once"""
     if shape.IsValid():
         return shape
     name = shape.GetGeometryName()
     areas = {"POLYGON": [shape], "MULTIPOLYGON": shape}.get(name)
     if areas is None:
         return shape.MakeValid()
-    rings = []
+    polygons = []
     for one in areas:
-        for number, ring in enumerate(one):
+        outlines = []
+        for ring in one:
             outline = ogr.Geometry(ogr.wkbPolygon)
             outline.AddGeometry(ring)
-            rings.append((number > 0, outline if outline.IsValid() else outline.MakeValid()))
-    rings.sort(key=lambda ring: -ring[1].Area() if ring[1].GetDimension() == 2 else 0.0)
-    whole = rings[0][1]
-    for is_hole, outline in rings[1:]:
-        whole = whole.Difference(outline) if is_hole or whole.Contains(outline) else whole.Union(outline)
+            outlines.append(outline if outline.IsValid() else outline.MakeValid())
+        polygons.append(outlines)
+    if nested:
+        return _nested(polygons)
+    wholes = []
+    for outline, *holes in polygons:
+        around = next((hole for hole in holes if hole.Contains(outline) and not outline.Contains(hole)), None)
+        rings = [around, outline, *(hole for hole in holes if hole is not around)] if around else [outline, *holes]
+        wholes.append(functools.reduce(lambda whole, hole: whole.Difference(hole), rings))
+    return functools.reduce(lambda whole, other: whole.Union(other), wholes)
+
+
+def _nested(polygons: List[List[Any]]):
+    """The area of rings (ogr, valid) of polygons. A ring inside a larger one is a hole."""
+    rings = [(number > 0, ring, ring.Area() if ring.GetDimension() == 2 else 0.0)
+             for polygon in polygons for number, ring in enumerate(polygon)]
+    rings.sort(key=lambda ring: -ring[2])
+    whole, larger = rings[0][1], rings[:1]
+    for one in rings[1:]:
+        is_hole, ring, area = one
+        alike = itertools.takewhile(lambda other: other[2] - area <= 1e-9 * area, reversed(larger))
+        if any(ring.Contains(other[1]) and other[1].Contains(ring) for other in alike):
+            continue
+        larger.append(one)
+        whole = whole.Difference(ring) if is_hole or whole.Contains(ring) else whole.Union(ring)
     return whole
 
 
@@ -193,10 +249,11 @@ def is_closed(shape) -> bool:
     return len(points or ()) > 3 and points[0][:2] == points[-1][:2]
 
 
-def solid(shape, stray: Callable[[], Any] = lambda: None, crossing: Callable[[], Any] = lambda: None):
+def solid(shape, stray: Callable[[], Any] = lambda: None, crossing: Callable[[], Any] = lambda: None,
+          nested: bool = False):
     """The polygons in a closed line or an area, without rings that enclose nothing and without holes outside the outer
     rings. May be empty. @param stray is called for each hole outside the outer rings @param crossing is called if other
-    rings cross, overlap or share edges"""
+    rings cross, overlap or share edges @param nested as for `valid`"""
     area = shape.Clone() if form_of(shape) == "area" else ogr.ForceToPolygon(shape.Clone())
     polygons = [[ring.GetPoints() or () for ring in part] for part in parts_of(area)]
     if all(len(ring) > 3 for rings in polygons for ring in rings) and area.IsValid():
@@ -213,13 +270,13 @@ def solid(shape, stray: Callable[[], Any] = lambda: None, crossing: Callable[[],
     whole = geometry("MultiPolygon", kept)
     if not whole.IsValid():
         crossing()
-    return union([whole])
+    return union([whole], nested)
 
 
-def union(areas: List[Any]):
+def union(areas: List[Any], nested: bool = False):
     whole = ogr.Geometry(ogr.wkbMultiPolygon)
     for area in areas:
-        for part in parts_of(valid(area)):
+        for part in parts_of(valid(area, nested)):
             if form_of(part) == "area":
                 whole.AddGeometry(part)
     return whole.UnionCascaded()

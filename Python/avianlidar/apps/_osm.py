@@ -10,7 +10,7 @@ import pathlib
 import re
 import tempfile
 import xml.parsers.expat
-from typing import Any, Callable, Collection, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Collection, Dict, Iterator, List, Optional, Set, Tuple
 from xml.etree import ElementTree
 
 from osgeo import gdal, ogr, osr
@@ -18,7 +18,7 @@ from osgeo import gdal, ogr, osr
 from .._pipeline import Error
 from ._extract import NO_DEGREES, Extract
 from ._features import DECIMAL, Feature, tags_of
-from ._gdal import accuracy_words, degrees, expect_file, moved, open_file, plain, quiet
+from ._gdal import accuracy_words, degrees, expect_file, features_of_json, moved, open_file, plain, quiet
 from ._json import naming
 
 SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # suffixes with GDAL's drivers
@@ -26,7 +26,7 @@ ID, NO_ID = re.compile(r"-?\d{1,18}"), "without a whole number as id"
 LARGEST = 256 << 20  # greatest size of an extract, bytes
 # control characters, and marks of text direction, which would disorder a line
 CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-CRS = re.compile(rb'"crs"\s*:\s*\{[^{}]*"properties"\s*:\s*\{\s*"name"\s*:\s*("(?:[^"\\]|\\.)*")')
+CRS = re.compile(rb'"crs"\s*:\s*(\{[^{}]*(?:\{[^{}]*\}[^{}]*)?\})')
 
 
 def _needs_order(file: pathlib.Path) -> bool:
@@ -54,12 +54,19 @@ def _each(source: pathlib.Path, hear: Callable[[str, Dict[str, str]], Any]) -> N
         parser.ParseFile(stream)
 
 
-def _nodes_nowhere(source: pathlib.Path) -> Dict[str, str]:
+def _nodes_nowhere(source: pathlib.Path) -> Tuple[Dict[str, str], bool]:
     """Nodes of OpenStreetMap's XML whose coordinates are not degrees, and which GDAL would read as others, such as 0:
-    by their ids, what is wrong."""
+    by their ids, what is wrong; and whether the XML repeats an object, at which GDAL stops."""
     found: Dict[str, str] = {}
+    known: Dict[str, Set[str]] = {"node": set(), "way": set(), "relation": set()}
+    is_repeated = False
 
     def hear(tag: str, own: Dict[str, str]) -> None:
+        nonlocal is_repeated
+        if tag in known:
+            number = own.get("id", "")
+            is_repeated = is_repeated or number in known[tag]
+            known[tag].add(number)
         for name, most in (("lat", 90.0), ("lon", 180.0)) if tag == "node" else ():
             text = own.get(name, "").strip()
             if DECIMAL.fullmatch(text) and abs(float(text)) <= most:
@@ -67,7 +74,7 @@ def _nodes_nowhere(source: pathlib.Path) -> Dict[str, str]:
             found.setdefault(own.get("id", ""), f"{name} is {own.get(name, '')[:40]!r}")
 
     _each(source, hear)
-    return found
+    return found, is_repeated
 
 
 def _of_nodes(source: pathlib.Path, nodes: Dict[str, str]) -> Set[Tuple[str, str]]:
@@ -90,13 +97,21 @@ def _check_system(file: pathlib.Path) -> None:
     """Raises an error for GeoJSON in a coordinate system that is not known, which GDAL would read as degrees."""
     with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
         found = CRS.search(data)
-        name = json.loads(found[1]) if found else "CRS84"
+        said = found[1] if found else b"{}"
+    system: Any = {}
+    with contextlib.suppress(ValueError):  # GDAL names the error
+        system = json.loads(said)
+    more = system.get("properties") or {}
+    name = more.get("name", "CRS84") if isinstance(more, dict) else "CRS84"
+    if system.get("type") == "link":  # GDAL does not follow links
+        name = f"a link to {more.get('href', '')}" if isinstance(more, dict) else "a link"
     try:
-        if not name.endswith("CRS84"):
+        if not isinstance(name, str) or not name.endswith("CRS84"):
             with quiet():
-                osr.SpatialReference().SetFromUserInput(name)
+                osr.SpatialReference().SetFromUserInput(str(name))
     except RuntimeError:
-        raise Error(f"{file}: the coordinate system is {name[:80]!r}, expected a system of EPSG, or degrees") from None
+        shown = CONTROLS.sub("", str(name))[:80]
+        raise Error(f"{file}: the coordinate system is {shown!r}, expected a system of EPSG, or degrees") from None
 
 
 def _in_order(file: pathlib.Path, out: pathlib.Path, left: List[Feature],
@@ -155,6 +170,7 @@ def _expect_map(file: pathlib.Path) -> None:
                     "export it again as .osm, .osm.pbf, .geojson or .gpkg")
 
 
+DAMAGED = "cannot be read to its end: the extract is damaged or incomplete, expected a complete extract"
 LISTS = (ogr.OFTIntegerList, ogr.OFTInteger64List, ogr.OFTRealList, ogr.OFTStringList)
 
 
@@ -164,6 +180,17 @@ def _tags(feature, names: List[str]) -> Dict[str, str]:
                            else feature.GetFieldAsString(number)) for number, name in enumerate(names)
                     if feature.IsFieldSetAndNotNull(number)})
     return {name: value if value.isprintable() else CONTROLS.sub("", value) for name, value in said.items()}
+
+
+def _features_of(data) -> Iterator[Tuple[Any, Any]]:
+    """The features of an extract with their layers."""
+    try:
+        feature, layer = data.GetNextFeature()
+        while feature is not None:
+            yield feature, layer
+            feature, layer = data.GetNextFeature()
+    except RuntimeError:
+        raise Error(DAMAGED) from None
 
 
 def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
@@ -179,15 +206,15 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
     _expect_map(file)
     settings = (f"CONFIG_FILE={pathlib.Path(__file__).with_name('osmconf.ini')}", "USE_CUSTOM_INDEXING=NO")
     aliases = {name.replace(":", "_"): name for name in known["colons"]}
-    found, source = Extract(known), file
+    found, source = Extract(known, are_nested=driver == "OSM"), file
     with contextlib.ExitStack() as stack:
         if file.suffix.lower() == ".osm":
             folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
             try:
                 with naming(f"{file}: its nodes, ways and relations"):
                     source = _in_order(file, folder / "in_order.osm", found.left) if _needs_order(file) else file
-                    nowhere = _nodes_nowhere(source)
-                    if nowhere:
+                    nowhere, is_repeated = _nodes_nowhere(source)
+                    if nowhere or is_repeated:
                         nowhere = {number: words for number, words in nowhere.items() if ID.fullmatch(number)}
                         found.wrong = _of_nodes(source, nowhere)
                         source = _in_order(source, folder / "placed.osm", found.left, nowhere)
@@ -200,16 +227,15 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
             _check_system(file)
         data = open_file(source, "an extract", [driver], gdal.OF_VECTOR, settings if driver == "OSM" else ())
         stack.enter_context(naming(str(file)))
+        following = _features_of(data)
+        if driver == "GeoJSON":
+            try:
+                following = iter(features_of_json(data))
+            except RuntimeError:
+                raise Error(DAMAGED) from None
         stack.enter_context(quiet(found.hear if driver == "OSM" else None))
         layers: Dict[str, Tuple[List[str], Any]] = {}
-        while True:
-            try:
-                feature, layer = data.GetNextFeature()
-            except RuntimeError:
-                raise Error("cannot be read to its end: the extract is damaged or incomplete, "
-                            "expected a complete extract") from None
-            if feature is None:
-                break
+        for feature, layer in following:
             if layer.GetName() not in layers:
                 own, frame = layer.GetSpatialRef(), layer.GetLayerDefn()
                 if own is not None:
