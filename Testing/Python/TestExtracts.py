@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Extracts of maps as tools write them: what of them becomes part of an airport's scene, and what is counted as left out. Surveyed
 obstacles beside them."""
+import contextlib
 import csv
+import itertools
 import json
 import math
 import re
 import unittest
 import warnings
+from unittest import mock
 
 import numpy as np
 from osgeo import gdal, ogr, osr
@@ -523,6 +526,30 @@ class LeftOut(unittest.TestCase):
         self.assertIn("assumed: no rule knows power=generator", [row[5] for row in table])
         mast = next(row for row in rows(folder) if row["kind"] == "obstacle")
         self.assertEqual((mast["top"], mast["top_from"]), (30.0, "height"))
+
+    def test_what_lies_apart_makes_no_difference(self):
+        """The scene is the same as if the rules had looked at everything, in XML and GeoJSON, with bounds and
+        without."""
+        plan = runway(ta.Map())
+        for i, j in itertools.product(range(-8, 9), repeat=2):
+            plan.area((500 * i, 500 * j + 60), (500 * i + 120, 500 * j + 90), building="yes", name=f"{i} {j}")
+            plan.way([(500 * i, 500 * j), (500 * i + 900, 500 * j + 900)], barrier="wall", height="3")
+        plan.way([(-9000, -1950), (9000, -1950)], barrier="fence", height="2")
+        file = plan.write("apart.osm")
+        whole = ta.FOLDER / "apart.geojson"
+        gdal.VectorTranslate(str(whole), str(file), layers=["lines"])
+        for source, bounds in ((file, None), (whole, None), (file, (13.28, 53.59, 13.36, 53.63)), (whole, (13.2, 53.59, 13.3, 53.61))):
+            kept = []
+            for reads_all in (False, True):
+                patch = mock.patch.object(_osm, "_lies_apart", lambda *_: False) if reads_all else contextlib.nullcontext()
+                with warnings.catch_warnings(), patch, _gdal.quiet():
+                    warnings.simplefilter("ignore")
+                    airport = AirportMap(source, bounds=bounds)
+                    kept.append(sorted((row["kind"], row.get("name", ""), shape.ExportToWkt()) for row, shape in airport.mapped(airport.chosen(airport.heights()))))
+                apart = sum(one.count for one in airport.left if one.kind == "any kind")
+                self.assertEqual(apart > 100, not reads_all, (source, bounds))
+            self.assertEqual(*kept, (source, bounds))
+            self.assertGreater(len(kept[0]), 20)
 
     def test_numbers_that_are_not_understood(self):
         """Texts of heights, storeys and widths, of which -1 (as in Microsoft's footprints) says that the height is not known."""

@@ -11,7 +11,7 @@ import numpy as np
 from osgeo import osr
 
 from .._pipeline import Error
-from ._extract import COAST, CUT, on_roofs, sea, without_parts
+from ._extract import COAST, CUT, OUTSIDE, on_roofs, sea, without_parts
 from ._features import Feature, form_of, length_of, properties_of
 from ._gdal import box_of, corners_of, degrees, geometry, moved, valid
 from ._ground import difference, height_at, posts_of, read_heights, terrain
@@ -58,7 +58,7 @@ class AirportMap:
                 raise ValueError(f"--bounds {west:g} {south:g} {east:g} {north:g}: "
                                  "expected west, south, east and north in degrees")
         progress("extract", 0, 1)
-        found = read_extract(self.extract, self.known)
+        found = read_extract(self.extract, self.known, bounds)
         self.features, self.left, self.unknown, self.used = found.features, found.left, found.unknown, found.used
         progress("extract", 1, 1)
         self.runways, aerodrome = choose_runways(self.extract, found, self.known, icao, bounds)
@@ -75,7 +75,7 @@ class AirportMap:
         seas, near = sea(coasts, self.box), sum(one.shape.Intersects(self.box) for one in coasts)
         self.features += [Feature("water", {"name": "sea"}, shape, 0) for shape in seas]
         if near < len(coasts):
-            self.left.append(Feature(COAST, {}, count=len(coasts) - near, reason="outside the scene"))
+            self.left.append(Feature(COAST, {}, count=len(coasts) - near, reason=OUTSIDE))
         if seas:
             self.used[COAST] = near
         elif near:
@@ -171,7 +171,7 @@ class AirportMap:
                 one.tags = {**one.tags, "height": f"{above:.3f}",
                             "height_source": f"{one.tags['height_source']}, elevation less that of the ground"}
             found.append(one)
-        self.left += [Feature(kind, {}, count=count, reason="outside the scene") for kind, count in outside.items()]
+        self.left += [Feature(kind, {}, count=count, reason=OUTSIDE) for kind, count in outside.items()]
         found, drawn = without_parts(found, self.known)
         self.left += [one.left("drawn by its parts") for one in drawn]
         def height(x: float, y: float) -> float:

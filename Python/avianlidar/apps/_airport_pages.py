@@ -13,7 +13,7 @@ from .._scene import Scene
 from .._writers import as_csv
 from ._airport_plans import AirportScene, Place
 from ._candidates import ground_of
-from ._extract import CROSSING, CUT, UNKNOWN
+from ._extract import CROSSING, CUT, OUTSIDE, UNKNOWN
 from ._features import Feature
 from ._placing import Label, place_labels
 from ._regions import end_names, ends_of
@@ -115,11 +115,11 @@ def counts(found: AirportScene) -> str:
 def _counts_by_kind(found: AirportScene) -> str:
     """The numbers of features by kind."""
     there, left = found.fates
-    lines, outside, away, reasons = [f"  {counts(found)}"], "outside the scene", [], _reasons(left)
+    lines, away, reasons = [f"  {counts(found)}"], [], _reasons(left)
     for kind in dict.fromkeys([*there, *(one.kind for one in left)]):
         out = +reasons[kind]
-        if not there[kind] and set(out) == {outside}:
-            away.append(f"{kind} ({out[outside]:,})")
+        if not there[kind] and set(out) == {OUTSIDE}:
+            away.append(f"{kind} ({out[OUTSIDE]:,})")
         elif out:
             reasons_of_kind = ", ".join(f"{count:,} {reason}" for reason, count in out.items())
             lines.append(f"  {kind or 'others'}: {there[kind] + sum(out.values()):,} read, {there[kind]:,} in the "
@@ -128,7 +128,7 @@ def _counts_by_kind(found: AirportScene) -> str:
     crossing = [f"{one.kind} {one.name or one.id}".strip() for one in found.chosen if CROSSING in one.tags]
     some = ", ".join(crossing[:5]) + (", ..." if len(crossing) > 5 else "")
     cut = collections.Counter(one.kind for one in found.chosen if one.tags.get(CUT) == CUT)
-    lists = {f"all {outside}": away, "among those of unknown kind": named[:6],
+    lists = {f"all {OUTSIDE}": away, "among those of unknown kind": named[:6],
              f"{CUT}, and shorter than they are": [f"{count:,} {kind}" for kind, count in cut.items()],
              f"{len(crossing):,} {CROSSING}": [some] * bool(crossing)}
     lines += [f"  {words}: {', '.join(some)}" for words, some in lists.items() if some]

@@ -6,7 +6,7 @@ import collections
 import dataclasses
 import functools
 import re
-from typing import Any, Callable, Counter, Dict, List, Optional, Set, Tuple
+from typing import Any, Callable, Counter, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from osgeo import ogr
@@ -18,6 +18,7 @@ COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"
 CROSSING = "with rings that cross, overlap or share edges, repaired"
 NO_DEGREES, NO_EXTENT = "coordinates that are not degrees (longitude, latitude)", "no extent"
+OUTSIDE = "outside the scene"
 STRAY = "a hole outside its outline"
 NEAR_ROOF = 3e-5  # greatest distance from the outline of a roof that something stands on, degrees
 NO_ROOF = "on a roof that the scene lacks"
@@ -99,6 +100,7 @@ class Extract:
         self.models: List[Feature] = []  # model airfields
         self.thresholds: List[Feature] = []  # of runways, points
         self.left: List[Feature] = []
+        self.apart = 0  # features that lie far from the scene, of any kind
         self.used: Counter[str] = collections.Counter()  # features that the scene follows but does not draw
         self.unknown: Counter[str] = collections.Counter()  # by tag
         # With ranks: the greater of two alike features counts.
@@ -121,6 +123,20 @@ class Extract:
             self.leave(Feature(kind, {"id": gone[2]}), NO_DEGREES if (kind, gone[2]) in self.wrong else reason)
         elif words.startswith("Non closed ring detected"):
             self.leave(Feature("relation", {}), "unclosed")
+
+    def surroundings(self, bounds: Optional[Sequence[float]] = None) -> Optional[Tuple[float, ...]]:
+        """A box that holds the scene with some space around it: west, east, south and north end, degrees. None without
+        `bounds` and without runways."""
+        shapes = [one.shape for alike in self.seen.values() for _, one in alike if one.kind == "runway"]
+        if bounds is None and not shapes:
+            return None
+        boxes = [shape.GetEnvelope() for shape in shapes] if bounds is None else [np.array(bounds)[[0, 2, 1, 3]]]
+        lows, highs = np.array(boxes)[:, ::2].min(axis=0), np.array(boxes)[:, 1::2].max(axis=0)
+        margin = np.full(2, 0.002 + (1.1 * np.degrees(self.known["margin"] / EARTH) if bounds is None else 0.0))
+        margin[0] /= max(np.cos(np.radians(max(-lows[1], highs[1]))), 1e-3)
+        margin += 0.1 * (highs - lows)
+        (west, south), (east, north) = lows - margin, highs + margin
+        return west, east, south, north
 
     def _kinds(self, tags: Dict[str, str], form: str, closed: bool) -> List[Tuple[str, str]]:
         """Kinds of a feature, each with the form that it takes: what is closed may be an area, a line, and both."""
@@ -263,6 +279,8 @@ class Extract:
         return one if is_other_assumed or (low <= other_low and other_high <= high) else None
 
     def done(self) -> Extract:
+        if self.apart:
+            self.left.append(Feature("any kind", {}, count=self.apart, reason=OUTSIDE))
         features = [one for alike in self.seen.values() for _, one in alike]
         for one in features:
             form = form_of(one.shape)

@@ -10,13 +10,14 @@ import pathlib
 import re
 import tempfile
 import xml.parsers.expat
-from typing import Any, Callable, Collection, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Callable, Collection, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 from xml.etree import ElementTree
 
+import numpy as np
 from osgeo import gdal, ogr, osr
 
 from .._pipeline import Error
-from ._extract import NO_DEGREES, Extract
+from ._extract import NO_DEGREES, Extract, are_degrees
 from ._features import DECIMAL, Feature, tags_of
 from ._gdal import accuracy_words, degrees, expect_file, features_of_json, moved, open_file, plain, quiet
 from ._json import naming
@@ -26,6 +27,13 @@ ID, NO_ID = re.compile(r"-?\d{1,18}"), "without a whole number as id"
 LARGEST = 256 << 20  # greatest size of an extract, bytes
 # control characters, and marks of text direction, which would disorder a line
 CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+# Nodes, ways and relations as most programs write them, with coordinates that are degrees
+NODE = re.compile(rb"""<node id=["'](\d{1,18})["'](?: [\w:]+=(?:"[^"<>]*"|'[^'<>]*'))*? """
+                  rb"""lat=["']-?[0-8]?\d(?:\.\d*)?["'] lon=["']-?(?:1[0-7]\d|\d{1,2})(?:\.\d*)?["']""")
+OBJECTS = (b"<node", NODE), *((b"<" + name, re.compile(b"<" + name + rb""" id=["'](\d{1,18})["']"""))
+                              for name in (b"way", b"relation"))
+# What decides where the scene lies, or reaches the scene from afar
+FIRST = re.compile("aeroway|aerodrome|airport|coastline", re.IGNORECASE)
 CRS = re.compile(rb'"crs"\s*:\s*(\{[^{}]*(?:\{[^{}]*\}[^{}]*)?\})')
 
 
@@ -52,6 +60,18 @@ def _each(source: pathlib.Path, hear: Callable[[str, Dict[str, str]], Any]) -> N
     parser.StartElementHandler = hear
     with open(source, "rb") as stream, contextlib.suppress(xml.parsers.expat.ExpatError):  # GDAL names the latter
         parser.ParseFile(stream)
+
+
+def _is_usual(source: pathlib.Path) -> bool:
+    """Whether no object of OpenStreetMap's XML is repeated, and all nodes have coordinates in degrees. False means that
+    an XML parser has to look."""
+    with open(source, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        for name, usual in OBJECTS:
+            found = usual.findall(data)
+            rising = np.diff(np.array(found, "S18").astype(np.int64)) > 0
+            if len(found) != len(re.findall(name, data)) or not rising.all():
+                return False
+    return True
 
 
 def _nodes_nowhere(source: pathlib.Path) -> Tuple[Dict[str, str], bool]:
@@ -193,8 +213,25 @@ def _features_of(data) -> Iterator[Tuple[Any, Any]]:
         raise Error(DAMAGED) from None
 
 
-def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
-    """Features known to the rules, aerodromes, and features that are left out."""
+def _comes_first(feature, names: List[str]) -> bool:
+    """Whether a feature is read before it is known where the scene lies."""
+    return any(feature.IsFieldSetAndNotNull(number) and FIRST.search(f"{name} {feature.GetFieldAsString(number)}")
+               for number, name in enumerate(names))
+
+
+def _lies_apart(feature, west: float, east: float, south: float, north: float) -> bool:
+    """Whether all corners of a feature are degrees outside a box."""
+    shape = feature.GetGeometryRef()
+    if shape is None or shape.IsEmpty():
+        return False
+    low_x, high_x, low_y, high_y = shape.GetEnvelope()
+    return bool(are_degrees(np.array([(low_x, low_y), (high_x, high_y)]))
+                and (high_x < west or low_x > east or high_y < south or low_y > north))
+
+
+def read_extract(file: pathlib.Path, known: Dict[str, Any], bounds: Optional[Sequence[float]] = None) -> Extract:
+    """Features known to the rules, aerodromes, and features that are left out. What lies far from all runways is
+    counted, and not looked at. @param bounds west, south, east and north end of the scene, degrees, if given"""
     driver = SUFFIXES.get(file.suffix.lower())
     if not driver:
         raise Error(f"{file}: is not an extract by its name, expected .osm, .osm.pbf, .geojson or .gpkg")
@@ -213,7 +250,7 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
             try:
                 with naming(f"{file}: its nodes, ways and relations"):
                     source = _in_order(file, folder / "in_order.osm", found.left) if _needs_order(file) else file
-                    nowhere, is_repeated = _nodes_nowhere(source)
+                    nowhere, is_repeated = ({}, False) if _is_usual(source) else _nodes_nowhere(source)
                     if nowhere or is_repeated:
                         nowhere = {number: words for number, words in nowhere.items() if ID.fullmatch(number)}
                         found.wrong = _of_nodes(source, nowhere)
@@ -235,6 +272,18 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                 raise Error(DAMAGED) from None
         stack.enter_context(quiet(found.hear if driver == "OSM" else None))
         layers: Dict[str, Tuple[List[str], Any]] = {}
+        waiting: List[Tuple[Any, str]] = []
+
+        def take(feature, layer: str) -> None:
+            names, to_degrees = layers[layer]
+            tags = _tags(feature, names)
+            if driver != "OSM":
+                tags = tags or {"feature": str(feature.GetFID())}
+            elif layer == "lines":
+                tags["osm_way_id"] = tags.get("osm_id", "")
+            if tags:
+                found.take(tags, plain(feature.GetGeometryRef(), to_degrees))
+
         for feature, layer in following:
             if layer.GetName() not in layers:
                 own, frame = layer.GetSpatialRef(), layer.GetLayerDefn()
@@ -248,12 +297,15 @@ def read_extract(file: pathlib.Path, known: Dict[str, Any]) -> Extract:
                     place = moved(shape.Centroid(), layers[layer.GetName()][1])
                     accuracy_words(file, own, (place.GetX(), place.GetY()))
             names, to_degrees = layers[layer.GetName()]
-            tags = _tags(feature, names)
-            if driver != "OSM":
-                tags = tags or {"feature": str(feature.GetFID())}
-            elif layer.GetName() == "lines":
-                tags["osm_way_id"] = tags.get("osm_id", "")
-            if tags:
-                found.take(tags, plain(feature.GetGeometryRef(), to_degrees))
-        del data
+            if to_degrees is not None or _comes_first(feature, names):
+                take(feature, layer.GetName())
+            else:
+                waiting.append((feature, layer.GetName()))
+        around = found.surroundings(bounds)
+        for feature, name in waiting:
+            if around and _lies_apart(feature, *around):
+                found.apart += 1
+            else:
+                take(feature, name)
+        del data, waiting
     return found.done()

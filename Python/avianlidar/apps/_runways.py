@@ -13,7 +13,7 @@ from osgeo import osr
 from scipy.sparse.csgraph import connected_components
 
 from .._pipeline import Error
-from ._extract import NO_DEGREES, Extract
+from ._extract import NO_DEGREES, OUTSIDE, Extract
 from ._features import Feature, form_of
 from ._gdal import box_of, degrees, geometry, moved, parts_of
 from ._maps import coordinate_system
@@ -194,7 +194,7 @@ def choose_runways(file: pathlib.Path, extract: Extract, known: Dict[str, Any], 
     groups: Dict[Any, List[Tuple[Feature, Any]]] = collections.defaultdict(list)
     for one, line in runways:
         if box is not None and not one.shape.Intersects(box_of(box)):
-            extract.leave(one, "outside the scene")
+            extract.leave(one, OUTSIDE)
             continue
         away, near = min(((place.Distance(line), i) for i, place in enumerate(places)), default=(math.inf, -1))
         if away <= NEAR_AERODROME:
