@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCollisionTree.h"
 
+#include "BeamTracer.h"
+#include "SceneTriangles.h"
 #include "ValueError.h"
 #include "VolumeTree.h"
 #include "vtkAvianLidarAbort.h"
@@ -26,6 +28,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -304,6 +307,38 @@ int vtkAvianLidarCollisionTree::GetDepth() const
 int vtkAvianLidarCollisionTree::GetNumberOfBuilds() const
 {
   return this->Internals->Builds;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarCollisionTree::FindHiddenPoints(
+  const double from[3], vtkDataArray* points, vtkUnsignedCharArray* hidden)
+{
+  if (!points || points->GetNumberOfComponents() != 3 || !hidden)
+  {
+    vtkErrorMacro("FindHiddenPoints: expected an array of three components, and an array for the "
+                  "results");
+    return;
+  }
+  hidden->SetNumberOfComponents(1);
+  hidden->SetNumberOfTuples(points->GetNumberOfTuples());
+  hidden->FillValue(0);
+  const auto tree = this->Internals->Tree;
+  if (!tree || tree->empty())
+  {
+    return;
+  }
+  const avianlidar::SceneTriangles scene(*tree);
+  avianlidar::BeamTracer tracer(scene);
+  const Vec3 apex(from[0], from[1], from[2]);
+  tracer.setBeam(avianlidar::makeBeamFrame(apex, Vec3(1.0, 0.0, 0.0), 1e-6));
+  for (vtkIdType i = 0; i < points->GetNumberOfTuples(); ++i)
+  {
+    Vec3 point;
+    points->GetTuple(i, &point.x);
+    const bool isHidden =
+      tracer.occluded(Vec3(0.0), point - apex, 0.0, avianlidar::NoTriangle, avianlidar::NoTriangle);
+    hidden->SetValue(i, isHidden ? 1 : 0);
+  }
 }
 
 //------------------------------------------------------------------------------

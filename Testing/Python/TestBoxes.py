@@ -5,7 +5,9 @@ import tempfile
 import unittest
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import reference, vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 import avianlidar as al
 from avianlidar._cloud import add_array as _set
@@ -25,6 +27,14 @@ def turned(degrees):
     return np.cos(half), 0, 0, -np.sin(half)
 
 
+def tree_of(*surfaces):
+    tree = al.vtkAvianLidar.vtkAvianLidarCollisionTree()
+    tree.AddObserver("WarningEvent", lambda *_: None)  # there is no material
+    tree.SetInputData(al.mesh(*surfaces))
+    tree.Update()
+    return tree
+
+
 def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **settings):
     """The words of the line of a mover of so much (x right, y forward, z up) in the middle of its frame. @param settings of the sensor"""
     low = -np.array(size) / 2
@@ -36,7 +46,7 @@ def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **setting
         _set(report.GetPointData(), name, np.array([value]))
     sensor = al.Sensor(**{"channel_elevations": list(np.linspace(*ELEVATIONS, 5)), "number_of_channels": 5, "half_beamwidth": 0.001,
                           "range_gate": 500.0, **settings})
-    boxes = Boxes(al.mesh(*surfaces) if surfaces else vtkPolyData(), sensor, POSE)
+    boxes = Boxes(tree_of(*surfaces) if surfaces else al.vtkAvianLidar.vtkAvianLidarCollisionTree(), sensor, POSE)
     return boxes.lines(al.Cloud(report), group(thing)).split()
 
 
@@ -66,6 +76,26 @@ class TestBoxes(unittest.TestCase):
         self.assertEqual(one(plate, (0, 100, 0), surfaces=box((-30, 49, -5), (0.001, 50, 5)))[2], "0.50")
         self.assertEqual(one(plate, (0, 100, 0), surfaces=box((-30, 49, -5), (30, 50, 5)))[2], "1.00")
         self.assertEqual(one(plate, (0, 100, 0), surfaces=box((-30, 149, -5), (30, 150, 5)))[2], "0.00")
+
+    def test_hidden_points_are_those_of_a_locator(self):
+        random = np.random.default_rng(7)
+        surfaces = random.normal(size=(300, 3, 3)) + random.uniform(-10, 10, (300, 1, 3))
+        tree, place = tree_of(surfaces.reshape(-1, 3), np.arange(900).reshape(-1, 3)), (0.5, -0.2, 0.1)
+        points = np.concatenate([random.uniform(-12, 12, (2000, 3)), [place, (np.nan, 0, 0), (np.inf, 0, 0)]])
+        locator, hit, hidden = vtkStaticCellLocator(), (reference(0.0), [0.0] * 3, [0.0] * 3, reference(0)), vtkUnsignedCharArray()
+        locator.SetDataSet(tree.GetOutput())
+        locator.BuildLocator()
+        tree.FindHiddenPoints(place, numpy_to_vtk(points), hidden)
+        expected = [bool(locator.IntersectWithLine(place, point, 0.0, *hit)) for point in points[:2000]]
+        self.assertTrue(300 < sum(expected) < 1700)
+        np.testing.assert_array_equal(vtk_to_numpy(hidden), [*expected, 0, 0, 0])
+        self.assertEqual(al.vtkAvianLidar.vtkAvianLidarCollisionTree().FindHiddenPoints(place, numpy_to_vtk(points), hidden), None)
+        self.assertFalse(vtk_to_numpy(hidden).any())  # without a tree
+        said = []
+        tree.AddObserver("ErrorEvent", lambda *_: said.append(1))
+        tree.FindHiddenPoints(place, numpy_to_vtk(np.zeros((3, 2))), hidden)
+        tree.FindHiddenPoints(place, None, hidden)
+        self.assertEqual(len(said), 2)
 
     def test_what_is_cut(self):
         up = 100 * np.tan(np.radians(ELEVATIONS[1]) + 0.001)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Tuple
+from typing import Tuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import reference
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .._cloud import Cloud, field_values, leaves_of, triangles_of
 
@@ -17,8 +18,10 @@ RAYS = 72  # least number of rays to a mover
 def _rotation(times: np.ndarray, quaternions: np.ndarray, time: float) -> np.ndarray:
     """Rotation from a mover's frame to the scene's at a time, s. @param quaternions w, x, y, z"""
     from scipy.spatial.transform import Rotation, Slerp
-    turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
-    return (Slerp(times, turns)(np.clip(time, times[0], times[-1])) if len(times) > 1 else turns[0]).as_matrix()
+    last = int(np.clip(np.searchsorted(times, time), 1, max(len(times) - 1, 1)))
+    two = slice(last - 1, last + 1)  # the poses before and after
+    turns = Rotation.from_quat(quaternions[two][:, [1, 2, 3, 0]])
+    return (Slerp(times[two], turns)(np.clip(time, times[0], times[-1])) if len(times) > 1 else turns[0]).as_matrix()
 
 
 def _parts(n: int) -> np.ndarray:
@@ -33,16 +36,12 @@ class Boxes:
     """Boxes of the movers of scans. Surfaces of the scene hide movers. The field of view cuts movers: it contains the
     azimuths, elevations and ranges between the sensor's outermost beams."""
 
-    def __init__(self, surfaces: vtkPolyData, sensor, pose: np.ndarray):
-        """sensor  a Sensor, at rest
+    def __init__(self, tree, sensor, pose: np.ndarray):
+        """tree    vtkAvianLidarCollisionTree of the scene, updated
+           sensor  a Sensor, at rest
            pose    3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates"""
-        self.pose, self.gate = pose, (float(sensor.minimum_range), float(sensor.range_gate))
-        self.locator = vtkStaticCellLocator()
-        self.locator.SetDataSet(surfaces)
-        self.locator.SetNumberOfCellsPerNode(2)  # by default, rays take several times as long
-        self.has_surfaces = surfaces.GetNumberOfCells() > 0
-        if self.has_surfaces:
-            self.locator.BuildLocator()
+        self.tree, self.pose = tree, pose
+        self.gate = float(sensor.minimum_range), float(sensor.range_gate)
         turned, up = self._angles(sensor.beams["direction"] @ pose[:, :3])
         turned, margin = np.sort(turned), float(sensor.half_beamwidth)
         self.low, self.high = up.min() - margin, up.max() + margin
@@ -95,7 +94,7 @@ class Boxes:
         inside &= (ranges >= self.gate[0]) & (ranges <= self.gate[1])
         if not weights[inside].sum() > 0:
             return 1.0, 0.0
-        hit: Any = (reference(0.0), [0.0] * 3, [0.0] * 3, reference(0))
-        covered = np.array([self.has_surfaces and bool(self.locator.IntersectWithLine(place, centre, 0.0, *hit))
-                            for centre in centres[inside]])
+        hidden = vtkUnsignedCharArray()
+        self.tree.FindHiddenPoints(place, numpy_to_vtk(np.ascontiguousarray(centres[inside])), hidden)
+        covered = vtk_to_numpy(hidden)
         return float(weights[~inside].sum() / weights.sum()), float(weights[inside] @ covered / weights[inside].sum())

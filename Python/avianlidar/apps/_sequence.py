@@ -59,7 +59,7 @@ class Sequence(Simulation):
         """Writes the files of a sequence. @return a description of the content"""
         for name in FOLDERS:
             (folder / name).mkdir(parents=True)
-        boxes = Boxes(self.scene.tree.GetOutput(), self.at_rest, self._pose())
+        boxes = Boxes(self.scene.tree, self.at_rest, self._pose())
         writer = _wrapped.vtkAvianLidarKITTIWriter()
         table: List[Dict[str, Any]] = []
         classes: Counter[int] = collections.Counter()
