@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Main.cxx
- * @brief The program `mesh-reader FILE BYTES` reads one mesh file and writes the mesh to standard
- * output (MeshStream.h). BYTES is the limit of memory for data, bytes; 0 means no limit.
+ * @brief The program `mesh-reader BYTES` reads names of mesh files from standard input, and writes
+ * each mesh to standard output (MeshStream.h), until the input ends. BYTES is the limit of memory
+ * for data, bytes; 0 means no limit.
  *
  * The libraries that read meshes crash on some files, and never end on other files. In a separate
  * program they cannot crash or stop the process that reads the scene.
@@ -18,6 +19,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include <malloc.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -87,6 +89,43 @@ WriteBytes WriterTo(int output)
   };
 }
 
+/// Reads from standard input, and ends the program at the end of the input.
+void ReadInput(void* bytes, std::size_t size)
+{
+  for (std::size_t got = 0; got < size;)
+  {
+    const ssize_t count = read(STDIN_FILENO, static_cast<char*>(bytes) + got, size - got);
+    if (count <= 0)
+    {
+      _exit(0); // without cleaning up, during which libraries may crash
+    }
+    got += static_cast<std::size_t>(count);
+  }
+}
+
+/// Reads a file, and sends the mesh, or the reason why the file cannot be read.
+void Answer(const std::string& file, const WriteBytes& write)
+{
+  try
+  {
+    SendMesh(ReadMesh(file), write);
+  }
+  catch (const Error& error)
+  {
+    SendError(error.what(), write);
+  }
+  catch (const std::bad_alloc&)
+  {
+    SendNoMemory(write);
+  }
+  catch (const std::exception& error)
+  {
+    SendError((IsVtkFile(file) ? "VTK cannot read it: " : "Assimp cannot read it: ") +
+        std::string(error.what()),
+      write);
+  }
+}
+
 void Limit(rlim_t data)
 {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -108,33 +147,18 @@ void Limit(rlim_t data)
 int main(int argc, char* argv[])
 {
   using namespace avianlidar::scene;
-  if (argc != 3)
+  if (argc != 2)
   {
-    std::cerr << "mesh-reader FILE BYTES: started by the avian-lidar library\n";
+    std::cerr << "mesh-reader BYTES: started by the avian-lidar library\n";
     return 2;
   }
-  Limit(std::strtoull(argv[2], nullptr, 10));
+  Limit(std::strtoull(argv[1], nullptr, 10));
   // Text that libraries print must not mix with the mesh.
   const WriteBytes write = WriterTo(dup(STDOUT_FILENO));
   dup2(STDERR_FILENO, STDOUT_FILENO);
-  const std::string file = argv[1];
-  try
+  while (true)
   {
-    SendMesh(ReadMesh(file), write);
+    Answer(ReceiveName(ReadInput), write);
+    malloc_trim(0); // a large mesh must not be kept beside its copy in the other process
   }
-  catch (const Error& error)
-  {
-    SendError(error.what(), write);
-  }
-  catch (const std::bad_alloc&)
-  {
-    SendNoMemory(write);
-  }
-  catch (const std::exception& error)
-  {
-    SendError((IsVtkFile(file) ? "VTK cannot read it: " : "Assimp cannot read it: ") +
-        std::string(error.what()),
-      write);
-  }
-  _exit(0); // libraries may crash while they clean up
 }

@@ -14,10 +14,10 @@
 #include <cstring>
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -66,8 +66,8 @@ std::string MostData()
   return std::to_string(bytes < 1e18 ? static_cast<std::uint64_t>(bytes) : 0);
 }
 
-/// Starts a program whose output is written to the descriptor. Returns 0, or the error number.
-int Start(const std::vector<std::string>& words, int output, pid_t& pid)
+/// Starts a program whose input and output are the descriptor. Returns 0, or the error number.
+int Start(const std::vector<std::string>& words, int input, pid_t& pid)
 {
   std::vector<char*> arguments;
   for (const std::string& word : words)
@@ -77,8 +77,8 @@ int Start(const std::vector<std::string>& words, int output, pid_t& pid)
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, input, STDOUT_FILENO);
   // The program must not inherit signals that this thread blocks or ignores.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -95,33 +95,47 @@ int Start(const std::vector<std::string>& words, int output, pid_t& pid)
   return error;
 }
 
-/// Process of the program that reads a mesh.
-class MeshReaderProcess
+// The end of the program, other than after an answer.
+struct ProgramEnded : Error
+{
+  using Error::Error;
+};
+
+// Returns the axis that points up after reading. Assimp turns Collada, 3DS, IFC and DXF to y. The
+// specifications of glTF, AC3D, FBX and X3D require y. Other formats do not give the axis, and z is
+// taken, as is usual in surveying.
+char UpAxis(const std::string& file)
+{
+  const bool isY = EndsWithAny(UncompressedName(file),
+    { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb", ".ac", ".acc",
+      ".ac3d", ".fbx", ".x3d" });
+  return isY ? 'y' : 'z';
+}
+}
+
+/// Process of the program that reads meshes.
+class MeshReader::Process
 {
 public:
-  /// Starts the program on a file. Throws Error if the program cannot be started or if a limit is
-  /// not a number above 0. @param keepGoing called about ten times a second while Read() waits
-  MeshReaderProcess(const std::string& file, const std::function<bool()>& keepGoing)
-    : Library(IsVtkFile(file) ? "VTK" : "Assimp")
-    , KeepGoing(keepGoing)
-    , Seconds(Limit("AVIANLIDAR_MESH_SECONDS", 3600.0))
-    , Begin(std::chrono::steady_clock::now())
+  /// Starts the program. Throws Error if the program cannot be started or if the limit of memory is
+  /// not a number above 0.
+  Process()
   {
-    const std::vector<std::string> words = { Program(), file, MostData() };
+    const std::vector<std::string> words = { Program(), MostData() };
     int ends[2];
-    int error = pipe2(ends, O_CLOEXEC) == 0 ? 0 : errno;
+    int error = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0 ? 0 : errno;
     if (error == 0)
     {
-      this->Pipe = ends[0];
+      this->Socket = ends[0];
       error = Start(words, ends[1], this->Pid);
       close(ends[1]);
     }
     if (error != 0)
     {
       this->Pid = -1;
-      if (this->Pipe >= 0)
+      if (this->Socket >= 0)
       {
-        close(this->Pipe);
+        close(this->Socket);
       }
       fail("the program that reads meshes, ", words.front(),
         ", cannot be started: ", std::strerror(error),
@@ -130,46 +144,59 @@ public:
   }
 
   /// Kills the program if it is still running.
-  ~MeshReaderProcess()
+  ~Process()
   {
-    close(this->Pipe);
+    close(this->Socket);
     if (this->Pid > 0)
     {
       kill(this->Pid, SIGKILL);
       this->HowItEnded();
     }
   }
-  MeshReaderProcess(const MeshReaderProcess&) = delete;
-  MeshReaderProcess& operator=(const MeshReaderProcess&) = delete;
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
 
-  /// Reads the next bytes that the program sends. Throws Error if the program ends early or exceeds
-  /// its time. Throws WorkStopped if keepGoing returns false.
-  void Read(void* bytes, std::size_t size)
+  /// Reads a file. Throws ProgramEnded if the program ends early, Error if it exceeds its time or
+  /// says why it cannot read the file, and WorkStopped if keepGoing returns false.
+  Mesh Read(const std::string& file, const std::function<bool()>& keepGoing)
+  {
+    this->Library = IsVtkFile(file) ? "VTK" : "Assimp";
+    this->Seconds = Limit("AVIANLIDAR_MESH_SECONDS", 3600.0);
+    this->Begin = std::chrono::steady_clock::now();
+    // If the program has ended, the answer will be missing.
+    SendName(file,
+      [this](const void* bytes, std::size_t size)
+      { static_cast<void>(send(this->Socket, bytes, size, MSG_NOSIGNAL)); });
+    return ReceiveMesh(
+      [&](void* bytes, std::size_t size) { this->Receive(bytes, size, keepGoing); });
+  }
+
+private:
+  void Receive(void* bytes, std::size_t size, const std::function<bool()>& keepGoing)
   {
     for (std::size_t got = 0; got < size;)
     {
-      this->Wait();
-      const ssize_t count = read(this->Pipe, static_cast<char*>(bytes) + got, size - got);
+      this->Wait(keepGoing);
+      const ssize_t count = read(this->Socket, static_cast<char*>(bytes) + got, size - got);
       if (count > 0)
       {
         got += static_cast<std::size_t>(count);
       }
       else if (count == 0 || (errno != EINTR && errno != EAGAIN))
       {
-        fail(this->Library, " cannot read it: ", this->HowItEnded());
+        throw ProgramEnded(joined(this->Library, " cannot read it: ", this->HowItEnded()));
       }
     }
   }
 
-private:
-  /// Waits until bytes can be read or the pipe is closed.
-  void Wait()
+  /// Waits until bytes can be read or the program has ended.
+  void Wait(const std::function<bool()>& keepGoing) const
   {
-    constexpr int pause = 100; // time between calls of KeepGoing, ms
-    pollfd wanted{ this->Pipe, POLLIN, 0 };
+    constexpr int pause = 100; // time between calls of keepGoing, ms
+    pollfd wanted{ this->Socket, POLLIN, 0 };
     while (poll(&wanted, 1, pause) <= 0)
     {
-      if (!this->KeepGoing())
+      if (!keepGoing())
       {
         throw WorkStopped();
       }
@@ -200,30 +227,44 @@ private:
       (isLimited ? ", or the memory that this process may have (ulimit -v) is too little" : "");
   }
 
-  const std::string Library; // "VTK" or "Assimp", for messages
-  const std::function<bool()>& KeepGoing;
+  const char* Library = ""; // "VTK" or "Assimp", for messages
   double Seconds = 0.0;
   std::chrono::steady_clock::time_point Begin;
   pid_t Pid = -1;
-  int Pipe = -1;
+  int Socket = -1;
 };
 
-// Returns the axis that points up after reading. Assimp turns Collada, 3DS, IFC and DXF to y. The
-// specifications of glTF, AC3D, FBX and X3D require y. Other formats do not give the axis, and z is
-// taken, as is usual in surveying.
-char UpAxis(const std::string& file)
-{
-  const bool isY = EndsWithAny(UncompressedName(file),
-    { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb", ".ac", ".acc",
-      ".ac3d", ".fbx", ".x3d" });
-  return isY ? 'y' : 'z';
-}
-}
+MeshReader::MeshReader() = default;
+MeshReader::~MeshReader() = default;
 
-Mesh ReadMesh(const std::string& file, const std::function<bool()>& keepGoing)
+Mesh MeshReader::Read(const std::string& file, const std::function<bool()>& keepGoing)
 {
-  MeshReaderProcess reader(file, keepGoing);
-  return ReceiveMesh([&reader](void* bytes, std::size_t size) { reader.Read(bytes, size); });
+  const bool isUsed = this->Running != nullptr;
+  std::unique_ptr<Process> process =
+    isUsed ? std::move(this->Running) : std::make_unique<Process>();
+  try
+  {
+    Mesh mesh = process->Read(file, keepGoing);
+    this->Running = std::move(process);
+    return mesh;
+  }
+  catch (const ProgramEnded&)
+  {
+    if (!isUsed)
+    {
+      throw;
+    }
+  }
+  catch (const std::bad_alloc&)
+  {
+    if (!isUsed)
+    {
+      throw;
+    }
+  }
+  // Earlier files may be the reason, so a new process reads this file again.
+  process.reset();
+  return this->Read(file, keepGoing);
 }
 
 void TurnUp(const std::string& file, char upAxis, Mesh& mesh)

@@ -93,6 +93,18 @@ void Pass(const Stream& stream, AnyMesh& mesh)
 }
 }
 
+void SendName(const std::string& file, const WriteBytes& write)
+{
+  Sender{ write }(file);
+}
+
+std::string ReceiveName(const ReadBytes& read)
+{
+  std::string file;
+  Receiver{ read }(file);
+  return file;
+}
+
 void SendMesh(const Mesh& mesh, const WriteBytes& write)
 {
   Sender{ write }(IsMesh);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshStream.h
- * @brief Messages from the program that reads meshes: a mesh, or the reason why a mesh cannot be
- * read.
+ * @brief Messages to and from the program that reads meshes: the name of a file; a mesh, or the
+ * reason why a mesh cannot be read.
  *
  * Numbers are sent as in memory, because sender and receiver run on one machine and are built
  * together.
@@ -20,6 +20,10 @@ namespace avianlidar::scene
 using WriteBytes = std::function<void(const void* bytes, std::size_t size)>;
 /// Function that reads `size` bytes, and throws if fewer bytes are left.
 using ReadBytes = std::function<void(void* bytes, std::size_t size)>;
+
+void SendName(const std::string& file, const WriteBytes& write);
+/// Returns the name of a file that was sent.
+std::string ReceiveName(const ReadBytes& read);
 
 void SendMesh(const Mesh& mesh, const WriteBytes& write);
 void SendError(const std::string& reason, const WriteBytes& write);

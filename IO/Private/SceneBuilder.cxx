@@ -142,7 +142,7 @@ public:
     File& file = this->Files.at(name);
     if (!file.mesh)
     {
-      file.mesh = ReadMesh(name, keepGoing);
+      file.mesh = this->Reader.Read(name, keepGoing);
     }
     if (--file.uses > 0)
     {
@@ -160,6 +160,7 @@ private:
     std::optional<Mesh> mesh;
   };
   std::map<std::string, File> Files;
+  MeshReader Reader;
 };
 
 Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,

@@ -5,9 +5,11 @@ import base64
 import json
 import math
 import os
+import pathlib
 import re
 import stat
 import struct
+import subprocess
 import unittest
 import unittest.mock
 import zipfile
@@ -16,6 +18,7 @@ import numpy as np
 import scenetools as st
 from boxfiles import CORNERS, TRIANGLES, gltf, ifc
 from echotools import InFolder
+from avianlidar import vtkAvianLidar
 from scipy.spatial.distance import cdist
 from scipy.spatial.transform import Rotation
 
@@ -417,6 +420,30 @@ class MeshFiles(InFolder):
         self.assert_refused(self.read("box.obj"), "AVIANLIDAR_MESH_SECONDS is 'soon', expected a number above 0")
         os.environ.update(AVIANLIDAR_MESH_SECONDS="60", AVIANLIDAR_MESH_READER=str(self.folder / "none"))
         self.assert_refused(self.read("box.obj"), "none, cannot be started: No such file or directory")
+
+    def test_one_process_reads_many_files(self):
+        """A program that ends after an answer is started again. The first file of a process that fails is the one to blame."""
+        real = pathlib.Path(vtkAvianLidar.__file__).parents[3] / "avianlidar" / "mesh-reader"
+        names, starts = [f"box{number}.obj" for number in range(5)], self.folder / "starts"
+        for number, name in enumerate(names):
+            (self.folder / name).write_text(f"v 0 0 0\nv {number + 1} 0 0\nv 0 1 0\nf 1 2 3\n", encoding="utf-8")
+        scene = {"version": 1, "objects": [{"name": name, "file": name, "material": "Wall"} for name in names]}
+        request = str(self.folder / names[1]).encode()
+        answer = subprocess.run([real, "0"], input=len(request).to_bytes(8, "little") + request, stdout=subprocess.PIPE, check=True).stdout
+        (self.folder / "answer").write_bytes(answer)
+        limit = "[ $(wc -c < '{0}') -lt 4 ] || kill -SEGV $$\ncat '{1}'"
+        for text, count, widths, error in (
+                (f"exec '{real}' \"$@\"", 1, [1, 2, 3, 4, 5], ""), (f"cat '{self.folder / 'answer'}'", 5, [2] * 5, ""),
+                (limit.format(starts, self.folder / "answer"), 4, [], "box3.obj: Assimp cannot read it: it crashes on the file (Segmentation fault)")):
+            starts.write_text("", encoding="utf-8")
+            self.program(f"printf x >> '{starts}'\n{text}")
+            read = st.Read(st.write_scene(self.folder, "many", scene))
+            self.assertEqual(len(starts.read_text(encoding="utf-8")), count, text)
+            if error:
+                self.assert_refused(read, error)
+            else:
+                self.assertEqual(read.errors, [])
+                self.assertEqual([float(np.ptp(st.corners(read.block(name))[..., 0])) for name in names], widths)
 
     def test_the_limit_of_memory_is_the_users(self):
         points, faces = 60000, 90000
