@@ -159,6 +159,8 @@ int main(int argc, char* argv[])
   while (true)
   {
     Answer(ReceiveName(ReadInput), write);
-    malloc_trim(0); // a large mesh must not be kept beside its copy in the other process
+    // A large mesh must not be kept beside its copy in the other process. Assimp takes 16 MB for
+    // each file.
+    malloc_trim(std::size_t(64) << 20);
   }
 }
