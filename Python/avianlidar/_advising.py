@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from ._advice import MET, SETTINGS, UNDECIDED, Advice
-from ._measurement import CELLS, DEFAULT, DIRECT, RAYS, UNCONNECTED, Measurement, Trial, choose
+from ._echo_errors import FEW
+from ._measurement import CELLS, DEFAULT, DIRECT, RAYS, UNCONNECTED, Measurement, Trial
 from ._numbers import figures
 from ._pipeline import Progress
 from ._properties import snake
@@ -41,7 +42,8 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
     """Sentences on what is advised and why."""
     number = m.beams.GetNumberOfPoints()
     sure = sum(len(truth.sure) for _, truth in m.batches)
-    lines = [f"Limits: {errors_in_words(m.asked)}. Measured on {len(m.sample)} of {number} beams with {sure} echoes"]
+    lines = [f"Limits: {errors_in_words(m.asked)}. Measured on {len(m.sample)} of {number} beams with {sure} echoes"
+             + (f", with {m.seeds} seeds" if m.seeds > 1 else "")]
     if not sure:
         return [*lines, "Advised: no setting, because none of these beams has an echo"]
     of = {trial.setting: trial for trial in m.trials[1:]}
@@ -58,8 +60,17 @@ def lines_of(m: Measurement, advised: Trial | None) -> list[str]:
                      f"{best.setting.words()}, has {errors_in_words(best.errors)}")
         unclear = sum(trial.verdict == UNDECIDED for trial in m.trials)
         if unclear:
-            lines[-1] += (f"; for {unclear} settings these beams do not decide: measure more beams, "
-                          "or allow larger errors")
+            more = f"measure more beams than {len(m.sample)}"
+            if m.has_all_echoes() and m.asked[2] < FEW / sure:
+                more = (f"the sample has all {sure} echoes of the scan, which cannot show that less than "
+                        f"{per_cent(FEW / sure)} of the echoes are wrong: allow `missed` to be larger")
+            elif m.has_all_echoes():
+                more = (f"the sample has all {sure} echoes of the scan, so that more seeds would help, and more beams "
+                        "would not: advise again with another seed")
+            lines[-1] += f"; {unclear} settings are undecided: {more}, or allow larger errors"
+        if m.beaten:
+            lines[-1] += ("; settings that keep the limits are slower than the default and have larger errors on these "
+                          "beams, so that chance decides: measure more beams, or allow larger errors")
 
     second = cost(of[DEFAULT], of[DIRECT])
     one, unconnected = m.without
@@ -119,7 +130,7 @@ def measure(like: Any, inputs: Sequence[Any], asked: dict[str, float], beams: in
         m.done = 0.4
         m.look_at_scene(first)
         m.try_all()
-        advised = choose(m.eligible(), m.asked)
+        advised = m.advise()
     settings, row = (advised.setting.properties(), m.trials.index(advised)) if advised else (None, -1)
     lines = lines_of(m, advised) + (advised.setting.as_commands() if advised else [])
 

@@ -9,9 +9,9 @@ count only as found or missed. Echoes that only some scans of the reference have
 
 Bounds are one-sided, 95 %, and hold for a scan of all beams with another seed. They follow from the spread among beams
 (variance of a ratio of weighted sums, linearised: Cochran, Sampling Techniques, 3rd ed., section 6, second-hand). The
-spread counts twice where all beams were taken, because both scans are random. Two terms are added: three times the
-share of a single beam, because a few wrong beams say little about the number of wrong beams, and the error of the
-reference. An rms of fewer than 30 beams has no bound.
+spread counts twice where all beams were scanned once, because both scans are random; further seeds of the measured scan
+reduce its part. Two terms are added: three times the share of a single beam, because a few wrong beams say little about
+the number of wrong beams, and the error of the reference. An rms of fewer than 30 beams has no bound.
 """
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -33,6 +33,20 @@ class Known(NamedTuple):
     unsure: np.ndarray  # echoes that are not judged
     x: np.ndarray  # spread of the mean by kind of error and beam ...
     y: np.ndarray  # ... and the divisor of x
+
+    def some(self, which: np.ndarray) -> "Known":
+        """The values of some beams, which are counted from 0."""
+        places = np.full(self.x.shape[1], -1)
+        places[which] = np.arange(len(which))
+        parts = [rows[places[rows[:, BEAM].astype(int)] >= 0] for rows in self[:2]]
+        for rows in parts:
+            rows[:, BEAM] = places[rows[:, BEAM].astype(int)]
+        return Known(*map(in_order, parts), self.x[:, which], self.y[:, which])
+
+    def beams_between(self, least: float, most: float) -> np.ndarray:
+        """The beams with an echo that has a share of energy from two reflections between `least` and `most`."""
+        share = self.sure[:, SECONDARY]
+        return np.unique(self.sure[(share > least) & (share <= most), BEAM]).astype(int)
 
     def replaced(self, which: np.ndarray, other: "Known") -> "Known":
         """This Known with the values of another Known for some beams."""
@@ -128,25 +142,65 @@ def per_beam(rows: np.ndarray, count: int, values: np.ndarray | None = None) -> 
     return np.bincount(rows[:, BEAM].astype(int), values, count).astype(float)
 
 
+class Found(NamedTuple):
+    """Errors of scans with one or more seeds. All arrays have a row for each kind of error and a column for each beam."""
+
+    x: np.ndarray  # sums of errors, mean over the seeds
+    y: np.ndarray  # the divisors, mean over the seeds
+    squares: np.ndarray  # means of x * x, x * y and y * y over the seeds: three such arrays
+    seeds: np.ndarray  # number of seeds of each beam
+
+    @classmethod
+    def of(cls, x: np.ndarray, y: np.ndarray) -> "Found":
+        """One seed."""
+        return cls(x, y, np.stack((x * x, x * y, y * y)), np.ones(x.shape[1]))
+
+    def beside(self, other: "Found") -> "Found":
+        """The errors of these beams and of others."""
+        return Found(*(np.concatenate(parts, axis=-1) for parts in zip(self, other)))
+
+    def with_seed(self, which: np.ndarray, other: "Found") -> "Found":
+        """The errors with a further seed for some of the beams."""
+        seeds = self.seeds.copy()
+        seeds[which] += 1
+        means = [mine.copy() for mine in self[:3]]
+        for mine, more in zip(means, other):
+            mine[..., which] += (more - mine[..., which]) / seeds[which]
+        return Found(*means, seeds)
+
+    def spread(self, weights: np.ndarray, alone: np.ndarray, squares: np.ndarray) -> float:
+        """The variance of a weighted sum over the beams, for these scans and one of all beams with another seed.
+        @param alone mean over the seeds @param squares mean of the squares"""
+        return float((np.maximum(weights**2 - weights, 0) * alone**2 + weights * (1 + 1 / self.seeds) * squares).sum())
+
+
 def ratio_of(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
     """The ratio of weighted sums and its standard deviation; 0 without data."""
-    x, y = weights * x, weights * y
-    ratio = x.sum() / y.sum() if y.sum() else 0.0
-    return ratio, np.sqrt(((1 + 1 / weights) * (x - ratio * y) ** 2).sum()) / (y.sum() or 1.0)
+    one = Found.of(x[None], y[None])
+    return one_ratio(one, 0, weights)
 
 
-def bounds(x: np.ndarray, y: np.ndarray, weights: np.ndarray, own: np.ndarray) -> np.ndarray:
+def one_ratio(found: Found, kind: int, weights: np.ndarray) -> tuple[float, float]:
+    """`ratio_of` for a kind of error."""
+    x, y, (xx, xy, yy) = found.x[kind], found.y[kind], found.squares[:, kind]
+    total = (weights * y).sum()
+    ratio = (weights * x).sum() / total if total else 0.0
+    variance = found.spread(weights, x - ratio * y, xx - 2 * ratio * xy + ratio**2 * yy)
+    return ratio, np.sqrt(max(0.0, variance)) / (total or 1.0)
+
+
+def bounds(found: Found, weights: np.ndarray, own: np.ndarray) -> np.ndarray:
     """Value, lower and upper bound of each kind of error. @param own errors of the reference"""
     errors = np.zeros((3, 3))
-    squared = (1 + 1 / weights) * weights**2
     for kind in range(3):
-        ratio, deviation = ratio_of(x[kind], y[kind], weights)
-        total = (weights * y[kind]).sum() or 1.0
-        by = SURELY * deviation + (FEW * (squared * x[kind] ** 2).sum() / (ratio * total**2) if ratio > 0 else 0)
+        ratio, deviation = one_ratio(found, kind, weights)
+        total = (weights * found.y[kind]).sum() or 1.0
+        few = FEW * found.spread(weights, found.x[kind], found.squares[0, kind]) / total**2
+        by = SURELY * deviation + (few / ratio if ratio > 0 else 0)
         if kind == 2:  # the kind of error is a share
-            none = FEW * (squared * y[kind] ** 2).sum() / total**2
+            none = FEW * found.spread(weights, found.y[kind], found.squares[2, kind]) / total**2
             errors[kind] = ratio, max(0, ratio - by - own[kind]), max(ratio + by, none) + own[kind]
-        elif np.count_nonzero(y[kind]) < FEWEST:
+        elif np.count_nonzero(found.y[kind]) < FEWEST:
             errors[kind] = np.sqrt(ratio), 0, np.inf
         else:
             low, value, high = np.sqrt((max(0, ratio - by), ratio, ratio + by))
