@@ -143,7 +143,7 @@ def per_beam(rows: np.ndarray, count: int, values: np.ndarray | None = None) -> 
 
 
 class Found(NamedTuple):
-    """Errors of scans with one or more seeds. All arrays have a row for each kind of error and a column for each beam."""
+    """Errors of scans with one or more seeds. Arrays have a row for each kind of error and a column for each beam."""
 
     x: np.ndarray  # sums of errors, mean over the seeds
     y: np.ndarray  # the divisors, mean over the seeds

@@ -305,3 +305,41 @@ TEST(PolygonPaths, NoUnitLosesMoreByPathsThanTheReportSays)
   EXPECT_GT(withoutPaths, 20);
   EXPECT_GT(byPathsAlone, 5);
 }
+
+//--- standard errors ------------------------------------------------------------------------------
+
+TEST(PolygonPaths, FewMirrorPathsStateTheirError)
+{
+  // A mirror path may be blocked, or arrive in another unit. Few paths do not show how often.
+  Numbers random(32);
+  int echoes = 0;
+  int within = 0;
+  for (int k = 0; k < 60; ++k)
+  {
+    EchoSettings settings = secondarySettings(20000, 0);
+    settings.beamSamples = BeamSampleSource::Cells;
+    settings.returnMode = ReturnMode::RangeUnits;
+    settings.lightEnergyConstraint = false;
+    Sensor sensor;
+    sensor.lowerEnergyLimit = 0.0;
+    ScanSetup setup = makeSetup(facingWalls(random), sensor, settings);
+    const std::map<double, double> expected = unitsOf(runScan(setup, oneBeam()));
+    setup.settings.raysPerBeam = 25;
+    for (int seed = 0; seed < 20; ++seed)
+    {
+      setup.settings.seed = seed;
+      finishSetup(setup);
+      for (const Echo& echo : runScan(setup, oneBeam()).echoes)
+      {
+        const auto unit = expected.find(echo.range);
+        if (unit != expected.end() && echo.secondaryShare > 0.02)
+        {
+          ++echoes;
+          within += std::fabs(echo.energyReceived - unit->second) <= 1.96 * echo.energyStdError;
+        }
+      }
+    }
+  }
+  EXPECT_GT(echoes, 1000);
+  EXPECT_GE(within, 0.95 * echoes) << "of " << echoes;
+}

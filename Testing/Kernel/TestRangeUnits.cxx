@@ -104,6 +104,29 @@ TEST(RangeUnits, PulsesAreSummedUnitByUnitInTheirOrder)
   }
 }
 
+TEST(RangeUnits, TheStrongestUnitAroundAPathIsAmongThoseThatItMeets)
+{
+  RangeUnitAccumulator accumulator(nanosecond, 3.5e-9, 40.0);
+  const std::vector<Contribution> all = randomContributions(60, 0.0, 100.0);
+  for (const Contribution& c : all)
+  {
+    accumulator.add(c);
+  }
+  accumulator.accumulate();
+  for (std::size_t n = 0; n < all.size(); ++n)
+  {
+    const double delay = all[n].pathLength / (SpeedOfLight * nanosecond);
+    double most = 0.0; // 0 beyond the gate
+    for (const RangeUnit& unit : accumulator.units())
+    {
+      const auto index = static_cast<double>(unit.index);
+      const bool meets = index + 1.0 > delay - 1.75 && index <= delay + 1.75;
+      most = meets ? std::max(most, unit.energy) : most;
+    }
+    EXPECT_EQ(accumulator.mostAround(n), most) << n;
+  }
+}
+
 TEST(RangeUnits, MemoryOfWidePulsesFollowsTheUnitsThatTheyMeet)
 {
   // Pulses that each meet a thousand units, 5000 of them in all: a list of what each of a million

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The switches of the beam and light-energy constraints change nothing but the work on paths over
 // two reflections, up to the bound.
+#include "SameEchoes.h"
 #include "SecondaryTestScene.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -137,6 +139,113 @@ TEST(SecondaryConstraints, ABeamWhosePathsTogetherStayBelowTheLimitTracesNone)
     EXPECT_EQ(silent.reports[0].skipped & SkippedBeam, SkippedBeam);
     EXPECT_GE(silent.reports[0].lost, all * (1.0 - 1e-9));
   }
+}
+
+namespace
+{
+/// A slit of which a beam sees 40 m, in many range units.
+Scene slit(const Material& material)
+{
+  return groove(0.7 * Degree, material, 0.0, 60.0);
+}
+
+/// Number of rays that a scan traces for paths, besides those from which paths start.
+std::uint64_t raysOfPaths(const ScanSetup& setup, const ScanBeams& beams)
+{
+  ScanSetup once = setup;
+  once.settings.numberOfReflections = 1;
+  finishSetup(once);
+  const std::uint64_t starts =
+    setup.settings.numberOfConnections > 0 || setup.settings.beamSamples == BeamSampleSource::Rays
+    ? tracedRaysOf(setup.settings)
+    : 0;
+  const std::uint64_t all = runScan(setup, beams).raysTraced;
+  return all - std::min(all, runScan(once, beams).raysTraced + starts);
+}
+}
+
+TEST(SecondaryConstraints, ABeamWithoutAnyUnitAboveTheLimitTracesNoPath)
+{
+  // Direct echoes reach 12 times the limit together, and a third of the limit in each unit.
+  for (const Material& material : { Material{ 0.2, 0.0, 1.0 }, Material{ 0.05, 0.3, 1e4 } })
+  {
+    EchoSettings settings = secondarySettings(100, material.ks > 0.0 ? 0 : 2);
+    settings.beamSamples = BeamSampleSource::Cells;
+    settings.returnMode = ReturnMode::RangeUnits;
+    Sensor sensor;
+    sensor.lowerEnergyLimit = 1e-14;
+    const ScanSetup open = makeSetup(slit(material), sensor, settings);
+    const ScanResult all = runScan(open, oneBeam());
+    double strongest = 0.0;
+    double sum = 0.0;
+    for (const Echo& echo : all.echoes)
+    {
+      strongest = std::max(strongest, echo.energyReceived);
+      sum += echo.energyReceived;
+    }
+    ASSERT_GT(raysOfPaths(open, oneBeam()), 0u);
+    sensor.lowerEnergyLimit = 3.0 * strongest;
+    ASSERT_GT(sum, 4.0 * sensor.lowerEnergyLimit);
+    const ScanSetup setup = makeSetup(slit(material), sensor, settings);
+    const ScanResult silent = runScan(setup, oneBeam());
+    EXPECT_EQ(raysOfPaths(setup, oneBeam()), 0u);
+    EXPECT_EQ(silent.reports[0].skipped & SkippedBeam, SkippedBeam);
+    EXPECT_GE(silent.reports[0].lost, strongest * (1.0 - 1e-9));
+    EXPECT_LT(silent.reports[0].lost, sensor.lowerEnergyLimit);
+  }
+}
+
+TEST(SecondaryConstraints, BeyondTheGateNoPathIsTraced)
+{
+  EchoSettings settings = secondarySettings(100);
+  settings.beamSamples = BeamSampleSource::Cells;
+  Sensor sensor;
+  const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 }); // 99 to 100 m away
+  ASSERT_GT(raysOfPaths(makeSetup(scene, sensor, settings), oneBeam()), 0u);
+  sensor.rangeGate = 90.0;
+  const ScanSetup setup = makeSetup(scene, sensor, settings);
+  EXPECT_EQ(raysOfPaths(setup, oneBeam()), 0u);
+  const BeamReport report = runScan(setup, oneBeam()).reports[0];
+  EXPECT_EQ(report.status, BeamStatus::OutsideGate);
+  EXPECT_EQ(report.skipped, 0u);
+}
+
+TEST(SecondaryConstraints, EchoesKeepTheirBitsWhateverIsLeftOut)
+{
+  // With the fraction 0 only paths that no echo can contain are left out.
+  Scene scenes[] = { rubble(2), rubble(3), slit({ 0.05, 0.3, 1e4 }) };
+  scenes[2].plate(Vec3(40.0, 0.1, 0.0), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 1.0), Wall, 2);
+  std::uint64_t rays[2] = { 0, 0 };
+  std::size_t echoes = 0;
+  for (const Scene& scene : scenes)
+  {
+    for (const auto& [aperture, connections] :
+      { std::make_pair(0.0, 0), std::make_pair(0.0, 8), std::make_pair(0.01, 0) })
+    {
+      Sensor sensor;
+      sensor.receiverAperture = aperture;
+      EchoSettings settings = secondarySettings(60, connections);
+      settings.beamSamples = BeamSampleSource::Cells;
+      settings.lightEnergyFraction = 0.0;
+      sensor.lowerEnergyLimit = 1e-14;
+      const double all = receivedFrom(runScan(makeSetup(scene, sensor, settings), fan()));
+      for (const double limit : { 1e-4, 1e-3, 1e-2 })
+      {
+        sensor.lowerEnergyLimit = limit * all;
+        ScanResult results[2];
+        for (const bool leaves : { false, true })
+        {
+          settings.lightEnergyConstraint = leaves;
+          results[leaves] = runScan(makeSetup(scene, sensor, settings), fan());
+          rays[leaves] += results[leaves].raysTraced;
+        }
+        EXPECT_TRUE(sameEchoes(results[0], results[1])) << limit << ", aperture " << aperture;
+        echoes += results[0].echoes.size();
+      }
+    }
+  }
+  EXPECT_GT(echoes, 100u);
+  EXPECT_LT(3 * rays[1], 2 * rays[0]);
 }
 
 TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)

@@ -152,6 +152,18 @@ double RangeUnitAccumulator::lastUnitOf(double range) const
   return std::floor(2.0 * range / this->UnitPathLength + 0.5 * this->RelativeWidth);
 }
 
+double RangeUnitAccumulator::mostAround(std::size_t number) const
+{
+  auto unit = std::lower_bound(this->Units.begin(), this->Units.end(), this->Firsts[number],
+    [](const RangeUnit& one, double index) { return static_cast<double>(one.index) < index; });
+  double most = 0.0;
+  for (; unit != this->Units.end() && unit->index <= this->Lasts[number]; ++unit)
+  {
+    most = std::max(most, unit->energy);
+  }
+  return most;
+}
+
 void RangeUnitAccumulator::accumulate()
 {
   this->Units.clear();

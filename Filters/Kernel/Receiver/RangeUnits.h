@@ -123,6 +123,9 @@ public:
   /// The last unit that a path of this range (m) can reach; not limited to gateUnits().
   double lastUnitOf(double range) const;
 
+  /// Largest energy of a unit that contribution `number` meets, J. Requires accumulate().
+  double mostAround(std::size_t number) const;
+
 private:
   double recorded(double length, double energy);
   double addWindow(double from, double to);

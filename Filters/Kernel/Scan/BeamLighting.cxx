@@ -53,11 +53,10 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   const bool again =
     this->Setup.settings.numberOfReflections > 1 && (this->Starts || this->MayReflectTwice);
   const PolygonQuadrature::Extent& extent = this->Quadrature.extent();
-  const bool mayBeSilent = most * this->OfLit.directSum < this->Setup.sensor.lowerEnergyLimit;
   const double ofPaths = !again ? 0.0
                                 : most *
       (this->MayReflectTwice ? this->Secondary.bound(extent.mostAlbedo, extent.nearest)
-                             : this->Secondary.bound(*this->Lit, this->OfLit, mayBeSilent));
+                             : this->Secondary.bound(*this->Lit, this->OfLit));
   if (!this->mayBePerceived(most, ofPaths))
   {
     return false;
@@ -135,6 +134,7 @@ void BeamLighting::fillUnits()
     }
     this->Air.take(std::move(surfaces));
   }
+  this->Units.clear();
   this->Units.add(this->Lit->range.data(), this->Energies.data(), this->Energies.size());
   for (const SecondaryPath& path : this->Paths)
   {
@@ -148,16 +148,22 @@ void BeamLighting::fillUnits()
 bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
   const double lostBefore = this->Lost;
-  if (this->Setup.needs.secondaryReflections)
+  // No path is shorter than twice the range of either end.
+  const Sensor& sensor = this->Setup.sensor;
+  const double farthestRecorded =
+    sensor.rangeGate + sensor.rangeUnitLength() + 0.25 * SpeedOfLight * sensor.pulseWidth;
+  if (dropsFaintPaths(this->Setup.settings) && !this->LightsAll &&
+    this->nearestRange() > farthestRecorded)
   {
-    if (!this->collectPaths(beam, trace))
-    {
-      return false;
-    }
+    return true;
   }
-  else
+  if (!this->Setup.needs.secondaryReflections)
   {
     this->Lost += std::min(most, this->Setup.needs.secondaryBound);
+  }
+  else if (!this->collectPaths(beam, trace))
+  {
+    return false;
   }
   this->Skipped |= this->Lost > lostBefore ? SkippedSecondaryPaths : 0u;
   return true;
@@ -189,9 +195,7 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
   {
     trace.secondary = std::make_unique<SecondaryTrace>();
   }
-  // A strip of cells begins before its mean range.
-  const double nearest =
-    this->Cells ? (1.0 - MostOfRange) * this->Lit->nearest : this->Lit->nearest;
+  const double nearest = this->nearestRange();
   const bool strata = this->Setup.settings.sampling == Sampling::Stratified;
   const bool starts = this->Starts->size() > 0;
   BeamTracer& tracer = this->Block.tracerOf(beam);
@@ -209,16 +213,27 @@ bool BeamLighting::collectPaths(std::size_t beam, BeamTrace& trace)
     paths.surfaces = this->Surfaces;
     paths.cells = this->Cells ? &this->Cells->samples : nullptr;
   }
-  const double direct = this->Direct + this->DroppedByQuadrature;
-  if (dropsFaintPaths(this->Setup.settings) &&
-    this->mayBeLeftOut(this->Lit->farthest, this->Lit->nearest))
+  if (dropsFaintPaths(this->Setup.settings) && this->onlySurfacesMatter())
   {
-    paths.silentBelow = SurelyBelow * this->Setup.sensor.lowerEnergyLimit - direct;
+    this->Units.add(this->Lit->range.data(), this->Energies.data(), this->Energies.size());
+    paths.units = &this->Units;
+    paths.faintBelow = SurelyBelow * this->Setup.sensor.lowerEnergyLimit;
   }
+  const double lostBefore = this->Lost;
   const bool perceivable = this->Secondary.collect(paths, this->Paths, this->Lost);
   addCounters(tracer.counters(), this->Block.counters(beam));
-  return perceivable ||
-    !this->isSkipped(direct + this->Lost, this->Lit->farthest, this->Lit->nearest);
+  if (!perceivable && this->isSkipped(this->Lost, this->Lit->farthest, this->Lit->nearest))
+  {
+    return false;
+  }
+  this->Lost = perceivable ? this->Lost : lostBefore; // no echo loses light by these paths
+  return true;
+}
+
+/// Lower bound of the ranges of the beam's surfaces, m. A strip of cells begins before its mean.
+double BeamLighting::nearestRange() const
+{
+  return this->Cells ? (1.0 - MostOfRange) * this->Lit->nearest : this->Lit->nearest;
 }
 
 /// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J
@@ -247,12 +262,17 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
   return true;
 }
 
+/// True if no noise and no air can be perceived.
+bool BeamLighting::onlySurfacesMatter() const
+{
+  return !this->LightsAll && !this->Receiver.mayAlarm() && !this->Air.returnsLight();
+}
+
 /// False if the beam must be lit even if its surfaces return too little: noise or air may be
 /// perceived, or the report must say that echoes arrive outside the gate.
 bool BeamLighting::mayBeLeftOut(double farthest, double nearest) const
 {
-  return !this->LightsAll && !this->Receiver.mayAlarm() && !this->Air.returnsLight() &&
-    nearest >= this->Setup.sensor.minimumRange &&
+  return this->onlySurfacesMatter() && nearest >= this->Setup.sensor.minimumRange &&
     this->Units.lastUnitOf(farthest) < static_cast<double>(this->Units.gateUnits());
 }
 

@@ -11,9 +11,9 @@
  *   path is not traced if an upper bound shows that it would be dropped.
  * - All secondary paths of a beam are skipped if the sum of their bounds and of the energy already
  *   dropped is less than epsilon Qlow.
- * - No secondary paths of a beam are traced if upper bounds show that the beam would not be
- *   perceived even with all its energy in one range unit (for an integrated beam: with the largest
- *   bound of a unit). This rule applies only if noise and air are too weak to be perceived.
+ * - A secondary path is not traced if no range unit that it may reach can have the energy Qlow,
+ *   even if nothing blocks any path. No path reaches a unit before its ends. This rule applies only
+ *   if noise and air are too weak to be perceived.
  *
  * The samples of an integrated beam are nodes on its polygons (PolygonQuadrature.h). If the
  * polygons face each other, connections start from rays that meet the polygons. The samples of a
@@ -23,9 +23,8 @@
  * Source: paper, Eq. 4-9 and Sec. 3.4.
  * Differs: the constraint limits the energy that a whole range unit loses. A comparison of each
  * ray's energy with Qlow would remove every wall.
- * Valid: no range unit loses more than epsilon Qlow. A beam to which the third rule applies would
- * have no echo with its secondary paths either, unless paths from random rays exceed the bound by
- * chance.
+ * Valid: no range unit of an echo loses more than epsilon Qlow. The third rule changes no echo,
+ * unless paths from random rays exceed the bound of their surface by chance.
  * Test: TestEchoClosedForms.cxx, TestSecondaryConstraints.cxx, TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamLighting_h
@@ -86,7 +85,9 @@ private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
   bool placeNodes(std::size_t beam);
   bool mayBePerceived(double most, double ofPaths);
+  bool onlySurfacesMatter() const;
   bool mayBeLeftOut(double farthest, double nearest) const;
+  double nearestRange() const;
   bool isSkipped(double most, double farthest, double nearest);
   void startFrom(const BeamSamples& rays);
   bool reflectAgain(std::size_t beam, BeamTrace& trace, double most);

@@ -61,8 +61,8 @@ double EnergyErrors::ofSamples(const RangeShares& shares, std::uint32_t paths) c
 }
 
 /// Standard error of the energy that mirror paths by regions put into a unit, J. A stratum is two
-/// neighbouring samples, one of which may not arrive. Many regions have a single stratum. As the
-/// difference within a single stratum is unreliable, twice its square is taken.
+/// neighbouring samples, one of which may not arrive. Few samples that all arrive do not show that
+/// every sample would arrive, so the square of the largest energy is added, as in StandardError.h.
 double EnergyErrors::ofMirrors(const RangeShares& shares) const
 {
   const std::size_t direct = this->Lighting.samples()->size();
@@ -74,6 +74,7 @@ double EnergyErrors::ofMirrors(const RangeShares& shares) const
   const auto sampleOf = [&](std::size_t s)
   { return this->Lighting.paths()[shares.contribution[s] - direct].two; };
   double variance = 0.0;
+  double most = 0.0; // largest energy of a sample, J
   std::uint32_t last = NoSample;
   double waiting = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
@@ -88,6 +89,7 @@ double EnergyErrors::ofMirrors(const RangeShares& shares) const
     {
       energy += shares.energies[s + 1];
     }
+    most = std::max(most, energy);
     const std::uint32_t stratum = sampleOf(s) / 2;
     if (stratum == last)
     {
@@ -100,7 +102,7 @@ double EnergyErrors::ofMirrors(const RangeShares& shares) const
     waiting = energy;
     last = stratum;
   }
-  return std::sqrt(2.0 * std::max(0.0, variance));
+  return std::sqrt(std::max(0.0, variance) + most * most);
 }
 
 /// Standard error of the energy that rays put into a unit, J: on paths with two reflections and, if

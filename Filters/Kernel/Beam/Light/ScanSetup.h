@@ -14,8 +14,8 @@
  * beam that meets only such surfaces from a beam that meets no surface.
  *
  * Source: none. Documentation/guide/accuracy.md describes the bounds.
- * Valid: in a beam with an echo, the energy of any range unit differs from the full model by at
- * most ModelNeeds::skippedEnergyBound. The energy of detail between the rays is not bounded
+ * Valid: the energy of any range unit of an echo differs from the full model by at most
+ * ModelNeeds::skippedEnergyBound. The energy of detail between the rays is not bounded
  * (missedDetailEnergy).
  * Test: TestSecondaryConstraints.cxx, TestScanReport.cxx, Testing/Stability/TestStabilitySweep.cxx,
  * Testing/Python/TestModelNeeds.py.
@@ -46,8 +46,8 @@ constexpr double SurelyBelow = 1.0 - 1e-9;
 /// Parts of the model left out of a beam; bits of BeamReport::skipped.
 enum SkippedPart : std::uint32_t
 {
-  SkippedSecondaryPaths = 1, ///< some or all paths with two reflections
-  SkippedBeam = 2,           ///< the whole beam, because its total energy is not perceived
+  SkippedSecondaryPaths = 1, ///< paths with two reflections that an echo might contain
+  SkippedBeam = 2,           ///< the whole beam, because no range unit is perceived
   SkippedNoise = 4,          ///< photon noise that cannot matter; set where the report is output
   SkippedBeyondRange = 8,    ///< a SkippedBeam whose surfaces all lie beyond the perceivable range
   SkippedDirectPaths = 16    ///< some direct echoes
@@ -63,8 +63,8 @@ struct ModelNeeds
   double secondaryBound = 0.0;       ///< bound of a beam's energy by paths with two reflections, J
   double furtherBound = 0.0;         ///< bound of a beam's energy by paths with more reflections, J
   double lightEnergyBound = 0.0; ///< bound of a range unit's loss by the light-energy constraint, J
-  /// Bound of the energy, J, that a range unit of a beam with an echo loses by all omissions, plus
-  /// the energy that skipped noise might have added.
+  /// Bound of the energy, J, that a range unit of an echo loses by all omissions, plus the energy
+  /// that skipped noise might have added.
   double skippedEnergyBound = 0.0;
   /// Energy of an object, J, above which the probability that all rays of a beam miss the object is
   /// below 5 %. A beam in cells has the rays of its grid, and more rays on small objects that have

@@ -54,27 +54,32 @@ PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
   return { x, y, -(x * a.x + y * a.y) };
 }
 
-/// Find the surfaces that may face surface `one`: the box of each of the two surfaces has a part
-/// before the plane of the other. @param lanes set by fillLanes() @param facing set to 1 for
-/// surfaces that may face `one`, to 0 for other surfaces
-AVIANLIDAR_MULTIVERSION void findFacing(
-  const double* const* lanes, std::size_t count, std::size_t one, double* facing)
+/// Find the facets to which a surface may reflect rays: the box of the facet has a part before the
+/// plane of the surface and parts inside each of four sides, and the box of the surface has a part
+/// before the plane of the facet. @param lanes set by fillLanes() @param centre, half box of the
+/// surface @param planes coefficients of the surface's plane and of the sides @param facing set to
+/// 1 for facets that pass, to 0 for other facets
+AVIANLIDAR_MULTIVERSION void findFacing(const double* const* lanes, std::size_t count,
+  const Vec3& centre, const Vec3& half, const double (*planes)[4], double* facing)
 {
   const double *ax = lanes[0], *ay = lanes[1], *az = lanes[2], *height = lanes[3];
   const double *cx = lanes[4], *cy = lanes[5], *cz = lanes[6];
   const double *hx = lanes[7], *hy = lanes[8], *hz = lanes[9];
-  const double px = ax[one], py = ay[one], pz = az[one], ph = height[one];
-  const double qx = std::fabs(px), qy = std::fabs(py), qz = std::fabs(pz);
-  const double ox = cx[one], oy = cy[one], oz = cz[one];
-  const double rx = hx[one], ry = hy[one], rz = hz[one];
+  const double ox = centre.x, oy = centre.y, oz = centre.z;
+  const double rx = half.x, ry = half.y, rz = half.z;
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i)
   {
-    const double its =
-      ((px * cx[i] + py * cy[i]) + pz * cz[i]) + ((qx * hx[i] + qy * hy[i]) + (qz * hz[i] + ph));
     const double own = ((ax[i] * ox + ay[i] * oy) + az[i] * oz) +
       ((std::fabs(ax[i]) * rx + std::fabs(ay[i]) * ry) + (std::fabs(az[i]) * rz + height[i]));
-    const bool faces = (its > 1e-9 * (ph + cz[i])) & (own > 1e-9 * (height[i] + oz));
+    bool faces = own > 1e-9 * (height[i] + oz);
+    for (int k = 0; k < 5; ++k)
+    {
+      const double* const p = planes[k];
+      const double its = ((p[0] * cx[i] + p[1] * cy[i]) + p[2] * cz[i]) +
+        ((std::fabs(p[0]) * hx[i] + std::fabs(p[1]) * hy[i]) + (std::fabs(p[2]) * hz[i] + p[3]));
+      faces = faces & (its > (k == 0 ? 1e-9 * (p[3] + cz[i]) : 0.0));
+    }
     facing[i] = faces ? 1.0 : 0.0;
   }
 }
@@ -158,7 +163,6 @@ double MirrorRegions::bound(std::size_t surface, double returned) const
 /// Set surfaces, facets (sorted by surface) and lanes from the visible polygons.
 void MirrorRegions::addFacets()
 {
-  this->Points.clear();
   for (Surface& surface : this->Surfaces)
   {
     this->setSurface(surface);
@@ -169,7 +173,7 @@ void MirrorRegions::addFacets()
     Surface& surface = this->Surfaces[polygon.surface];
     if (surface.height > 0.0)
     {
-      Facet facet{ {}, {}, polygon.surface, 0 };
+      Facet facet{ {}, {}, polygon.surface };
       for (std::uint32_t i = begin; i < polygon.end; ++i)
       {
         const PlanePoint& p = this->Seen->corners[i];
@@ -183,39 +187,36 @@ void MirrorRegions::addFacets()
   }
   std::stable_sort(this->Facets.begin(), this->Facets.end(),
     [](const Facet& a, const Facet& b) { return a.surface < b.surface; });
-  for (std::uint32_t k = 0; k < this->Facets.size(); ++k)
-  {
-    Facet& facet = this->Facets[k];
-    Surface& surface = this->Surfaces[facet.surface];
-    surface.first = surface.end == 0 ? k : surface.first;
-    surface.end = k + 1;
-    facet.firstPoint = static_cast<std::uint32_t>(this->Points.size());
-    for (int i = 0; i < facet.ring.size; ++i)
-    {
-      const PlanePoint& p = facet.ring.corners[i];
-      const Vec3 point =
-        Vec3(p.x, p.y, 1.0) / std::max(surface.inverse.at(p), surface.seen->leastInverse);
-      surface.low = glm::min(surface.low, point);
-      surface.high = glm::max(surface.high, point);
-      this->Points.push_back(point);
-    }
-  }
   this->fillLanes();
 }
 
-/// Set the lanes of findFacing(). A surface without facets faces nothing.
+/// Set the lanes of findFacing(), and the facets and boxes of surfaces.
 void MirrorRegions::fillLanes()
 {
-  const std::size_t count = this->Surfaces.size();
+  const std::size_t count = this->Facets.size();
   this->Lanes.resize(10 * count);
-  for (std::size_t i = 0; i < count; ++i)
+  this->Facing.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i)
   {
-    const Surface& s = this->Surfaces[i];
-    const bool empty = s.end == 0;
-    const Vec3 centre = empty ? Vec3(0.0) : 0.5 * (s.low + s.high);
-    const Vec3 half = empty ? Vec3(0.0) : 0.5 * (s.high - s.low);
-    const double values[10] = { s.along.x, s.along.y, s.along.z, empty ? -1e300 : s.height,
-      centre.x, centre.y, centre.z, half.x, half.y, half.z };
+    const Facet& facet = this->Facets[i];
+    Surface& s = this->Surfaces[facet.surface];
+    s.first = s.end == 0 ? i : s.first;
+    s.end = i + 1;
+    Vec3 low(1e300);
+    Vec3 high(-1e300);
+    for (int k = 0; k < facet.ring.size; ++k)
+    {
+      const PlanePoint& p = facet.ring.corners[k];
+      const Vec3 point = Vec3(p.x, p.y, 1.0) / std::max(s.inverse.at(p), s.seen->leastInverse);
+      low = glm::min(low, point);
+      high = glm::max(high, point);
+    }
+    s.low = glm::min(s.low, low);
+    s.high = glm::max(s.high, high);
+    const Vec3 centre = 0.5 * (low + high);
+    const Vec3 half = 0.5 * (high - low);
+    const double values[10] = { s.along.x, s.along.y, s.along.z, s.height, centre.x, centre.y,
+      centre.z, half.x, half.y, half.z };
     for (std::size_t k = 0; k < 10; ++k)
     {
       this->Lanes[k * count + i] = values[k];
@@ -250,20 +251,13 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   this->Drawn = 0;
   this->Regions.clear();
   const Surface& one = this->Surfaces[surface];
-  const std::size_t count = this->Surfaces.size();
-  const double* lanes[10];
-  for (std::size_t k = 0; k < 10; ++k)
+  this->findNear(one);
+  for (auto k = this->Near.begin(); k != this->Near.end();)
   {
-    lanes[k] = this->Lanes.data() + k * count;
-  }
-  this->Facing.resize(count);
-  findFacing(lanes, count, surface, this->Facing.data());
-  for (std::size_t k = 0; k < count; ++k)
-  {
-    if (this->Facing[k] > 0.0 && k != surface)
-    {
-      this->findRegions(one, this->Surfaces[k]);
-    }
+    const std::uint32_t other = this->Facets[*k].surface;
+    const auto end = std::upper_bound(k, this->Near.end(), this->Surfaces[other].end - 1);
+    this->findRegions(one, this->Surfaces[other], &*k, &*k + (end - k));
+    k = end;
   }
   // If there are many regions, all regions share samples.
   const std::size_t step = this->Regions.size() <= FewRegions ? 1 : this->Regions.size();
@@ -274,59 +268,76 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   return this->Sample;
 }
 
-/// Mirror the facets of `two` on the plane of `one`. @return box of the mirrored facets; empty if
-/// no facet lies before the plane
-MirrorRegions::Box MirrorRegions::mirror(const Surface& one, const Surface& two)
+/// Find the facets to which a surface may reflect rays. If a point p lies before the plane of the
+/// surface by H(p), its mirror image is p - 2 H(p) mirror. The apex sees the image in the surface's
+/// box if the image is inside four planes through the apex.
+void MirrorRegions::findNear(const Surface& one)
 {
-  this->Mirrored.clear();
-  this->Heights.clear();
-  bool before = false;
-  const std::uint32_t first = this->Facets[two.first].firstPoint;
-  const Facet& last = this->Facets[two.end - 1];
-  for (std::uint32_t i = first; i < last.firstPoint + last.ring.size; ++i)
+  this->Near.clear();
+  const double plane[4] = { one.along.x, one.along.y, one.along.z, one.height };
+  const double sides[5][4] = { {}, { 1.0, 0.0, -one.box.low.x }, { -1.0, 0.0, one.box.high.x },
+    { 0.0, 1.0, -one.box.low.y }, { 0.0, -1.0, one.box.high.y } };
+  double planes[5][4];
+  for (int k = 0; k < 5; ++k)
   {
-    const Vec3& p = this->Points[i];
-    const double height =
-      ((one.along.x * p.x + one.along.y * p.y) + one.along.z * p.z) + one.height;
-    before = before || height > 1e-9 * (one.height + p.z);
-    this->Heights.push_back(height);
-  }
-  Box all;
-  for (std::uint32_t k = two.first; k < two.end && before; ++k)
-  {
-    Box box;
-    const Facet& facet = this->Facets[k];
-    for (int i = 0; i < facet.ring.size; ++i)
+    const double* const s = sides[k];
+    const double shift = s[0] * one.mirror.x + s[1] * one.mirror.y + s[2] * one.mirror.z;
+    for (int i = 0; i < 4; ++i)
     {
-      const std::uint32_t point = facet.firstPoint + i;
-      const Vec3 q = this->Points[point] - 2.0 * this->Heights[point - first] * one.mirror;
-      const double inverse = 1.0 / q.z;
-      box.extend(
-        q.z > 0.0 ? PlanePoint{ q.x * inverse, q.y * inverse } : PlanePoint{ -1e300, -1e300 });
-      box.extend(q.z > 0.0 ? box.low : PlanePoint{ 1e300, 1e300 });
+      planes[k][i] = k == 0 ? plane[i] : s[i] - 2.0 * shift * plane[i];
     }
-    all.extend(box.low);
-    all.extend(box.high);
-    this->Mirrored.push_back(box);
   }
-  return all;
+  const std::size_t count = this->Facets.size();
+  const double* lanes[10];
+  for (std::size_t k = 0; k < 10; ++k)
+  {
+    lanes[k] = this->Lanes.data() + k * count;
+  }
+  findFacing(lanes, count, 0.5 * (one.low + one.high), 0.5 * (one.high - one.low), planes,
+    this->Facing.data());
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    if (this->Facing[k] > 0.0 && (k < one.first || k >= one.end))
+    {
+      this->Near.push_back(k);
+    }
+  }
 }
 
-/// Find the regions of rays that go from one surface to another.
-void MirrorRegions::findRegions(const Surface& one, const Surface& two)
+/// Find the regions of rays that go from a surface to facets [begin, end) of another surface.
+void MirrorRegions::findRegions(
+  const Surface& one, const Surface& two, const std::uint32_t* begin, const std::uint32_t* end)
 {
+  this->Mirrored.clear();
+  bool before = false;
+  for (const std::uint32_t* k = begin; k < end; ++k)
+  {
+    Box box;
+    const PlaneRing& ring = this->Facets[*k].ring;
+    for (int i = 0; i < ring.size; ++i)
+    {
+      const PlanePoint& p = ring.corners[i];
+      const double near = one.height * std::max(two.inverse.at(p), two.seen->leastInverse);
+      const double height = one.along.at(p) + near;
+      before = before || height > 1e-9 * (1.0 + near);
+      const Vec3 q = Vec3(p.x, p.y, 1.0) - 2.0 * height * one.mirror;
+      box.extend(q.z > 0.0 ? PlanePoint{ q.x / q.z, q.y / q.z } : PlanePoint{ -1e300, -1e300 });
+      box.extend(q.z > 0.0 ? box.low : PlanePoint{ 1e300, 1e300 });
+    }
+    this->Mirrored.push_back(box);
+  }
   Image image;
-  if (!one.box.meets(this->mirror(one, two)) || !this->imageOf(one, two, image))
+  if (!before || !this->imageOf(one, two, image))
   {
     return;
   }
   for (std::uint32_t i = one.first; i < one.end; ++i)
   {
-    for (std::uint32_t k = two.first; k < two.end; ++k)
+    for (const std::uint32_t* k = begin; k < end; ++k)
     {
-      Region region{ i, k, {}, 0.0 };
-      if (this->Facets[i].box.meets(this->Mirrored[k - two.first]) &&
-        this->cutOut(this->Facets[i], this->Facets[k], image, region.ring))
+      Region region{ i, *k, {}, 0.0 };
+      if (this->Facets[i].box.meets(this->Mirrored[k - begin]) &&
+        this->cutOut(this->Facets[i], this->Facets[*k], image, region.ring))
       {
         region.area = region.ring.area();
         if (region.area > LeastRegion)

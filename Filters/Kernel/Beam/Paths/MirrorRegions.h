@@ -90,7 +90,6 @@ private:
     PlaneRing ring;
     Box box;
     std::uint32_t surface;
-    std::uint32_t firstPoint; ///< place of the first corner in `Points`
   };
   /// Point (x, y)/z at which a ray reflected by one surface meets another surface, as functions of
   /// the ray.
@@ -109,9 +108,10 @@ private:
   void addFacets();
   void fillLanes();
   void setSurface(Surface& surface) const;
-  Box mirror(const Surface& one, const Surface& two);
+  void findNear(const Surface& one);
   bool imageOf(const Surface& one, const Surface& two, Image& image) const;
-  void findRegions(const Surface& one, const Surface& two);
+  void findRegions(
+    const Surface& one, const Surface& two, const std::uint32_t* begin, const std::uint32_t* end);
   bool cutOut(const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const;
   void placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths);
   bool findPath(const Region& region, const PlanePoint& p, MirrorPath& path);
@@ -120,12 +120,11 @@ private:
   const SceneTriangles& Scene;
   const BeamShape Shape;
   std::vector<Surface> Surfaces;
-  std::vector<Facet> Facets;   ///< sorted by surface
-  std::vector<Vec3> Points;    ///< corners of all facets, by BeamFrame::toPlane()
-  std::vector<double> Lanes;   ///< rows, set by fillLanes(), of one value per surface
-  std::vector<double> Facing;  ///< by surface: result of findFacing() for `Start`
-  std::vector<double> Heights; ///< heights of corners above the plane of a mirror, m
-  std::vector<Box> Mirrored;   ///< boxes of the mirrored facets of a surface
+  std::vector<Facet> Facets;       ///< sorted by surface
+  std::vector<double> Lanes;       ///< rows, set by fillLanes(), of one value per facet
+  std::vector<double> Facing;      ///< by facet: result of findFacing() for `Start`
+  std::vector<std::uint32_t> Near; ///< facets to which `Start` may reflect rays
+  std::vector<Box> Mirrored;       ///< boxes of the mirrored facets of a surface
   std::vector<Region> Regions;
 
   // The current beam.

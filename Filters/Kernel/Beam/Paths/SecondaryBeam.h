@@ -14,6 +14,7 @@
 #include "BeamRays.h"
 #include "BeamTracer.h"
 #include "ParallelLoop.h"
+#include "RangeUnits.h"
 #include "SceneTriangles.h"
 #include "SecondaryTrace.h"
 #include "Throughput.h"
@@ -45,8 +46,11 @@ struct SecondaryBeam
   const VisiblePolygons* surfaces = nullptr;
   /// Samples of a beam in cells, which give the shares of `surfaces`; null for other beams.
   const BeamSamples* cells = nullptr;
-  BeamAir* air = nullptr;   ///< air along the beam; null: all media fill the scene
-  double silentBelow = 0.0; ///< energy of all paths, J, below which no echo can arise
+  BeamAir* air = nullptr; ///< air along the beam; null: all media fill the scene
+  /// Range units to which only the direct echoes have been added; null: all paths matter, however
+  /// faint.
+  RangeUnitAccumulator* units = nullptr;
+  double faintBelow = 0.0; ///< energy of a unit, J, below which no echo contains the unit
 
   /// Throw WorkStopped if the work is no longer wanted. A beam of 100,000 rays takes longer than a
   /// user waits after an abort.

@@ -57,35 +57,19 @@ void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
 
 //--- throughputs ----------------------------------------------------------------------------------
 
-double SecondaryReflection::bound(
-  const BeamSamples& samples, const Throughput& direct, bool tight) const
+double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& direct) const
 {
-  const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
-  const double returned = returnBound(this->Setup, samples.nearest);
-  const double overMirror = mirrorReturnBound(this->Setup, this->Shape, samples.nearest);
   double budget = 0.0;
-  double most = 0.0;
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      const Material& material = this->Setup.material(triangle);
-      const double albedo = material.albedo();
+      const double albedo = this->Setup.material(triangle).albedo();
       for (std::uint32_t i = begin; i < end; ++i)
       {
         budget += samples.weight[i] * std::max(0.0, albedo - direct.reflected[i]);
       }
-      for (std::uint32_t i = begin; tight && i < end; ++i)
-      {
-        const Reflectance passed =
-          reflectanceBound(this->Setup.settings.reflectanceModel, material, samples.cosine[i]);
-        // With an aperture, connections and short paths both include matt light, at any incidence.
-        const double matt = gathers
-          ? 2.0 * (samples.cosine[i] > 0.0 ? passed.diffuse / samples.cosine[i] : 1.0)
-          : passed.diffuse;
-        most += samples.weight[i] * (matt * returned + passed.specular * overMirror);
-      }
     });
-  return tight ? std::min(budget, most * SurelyAbove) : budget;
+  return budget;
 }
 
 double SecondaryReflection::bound(double albedo, double nearest) const
@@ -222,54 +206,126 @@ double SecondaryReflection::mostOfMirrors(bool byRegions) const
 }
 
 /// Place mirror paths on surfaces whose bound is at least `least`, and find the throughputs. Paths
-/// on other surfaces count as lost even if they were found. @return bound of the lost throughputs
-double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least)
+/// on other surfaces count as lost even if they were found. The search begins with the largest
+/// bound. It ends, without any throughput, once all mirror paths together have less than `needed`.
+/// @return bound of the lost throughputs
+double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least, double needed)
 {
   SecondaryTrace& trace = beam.trace;
-  trace.searched.resize(this->Regions.surfaces(), 0);
-  this->Wanted.assign(this->Regions.surfaces(), 0);
+  const std::size_t count = this->Regions.surfaces();
+  trace.searched.resize(count, 0);
+  this->Wanted.assign(count, 0);
+  this->Order.clear();
+  double albedo = 0.0;
+  for (const PlaneSurface& s : beam.surfaces->surfaces)
+  {
+    const std::uint32_t other = s.other == NoTriangle ? s.triangle : s.other;
+    albedo = std::max(
+      { albedo, this->Setup.material(s.triangle).albedo(), this->Setup.material(other).albedo() });
+  }
+  // Without an aperture, no surface returns more than its albedo.
+  const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
+  const double scale = gathers ? 1.0 : std::min(1.0, albedo / this->OverMirror);
   double left = 0.0;
-  std::size_t drawn = 0;
-  for (std::size_t k = 0; k < trace.searched.size(); ++k)
+  double rest = 0.0; // bound of the surfaces that are still to be searched
+  for (std::uint32_t k = 0; k < count; ++k)
   {
     const double most = this->Regions.bound(k, this->OverMirror);
-    if (!(most > 0.0 && most >= least))
+    this->Wanted[k] = most > 0.0 && most >= least;
+    left += this->Wanted[k] ? 0.0 : most;
+    if (this->Wanted[k] && !trace.searched[k])
     {
-      left += most;
-      continue;
-    }
-    this->Wanted[k] = 1;
-    if (!trace.searched[k])
-    {
-      drawn += this->Regions.search(k, trace.mirrorPaths);
-      trace.searched[k] = 1;
-      if (drawn >= SecondaryBeam::StepsBetweenChecks)
-      {
-        beam.throwIfStopped(SecondaryBeam::StepsBetweenChecks - 1);
-        drawn = 0;
-      }
+      this->Order.emplace_back(-scale * most, k);
+      rest += scale * most;
     }
   }
-  std::stable_sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
-    [](const MirrorPath& a, const MirrorPath& b) { return a.start < b.start; });
-  this->measureMirrors(beam);
+  if (needed > 0.0)
+  {
+    std::sort(this->Order.begin(), this->Order.end());
+  }
+  double found = this->measureMirrors(beam, 0);
+  std::size_t drawn = 0;
+  for (const auto& [bound, k] : this->Order)
+  {
+    const double all = left + (found + rest) * SurelyAbove;
+    if (all < needed)
+    {
+      this->MirrorThroughputs.clear();
+      return all;
+    }
+    drawn += this->Regions.search(k, trace.mirrorPaths);
+    trace.searched[k] = 1;
+    if (drawn >= SecondaryBeam::StepsBetweenChecks)
+    {
+      beam.throwIfStopped(SecondaryBeam::StepsBetweenChecks - 1);
+      drawn = 0;
+    }
+    found += this->measureMirrors(beam, this->MirrorThroughputs.size());
+    rest += bound;
+  }
+  const auto isBefore = [](const MirrorPath& a, const MirrorPath& b) { return a.start < b.start; };
+  if (!std::is_sorted(trace.mirrorPaths.begin(), trace.mirrorPaths.end(), isBefore))
+  {
+    std::stable_sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(), isBefore);
+    this->measureMirrors(beam, 0);
+  }
   return left;
 }
 
-void SecondaryReflection::measureMirrors(const SecondaryBeam& beam)
+/// Add paths to the range units of the beam, as if nothing blocks them: connections before mirror
+/// paths are placed, then mirror paths. Set the throughputs of mirror paths to 0 if their units
+/// have too little energy for an echo. @param most largest energy of a path of throughput 1, J
+/// @param further energy that is not in the units, J @return bound of the energy of a unit, J
+double SecondaryReflection::addPaths(
+  const SecondaryBeam& beam, double most, double further, bool mirrors)
 {
-  this->MirrorThroughputs.clear();
-  this->BackThroughputs.clear();
-  this->NumberWanted = 0.0;
-  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
-  for (const MirrorPath& path : beam.trace.mirrorPaths)
+  const SecondaryConnections& connections = beam.trace.connections;
+  for (std::size_t i = 0; i < connections.size() && !mirrors; ++i)
   {
-    const bool wanted = beam.trace.searched.empty() || this->Wanted[path.start];
+    const double ends =
+      beam.samples.range[connections.one[i]] + beam.samples.range[connections.two[i]];
+    beam.units->add({ ends + connections.length[i], most * this->ConnectionThroughputs[i] });
+  }
+  const std::size_t first = beam.units->pathLengths().size();
+  for (std::size_t p = 0; p < this->MirrorThroughputs.size() && mirrors; ++p)
+  {
+    beam.units->add({ beam.trace.mirrorPaths[p].length, most * this->MirrorThroughputs[p] });
+  }
+  beam.units->accumulate();
+  for (std::size_t p = 0; p < this->MirrorThroughputs.size() && mirrors; ++p)
+  {
+    if (beam.units->mostAround(first + p) + further < beam.faintBelow)
+    {
+      this->MirrorThroughputs[p] = this->BackThroughputs[p] = 0.0;
+    }
+  }
+  double strongest = 0.0;
+  for (const RangeUnit& unit : beam.units->units())
+  {
+    strongest = std::max(strongest, unit.energy);
+  }
+  return strongest + further;
+}
+
+/// Find the throughputs of mirror paths from number `from` on. @return their sum
+double SecondaryReflection::measureMirrors(const SecondaryBeam& beam, std::size_t from)
+{
+  const std::vector<MirrorPath>& paths = beam.trace.mirrorPaths;
+  this->NumberWanted = from > 0 ? this->NumberWanted : 0.0;
+  this->MirrorThroughputs.resize(from);
+  this->BackThroughputs.resize(from);
+  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
+  double sum = 0.0;
+  for (std::size_t p = from; p < paths.size(); ++p)
+  {
+    const bool wanted = beam.trace.searched.empty() || this->Wanted[paths[p].start];
     this->NumberWanted += wanted ? ways : 0.0;
-    const BothWays both = wanted ? this->mirrorThroughput(beam, path) : BothWays{ 0.0, 0.0 };
+    const BothWays both = wanted ? this->mirrorThroughput(beam, paths[p]) : BothWays{ 0.0, 0.0 };
+    sum += both.there + both.back;
     this->MirrorThroughputs.push_back(both.there + both.back);
     this->BackThroughputs.push_back(both.back);
   }
+  return sum;
 }
 
 /// Sum of the bounds of the paths that are not traced.
@@ -384,13 +440,16 @@ bool SecondaryReflection::collect(
   // Largest energy of a path whose throughput is 1.
   const double most = pulseEnergy * transmissionBound(beam.nearest, this->Setup.attenuation());
   const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
-  const double others = sumOf(this->ConnectionThroughputs) + this->mostOfShortPaths(beam);
+  const double ofShort = this->mostOfShortPaths(beam);
+  const double others = sumOf(this->ConnectionThroughputs) + ofShort;
+  // Largest energy of a range unit without mirror paths, and throughput that an echo needs besides.
+  const double sure = most * SurelyAbove;
+  const double before = beam.units ? this->addPaths(beam, sure, lost + most * ofShort, false) : 0.0;
+  const double needed = beam.units && most > 0.0 ? (beam.faintBelow - before) / most : 0.0;
   const auto isSilent = [&](double ofMirrors)
   {
-    const double all = most * (ofMirrors + others);
-    const bool silent = all < beam.silentBelow;
-    lost = silent ? all : lost;
-    return silent;
+    lost = ofMirrors < needed ? before + most * ofMirrors : lost;
+    return ofMirrors < needed;
   };
   double threshold = 0.0;
   if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
@@ -419,13 +478,23 @@ bool SecondaryReflection::collect(
       threshold > 0.0 && settings.lightEnergyThreshold != LightEnergyThreshold::Limit;
     const double part = MirrorPart * lightEnergyTolerance(this->Setup);
     const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
-    const double left = this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold));
+    const double left =
+      this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold), needed);
     if (isSilent(left + sumOf(this->MirrorThroughputs)))
     {
       return false;
     }
     lost += most * left;
     ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
+    if (beam.units && !this->MirrorThroughputs.empty())
+    {
+      const double strongest = this->addPaths(beam, sure, lost + most * ofShort, true);
+      if (strongest < beam.faintBelow)
+      {
+        lost = strongest;
+        return false;
+      }
+    }
     traceMirrorPaths(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
   }
   else
@@ -435,7 +504,7 @@ bool SecondaryReflection::collect(
       return false;
     }
     traceMirrors(this->Setup, beam, this->SpecularBounds, throughputOf(threshold), this->Pairs);
-    this->measureMirrors(beam);
+    this->measureMirrors(beam, 0);
   }
   const double least = throughputOf(threshold);
   traceConnections(beam, this->ConnectionThroughputs, least);

@@ -44,8 +44,8 @@
  * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.
  * Differs: the paper leaves open how many secondary directions are followed, and with which weight.
  * The paper has neither the scale by the budget nor an aperture.
- * Valid: the paths of a ray together return at most B. No range unit loses more than epsilon Qlow
- * by the light-energy constraint (BeamLighting.h).
+ * Valid: the paths of a ray together return at most B. No range unit of an echo loses more than
+ * epsilon Qlow by the light-energy constraint (BeamLighting.h).
  * Test: TestSecondaryReflection.cxx, TestSecondaryPaths.cxx, TestSecondaryConstraints.cxx,
  * TestScanAgain.cxx.
  */
@@ -59,6 +59,7 @@
 #include "SecondaryBeam.h"
 #include "SecondaryTrace.h"
 
+#include <utility>
 #include <vector>
 
 namespace avianlidar
@@ -81,11 +82,10 @@ class SecondaryReflection
 public:
   SecondaryReflection(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// Upper bound of the sum of the throughputs of all paths of a beam. The throughputs of paths
-  /// from rays may exceed this bound a little by chance. @param samples samples of the direct echo,
-  /// from rays or not
-  /// @param tight false: the bound is the part of the albedo that direct echoes leave
-  double bound(const BeamSamples& samples, const Throughput& direct, bool tight) const;
+  /// Upper bound of the sum of the throughputs of all paths of a beam: the part of the albedo that
+  /// direct echoes leave. The throughputs of paths from rays may exceed this bound a little by
+  /// chance. @param samples samples of the direct echo, from rays or not
+  double bound(const BeamSamples& samples, const Throughput& direct) const;
 
   /// Upper bound of the sum of the throughputs of all paths of an integrated beam, which has no
   /// samples on surfaces without a direct echo.
@@ -95,9 +95,8 @@ public:
   /// Set the paths of the beam: first mirror paths in the order of the samples, then connections,
   /// then short paths.
   /// @param lost energy, J, increased by the bounds of the paths that are dropped
-  /// @return false if all paths together, blocked or not, have less energy than
-  /// SecondaryBeam::silentBelow. In this case no path is traced, and `lost` is the bound of all
-  /// paths.
+  /// @return false if no range unit can have the energy SecondaryBeam::faintBelow, even if nothing
+  /// blocks any path. In this case no path is traced, and `lost` is the bound of a unit.
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
@@ -107,8 +106,9 @@ private:
     double there, back;
   };
   void prepare(const SecondaryBeam& beam, bool byRegions);
-  double placeMirrors(const SecondaryBeam& beam, double least);
-  void measureMirrors(const SecondaryBeam& beam);
+  double placeMirrors(const SecondaryBeam& beam, double least, double needed);
+  double addPaths(const SecondaryBeam& beam, double most, double further, bool mirrors);
+  double measureMirrors(const SecondaryBeam& beam, std::size_t from);
   double mostOfMirrors(bool byRegions) const;
   void measure(const SecondaryBeam& beam);
   double untracedBound(const SecondaryTrace& trace) const;
@@ -124,12 +124,14 @@ private:
   ConnectionFinder Finder;
   MirrorRegions Regions;
   MirrorPairs Pairs;
-  std::vector<std::uint32_t> Triangles;      ///< triangle of each sample
-  MaterialLanes Materials;                   ///< material of each sample
-  std::vector<double> SpecularBounds;        ///< bound of the mirror path's throughput, by sample
-  double OverMirror = 1.0;                   ///< mirrorReturnBound()
-  double NumberWanted = 0.0;                 ///< number of mirror paths that may matter
-  std::vector<char> Wanted;                  ///< whether mirror paths may matter, by surface
+  std::vector<std::uint32_t> Triangles; ///< triangle of each sample
+  MaterialLanes Materials;              ///< material of each sample
+  std::vector<double> SpecularBounds;   ///< bound of the mirror path's throughput, by sample
+  double OverMirror = 1.0;              ///< mirrorReturnBound()
+  double NumberWanted = 0.0;            ///< number of mirror paths that may matter
+  std::vector<char> Wanted;             ///< whether mirror paths may matter, by surface
+  /// Surfaces in the order of their search, each after minus the bound of its throughput.
+  std::vector<std::pair<double, std::uint32_t>> Order;
   std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror and reverse paths
   std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by reverse paths
   std::vector<double> ConnectionThroughputs; ///< unblocked throughput of connections

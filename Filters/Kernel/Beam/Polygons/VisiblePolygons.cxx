@@ -176,7 +176,7 @@ std::uint32_t VisiblePolygons::triangleAt(const PlanePoint& p) const
   {
     bool left = true;
     bool right = true;
-    for (std::uint32_t i = begin; i < polygon.end; ++i)
+    for (std::uint32_t i = begin; i < polygon.end && (left || right); ++i)
     {
       const PlanePoint& a = this->corners[i];
       const PlanePoint& b = this->corners[i + 1 == polygon.end ? begin : i + 1];
