@@ -236,7 +236,7 @@ constexpr Name RaysTraced{ "rays_traced", "1" };
 /// sum of codes for parts left out: 1 second reflections, 2 whole beam, 4 noise, 8 surfaces out of
 /// range, 16 direct light (int)
 constexpr Name Skipped{ "skipped", "" };
-/// bound of the energy by which a range unit differs from the full model
+/// bound of the energy by which range units of echoes differ from the full model
 constexpr Name SkippedBound{ "skipped_bound", "J" };
 
 // Beam view (cell data; columns of the table).
