@@ -106,6 +106,68 @@ TEST(BeamCells, CrowdedBeamsDependOnNoTree)
   }
 }
 
+namespace
+{
+/// A black wall of many parts, and cubes before it that each fill about a share of the beam. Cubes
+/// do not hide each other. @param kds diffuse coefficient of each cube
+Scene cubesBeforeAWall(double share, const std::vector<double>& kds, Numbers& random)
+{
+  const double radius = 1000.0 * std::tan(openSensor().halfBeamwidth);
+  const double half = 0.5 * radius * std::sqrt(Pi * share);
+  Scene scene;
+  fine(scene, Vec3(1100.0, 0.0, 0.0), Vec3(0.0, 8.0, 0.0), Vec3(0.0, 0.0, 8.0), 56,
+    { 0.0, 0.0, 1.0 }, 1);
+  for (std::size_t k = 0; k < kds.size(); ++k)
+  {
+    const int column = static_cast<int>(k % 6) - 3;
+    const int row = static_cast<int>(k / 6) - 3;
+    const double spacing = 0.2 * radius;
+    const Vec3 at(1000.0 + half, spacing * (column + 0.5) + random(-0.2, 0.2) * spacing,
+      spacing * (row + 0.5) + random(-0.2, 0.2) * spacing);
+    scene.box(at, Vec3(half), { kds[k], 0.0, 1.0 }, 10 + static_cast<int>(k));
+  }
+  return scene;
+}
+}
+
+TEST(BeamCells, ObjectsThatAreHeardOnlyTogetherHaveEnoughRays)
+{
+  // One of 36 cubes returns twice the lower limit, or four return half of the limit, or all return
+  // a tenth or a hundredth. Cubes that no echo can show cost few rays.
+  constexpr double share = 1e-3;
+  Sensor sensor = openSensor();
+  double most = 0.0; // rays for cubes that return a tenth of the limit
+  for (const double part : { 2.0, 0.5, 0.1, 0.01 })
+  {
+    const int heard = part > 1.0 ? 1 : part > 0.2 ? 4 : 36;
+    double squares = 0.0;
+    double rays = 0.0;
+    constexpr int scenes = 20;
+    for (int seed = 0; seed < scenes; ++seed)
+    {
+      Numbers random(seed);
+      std::vector<double> kds(36, 1e-6);
+      std::fill(kds.begin(), kds.begin() + heard, 0.8);
+      const Scene scene = cubesBeforeAWall(share, kds, random);
+      sensor.lowerEnergyLimit = 0.8 * share * sensor.pulseEnergy / part;
+      EchoSettings settings = inCells();
+      settings.seed = seed;
+      const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+      EXPECT_TRUE(result.reports[0].isCrowded);
+      rays += static_cast<double>(result.raysTraced) / scenes;
+      if (part * heard > 1.0)
+      {
+        ASSERT_EQ(result.echoes.size(), 1u) << part;
+        const double expected = 0.8 * heard * share * sensor.pulseEnergy;
+        squares += std::pow(receivedFrom(result) / expected - 1.0, 2);
+      }
+    }
+    EXPECT_LT(std::sqrt(squares / scenes), 0.03) << part;
+    EXPECT_LT(rays, part == 0.01 ? 0.8 * most : Infinity);
+    most = rays;
+  }
+}
+
 TEST(BeamCells, GlintsAreThoseOfOnePlate)
 {
   // From lobes as wide as the beam to those of a tenth of it.

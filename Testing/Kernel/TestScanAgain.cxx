@@ -222,6 +222,43 @@ TEST(ScanAgain, WhatIsKnownIsNotTraced)
   }
 }
 
+TEST(ScanAgain, OnlyCrowdedBeamsAreTracedForAnotherLimit)
+{
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Scene scene = townOf(3, random);
+  for (int k = 0; k < 300; ++k)
+  {
+    const double edge = 0.02 + 0.01 * uniform(random);
+    scene.box(Vec3(0.5 * uniform(random), 25.0 + uniform(random), 0.5 + 0.4 * uniform(random)),
+      Vec3(edge), k % 2 ? Wall : Material{ 0.8, 0.0, 1.0 }, 1000 + k);
+  }
+  Sensor wide;
+  wide.halfBeamwidth = 0.03;
+  ScanSeries series(wide, usual(), scene);
+  std::size_t crowded = 0;
+  for (const BeamReport& report : series.result.reports)
+  {
+    crowded += report.isCrowded ? 1 : 0;
+  }
+  EXPECT_GT(crowded, 0u);
+  EXPECT_LT(crowded, series.beams.size() / 4);
+  const std::function<void()> changes[] = {
+    [&]() { series.setup.sensor.lowerEnergyLimit *= 0.1; },
+    [&]() { series.setup.sensor.lowerEnergyLimit *= 100.0; },
+    [&]() { edit(series.setup.materials, [](auto& all) { all.back().kd *= 0.1; }); },
+    [&]() { series.setup.sensor.receiverAperture = 0.01; } };
+  for (const auto& change : changes)
+  {
+    change();
+    series.check("crowded");
+    EXPECT_EQ(series.result.beamsTraced, crowded);
+  }
+  series.setup.settings.attenuationCoefficient = 1e-3;
+  series.check("air");
+  EXPECT_EQ(series.result.beamsTraced, 0u);
+}
+
 TEST(ScanAgain, KeptCellsServeASecondReflection)
 {
   std::mt19937_64 random(1);

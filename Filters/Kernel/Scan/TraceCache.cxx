@@ -61,6 +61,12 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
   {
     this->clear();
   }
+  const std::uint64_t wantedCrowd = crowdKey(setup);
+  if (this->crowd != wantedCrowd)
+  {
+    this->forgetCrowds();
+  }
+  this->crowd = wantedCrowd;
   this->stays =
     this->scan == checksum && this->beams.size() == scanned.size() && this->key == wanted;
   if (!this->stays)
@@ -90,6 +96,21 @@ void TraceCache::forgetLight()
     {
       trace.lit.reset();
       trace.held = trace.heldBytes();
+    }
+  }
+}
+
+/// Forget the views of crowded beams, and of beams with too many strips, which may be crowded.
+void TraceCache::forgetCrowds()
+{
+  for (std::vector<BeamTrace>* traces : { &this->beams, &this->absent })
+  {
+    for (BeamTrace& trace : *traces)
+    {
+      if (trace.direct() == DirectEcho::Rays || (trace.cells() && trace.cells()->isCrowded))
+      {
+        trace = BeamTrace{};
+      }
     }
   }
 }
@@ -186,5 +207,15 @@ std::uint64_t traceKey(const ScanSetup& setup)
     cells ? hashOf(setup.objectIds.data(), setup.objectIds.size() * sizeof(int), 0) : 0);
   return hashOf(numbers.data(), numbers.size() * sizeof(double),
     hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));
+}
+
+std::uint64_t crowdKey(const ScanSetup& setup)
+{
+  const Sensor& sensor = setup.sensor;
+  const double numbers[] = { sensor.pulseEnergy, sensor.lowerEnergyLimit, sensor.receiverAperture,
+    setup.largestReflectance, static_cast<double>(setup.settings.reflectanceModel) };
+  return setup.settings.beamSamples == BeamSampleSource::Cells
+    ? hashOf(numbers, sizeof(numbers), setup.materials.checksum())
+    : 0;
 }
 }

@@ -4,8 +4,8 @@
  * @brief Beams kept from earlier runs of a scan, and the keys for which they are valid.
  *
  * Source: none.
- * Valid: hits belong to one traceKey(), and lit beams to one lightKey(). Echoes do not depend on
- * the cache. An aborted run leaves the cache empty.
+ * Valid: hits belong to one traceKey(), those of crowded beams also to one crowdKey(), and lit
+ * beams to one lightKey(). Echoes do not depend on the cache. An aborted run leaves it empty.
  * Test: TestScanAgain.cxx, TestScanSweep.cxx.
  */
 #ifndef avianlidar_TraceCache_h
@@ -44,6 +44,7 @@ struct TraceCache
   std::vector<BeamKey> absentKeys;
   std::vector<std::unique_ptr<BeamSampler>> samplers; ///< sampler of each thread
   std::uint64_t light = 0;                            ///< lightKey() of the last run
+  std::uint64_t crowd = 0;                            ///< crowdKey() of the last run
 
   /// Set setup and beams, and keep the beams that remain valid. Absent beams are removed if all
   /// beams take more than `maximumBytes`. @param maximumBytes largest memory for all beams, bytes
@@ -55,6 +56,7 @@ struct TraceCache
 private:
   void take(const ScanBeams& scanned);
   void forgetLight();
+  void forgetCrowds();
 };
 
 /// Hash of ids, origins and directions, for ScanBeams::checksum.
@@ -64,6 +66,10 @@ std::uint64_t checksumOf(const ScanBeams& beams);
 /// borders of media, all settings of rays (such as N and the sampling), and the seed. If beams may
 /// be integrated or divided into cells, the hash includes range units, gate and object ids.
 std::uint64_t traceKey(const ScanSetup& setup);
+
+/// Hash of what decides how many rays the objects in crowded beams have (BeamCells::place()); 0 if
+/// no beam is divided into cells.
+std::uint64_t crowdKey(const ScanSetup& setup);
 }
 
 #endif

@@ -11,9 +11,9 @@
  *
  * Source: see the headers named above.
  * Differs: the paper draws N rays for every beam.
- * Valid: a view depends only on the beam, the triangles that enter the beam and the inputs
- * of traceKey(). A view does not depend on materials, limits, attenuation or the number of
- * reflections.
+ * Valid: a view depends only on the beam, the triangles that enter the beam, the inputs of
+ * traceKey() and, if the beam is crowded, the inputs of crowdKey(). A view does not depend on
+ * attenuation or the number of reflections.
  * Test: TestScan.cxx, TestScanAgain.cxx, TestBeamCells.cxx.
  */
 #ifndef avianlidar_ViewFinder_h

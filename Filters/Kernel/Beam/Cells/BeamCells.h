@@ -17,13 +17,19 @@
  * a small object, on which fewer than CellDensity::raysOnObject() rays would fall. A cell that may
  * hold the middle of a specular lobe is also divided further.
  *
+ * With more than MostTrianglesOfCells triangles there are no lists (place()). The boxes of the
+ * triangles of small objects then mark the squares that need more rays. An object that returns far
+ * less than the lower limit has proportionally fewer rays, so its error remains a small part of
+ * the limit. If small objects cover ShareOfCrowd of the beam, the whole grid is finer.
+ *
  * Source: Warnock, "A Hidden Surface Algorithm for Computer Generated Halftone Pictures", 1969, for
  * the division; Catmull, 1978, for lists that become shorter in smaller cells.
  * Differs: the smallest cells are not pixels. These cells hold stratified rays, whose sums have a
  * standard error.
  * Valid: any triangles. Samples depend only on the beam, and on the triangles that enter its disc
- * and their object ids. Samples do not depend on the order of the triangles, their materials or the
- * tree. Specular lobes are resolved up to exponents of about 1e8 at a half-beamwidth of 5.6 mrad.
+ * and their object ids. Without lists, samples also depend on materials, pulse energy, lower limit
+ * and aperture (crowdKey()). Samples do not depend on the order of the triangles or the tree.
+ * Specular lobes are resolved up to exponents of about 1e8 at a half-beamwidth of 5.6 mrad.
  * Test: TestBeamCells.cxx, TestCellErrors.cxx, TestBird.cxx.
  */
 #ifndef avianlidar_BeamCells_h
@@ -39,7 +45,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace avianlidar
@@ -64,19 +69,13 @@ public:
   std::unique_ptr<CellSamples> find(
     std::uint64_t beam, const BeamFrame& frame, const std::vector<const BeamSurface*>& entering);
 
-  /// Keep only the triangles of small objects. No other triangles decide where the rays of place()
-  /// lie. The input must contain every triangle that enters the beam, often millions of triangles.
-  void keepSmallObjects(
-    std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
-
   /// Place the rays of a beam with too many triangles for lists. The cells of the beam are divided
   /// as small objects require. The caller must then find the triangle of each ray by descents of
   /// the collision tree.
-  /// @param numbers triangles in any order, including all triangles of small objects; the function
-  /// changes the list
+  /// @param numbers all triangles that enter the beam, often millions, in any order
   /// @return the rays, valid until the next beam
   const BeamRays& place(
-    std::uint64_t beam, const BeamFrame& frame, std::vector<std::uint32_t>& numbers);
+    std::uint64_t beam, const BeamFrame& frame, const std::vector<std::uint32_t>& numbers);
 
   /// The samples of the rays of place(); null if there are too many strips. @param triangles
   /// nearest triangle of each ray, or NoTriangle
@@ -101,26 +100,44 @@ private:
     std::vector<std::uint32_t> numbers;
     CellChildren children;
   };
+  /// Sums over the triangles of an object, in units of 2^-40 half-beamwidths squared.
+  struct ObjectSums
+  {
+    int id;
+    std::uint64_t area;  ///< area in the disc
+    std::uint64_t heard; ///< area, times the energy returned by a share of 1 over the lower limit
+  };
+  /// A triangle of an object that may be small, and the box around it.
+  struct Part
+  {
+    std::uint32_t triangle;
+    int id;
+    float low[2], high[2]; ///< least and largest x and y, half-beamwidths
+  };
   void begin(std::uint64_t beam, const BeamFrame& frame);
-  void planAll();
   void setSurfaces();
-  double areaInDiscOf(std::uint32_t triangle) const;
+  double areaInDiscOf(const Corners& corners) const;
   bool isLarge(int id) const;
-  void addToObject(int id, double area);
+  void addToObject(int id, double area, double heard);
   void addToObject(const BeamSurface& s);
   void addPart(std::uint32_t triangle);
   void sumObjects();
   float smallShareOf(int id) const;
+  double heardOf(std::uint32_t triangle, const Corners& corners, double area, double nearest);
+  bool mark(const Part& part, float share);
+  const std::vector<std::uint32_t>& markAll();
   double areaOf(double x, double y, double width) const;
   double areaOf(int level, std::uint32_t column, std::uint32_t row) const;
   void divideAll(bool plans);
   void divide(const Cell& cell, List list);
   void solve(const Cell& cell, List list);
-  int blocksFor(const Cell& cell, List list) const;
+  int blocksFor(double width, float share) const;
+  float smallestIn(const Cell& cell, List list) const;
   bool mayHoldFoot(const Cell& cell, List list) const;
   void trace(const Cell& cell, List list, int blocks);
   void place(const Cell& cell, int block, int blocks, float pull, CellRays& rays) const;
   void plan(const CellRays& block, double share);
+  void planSquares(const Cell& cell, List list, int blocks);
 
   const ScanSetup& Setup;
   const SceneTriangles& Scene;
@@ -140,21 +157,29 @@ private:
   bool HasObjects = false;                ///< whether small objects enter the disc
   bool HasFeet = false;                   ///< whether middles of specular lobes may be in the disc
   std::vector<CellSurface> Surfaces;      ///< surfaces of `All` in single precision
-  /// Id of each small object, and sum of the areas of its triangles in units of 2^-40
-  /// half-beamwidths squared, after sumObjects().
-  std::vector<std::pair<int, std::uint64_t>> Objects;
-  std::vector<int> Large; ///< ids of objects that are large for certain
+  std::vector<ObjectSums> Objects; ///< small objects, in the order of their ids after sumObjects()
+  std::vector<int> Large;          ///< ids of objects that are large for certain
   std::vector<Level> Levels;
   std::vector<std::uint64_t> MetIn; ///< by surface: last traced cell in which a ray met the surface
   std::uint64_t Traced = 0;         ///< number of cells traced so far, in all beams
   bool TooMany = false;             ///< whether there are too many strips or blocks of rays
   RangeStrips Strips;
-  std::vector<std::uint32_t> Whole; ///< numbers of all surfaces, or of triangles that are hit
+  /// Numbers of all surfaces, of triangles that need lists, or of triangles that are hit.
+  std::vector<std::uint32_t> Whole;
 
   // A beam with more than MostTrianglesOfCells triangles.
   bool Plans = false; ///< whether rays are only placed, not tested
   BeamTriangles Seen;
-  BeamRays Rays; ///< rays that lie in the beam
+  BeamRays Rays;          ///< rays that lie in the beam
+  bool IsCrowded = false; ///< whether the beam has more than MostTrianglesOfCells triangles
+  int LeastBlocks = 1;    ///< m of the coarsest cells
+  Vec3 AcrossX{ 0.0 }, AcrossY{ 0.0 }; ///< scaled axes: AcrossX v = x z (BeamFrame::toPlane())
+  Material OfReturn;                   ///< material of `Return`
+  Reflectance Return{ 0.0, 0.0 };      ///< bound of what the material returns at any angle
+  std::vector<Part> Parts;
+  /// For each square, a sixteenth of a cell of the last usual level: least share of the small
+  /// objects that may enter the square; infinity: none.
+  std::vector<float> Marks;
   std::vector<CellRays> Blocks;
   std::size_t MostBlocks = 0;
   std::vector<double> Shares;         ///< share of the pulse for each ray, by block of rays
