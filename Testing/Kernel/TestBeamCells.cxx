@@ -168,6 +168,39 @@ TEST(BeamCells, ObjectsThatAreHeardOnlyTogetherHaveEnoughRays)
   }
 }
 
+TEST(BeamCells, TinyObjectsAmongManyKeepTheirRays)
+{
+  // The limit of rays must not be spent on a finer grid, on cells at the rim, or on more rays than
+  // an object needs.
+  constexpr double share = 5e-5;
+  constexpr int count = 16;
+  constexpr int scenes = 20;
+  Sensor sensor = openSensor();
+  sensor.lowerEnergyLimit = 0.01 * share * sensor.pulseEnergy;
+  const double radius = 900.0 * std::tan(sensor.halfBeamwidth);
+  const double half = 0.5 * radius * std::sqrt(Pi * share);
+  double squares = 0.0;
+  for (int seed = 0; seed < scenes; ++seed)
+  {
+    Numbers random(seed);
+    Scene scene = cubesBeforeAWall(2.5e-3, std::vector<double>(36, 1e-6), random);
+    for (int k = 0; k < count; ++k)
+    {
+      const double away = 0.97 * radius * std::sqrt(random(0.0, 1.0));
+      const double angle = 2.0 * Pi * k / count;
+      scene.box(Vec3(900.0 + half, away * std::cos(angle), away * std::sin(angle)), Vec3(half),
+        { k == 0 ? 0.8 : 0.01, 0.0, 1.0 }, 100 + k);
+    }
+    EchoSettings settings = inCells();
+    settings.seed = seed;
+    const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+    EXPECT_TRUE(result.reports[0].isCrowded);
+    const double expected = (0.8 + (count - 1) * 0.01) * share * sensor.pulseEnergy;
+    squares += std::pow(receivedFrom(result) / expected - 1.0, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / scenes), 0.03);
+}
+
 TEST(BeamCells, GlintsAreThoseOfOnePlate)
 {
   // From lobes as wide as the beam to those of a tenth of it.

@@ -243,8 +243,7 @@ TEST(ScanAgain, OnlyCrowdedBeamsAreTracedForAnotherLimit)
   }
   EXPECT_GT(crowded, 0u);
   EXPECT_LT(crowded, series.beams.size() / 4);
-  const std::function<void()> changes[] = {
-    [&]() { series.setup.sensor.lowerEnergyLimit *= 0.1; },
+  const std::function<void()> changes[] = { [&]() { series.setup.sensor.lowerEnergyLimit *= 0.1; },
     [&]() { series.setup.sensor.lowerEnergyLimit *= 100.0; },
     [&]() { edit(series.setup.materials, [](auto& all) { all.back().kd *= 0.1; }); },
     [&]() { series.setup.sensor.receiverAperture = 0.01; } };

@@ -150,6 +150,7 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
   this->ShareOfArea = this->Shape.shareOfArea();
   this->TooMany = false;
   this->IsCrowded = false;
+  this->MostHeard = 1.0;
   this->LeastBlocks = this->Density.blocks;
   this->Objects.clear();
   this->Large.clear();
@@ -297,8 +298,7 @@ float BeamCells::smallShareOf(int id) const
   const auto object = std::lower_bound(this->Objects.begin(), this->Objects.end(), id,
     [](const ObjectSums& one, int wanted) { return one.id < wanted; });
   const double share = shareOf(object->area);
-  const double heard =
-    std::min(this->IsCrowded ? RaysOfHeard : 1.0, HeardMargin * shareOf(object->heard));
+  const double heard = std::min(this->MostHeard, HeardMargin * shareOf(object->heard));
   const double large = this->Density.raysOnObject() / this->Density.rays();
   return share > this->LeastShare && share < large
     ? static_cast<float>(share < heard * large ? share / heard : large)
@@ -527,10 +527,12 @@ const BeamRays& BeamCells::place(
     const double share = shareOf(object.area);
     covered += share * this->Density.rays() < this->Density.raysOnObject() ? share : 0.0;
   }
-  this->LeastBlocks = std::max(this->Density.blocks, covered < ShareOfCrowd ? 1 : BlocksOfCrowd);
+  const int blocks = std::max(this->Density.blocks, covered < ShareOfCrowd ? 1 : BlocksOfCrowd);
+  this->LeastBlocks = blocks;
+  this->MostHeard = RaysOfHeard;
   const double usual = this->Density.rays() / CellLanes;
   const double most = std::max(MostPlannedBlocks, PlannedPerUsual * usual);
-  do // if small objects need too many rays, the smallest objects get no rays of their own
+  while (true)
   {
     const std::vector<std::uint32_t>& listed = this->markAll();
     this->Seen.begin(frame);
@@ -547,8 +549,17 @@ const BeamRays& BeamCells::place(
     this->TooMany = false;
     this->MostBlocks = static_cast<std::size_t>(most);
     this->divideAll(true);
-    this->LeastShare *= 4.0;
-  } while (this->TooMany && this->HasObjects);
+    if (!this->TooMany || !this->HasObjects)
+    {
+      break;
+    }
+    // If small objects need too many rays, they and the grid have fewer. If they still need too
+    // many, the smallest objects get no rays of their own.
+    const bool isFirst = this->MostHeard > 1.0;
+    this->LeastBlocks = isFirst ? this->Density.blocks : blocks;
+    this->LeastShare *= isFirst ? 1.0 : 4.0;
+    this->MostHeard = 1.0;
+  }
   this->LeastShare = LeastShareOfObject;
   this->TooMany = false;
   return this->Rays;

@@ -172,6 +172,7 @@ private:
   BeamTriangles Seen;
   BeamRays Rays;          ///< rays that lie in the beam
   bool IsCrowded = false; ///< whether the beam has more than MostTrianglesOfCells triangles
+  double MostHeard = 1.0; ///< factor of rays of objects that are heard surely
   int LeastBlocks = 1;    ///< m of the coarsest cells
   Vec3 AcrossX{ 0.0 }, AcrossY{ 0.0 }; ///< scaled axes: AcrossX v = x z (BeamFrame::toPlane())
   Material OfReturn;                   ///< material of `Return`
