@@ -311,7 +311,7 @@ int vtkAvianLidarCollisionTree::GetNumberOfBuilds() const
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarCollisionTree::FindHiddenPoints(
-  const double from[3], vtkDataArray* points, vtkUnsignedCharArray* hidden)
+  const double place[3], vtkDataArray* points, vtkUnsignedCharArray* hidden)
 {
   if (!points || points->GetNumberOfComponents() != 3 || !hidden)
   {
@@ -329,7 +329,7 @@ void vtkAvianLidarCollisionTree::FindHiddenPoints(
   }
   const avianlidar::SceneTriangles scene(*tree);
   avianlidar::BeamTracer tracer(scene);
-  const Vec3 apex(from[0], from[1], from[2]);
+  const Vec3 apex(place[0], place[1], place[2]);
   tracer.setBeam(avianlidar::makeBeamFrame(apex, Vec3(1.0, 0.0, 0.0), 1e-6));
   for (vtkIdType i = 0; i < points->GetNumberOfTuples(); ++i)
   {

@@ -133,10 +133,10 @@ public:
   double GetNumberOfBytesSent() const;
 
   /// Finds the points that a place does not see because surfaces of the last tree lie between them.
-  /// Without a tree no point is hidden. @param from the place, m @param points three components for
-  /// each point, m; otherwise an error is reported @param hidden gets a 1 for each hidden point,
-  /// and a 0 for each other point, also for points that are not finite
-  void FindHiddenPoints(const double from[3], vtkDataArray* points, vtkUnsignedCharArray* hidden);
+  /// Without a tree no point is hidden. @param place the place, m @param points three components
+  /// for each point, m; otherwise an error is reported @param hidden gets a 1 for each hidden
+  /// point, and a 0 for each other point, also for points that are not finite
+  void FindHiddenPoints(const double place[3], vtkDataArray* points, vtkUnsignedCharArray* hidden);
 
   /// Key under which the information of the field array `tree_checksum` holds the tree.
   static vtkInformationObjectBaseKey* COLLISION_TREE();

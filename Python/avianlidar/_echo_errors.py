@@ -38,10 +38,10 @@ class Known(NamedTuple):
         """The values of some beams, which are counted from 0."""
         places = np.full(self.x.shape[1], -1)
         places[which] = np.arange(len(which))
-        parts = [rows[places[rows[:, BEAM].astype(int)] >= 0] for rows in self[:2]]
-        for rows in parts:
+        sure, unsure = (rows[places[rows[:, BEAM].astype(int)] >= 0] for rows in self[:2])
+        for rows in (sure, unsure):
             rows[:, BEAM] = places[rows[:, BEAM].astype(int)]
-        return Known(*map(in_order, parts), self.x[:, which], self.y[:, which])
+        return Known(in_order(sure), in_order(unsure), self.x[:, which], self.y[:, which])
 
     def beams_between(self, least: float, most: float) -> np.ndarray:
         """The beams with an echo that has a share of energy from two reflections between `least` and `most`."""
@@ -163,10 +163,10 @@ class Found(NamedTuple):
         """The errors with a further seed for some of the beams."""
         seeds = self.seeds.copy()
         seeds[which] += 1
-        means = [mine.copy() for mine in self[:3]]
-        for mine, more in zip(means, other):
+        x, y, squares = (mine.copy() for mine in self[:3])
+        for mine, more in zip((x, y, squares), other):
             mine[..., which] += (more - mine[..., which]) / seeds[which]
-        return Found(*means, seeds)
+        return Found(x, y, squares, seeds)
 
     def spread(self, weights: np.ndarray, alone: np.ndarray, squares: np.ndarray) -> float:
         """The variance of a weighted sum over the beams, for these scans and one of all beams with another seed.
