@@ -862,6 +862,12 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   {
     feature.isNested = isNested;
   }
+  if (isNested && !xml)
+  {
+    notes.push_back(object.name +
+      ": incomplete ways and relations of this map are left out, and "
+      "only OpenStreetMap's XML (.osm) lets them be counted");
+  }
   ToLocal(features, layer, object, scene, counts);
   std::vector<Part> parts = Raise(features, object, terrain, counts, keepGoing);
   failIf(parts.empty() && counts.failed.GetCount() > 0, counts.failure);

@@ -203,7 +203,7 @@ private:
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Begin;
       if (passed.count() > this->Seconds)
       {
-        fail(this->Library, " cannot read it in ", std::llround(this->Seconds),
+        fail(this->Library, " cannot read it in ", this->Seconds,
           " s: set the environment variable AVIANLIDAR_MESH_SECONDS to allow more");
       }
     }

@@ -425,10 +425,11 @@ public:
         this->Check(relation);
       }
     }
-    for (const Way& way : this->Found.ways)
+    for (Way& way : this->Found.ways)
     {
       this->Step();
       this->Count(way);
+      this->Turn(way);
     }
     notes = { { "nodes whose place is not in degrees were left out", placeless },
       { "objects without a whole number as id were left out", this->Found.nameless },
@@ -437,6 +438,7 @@ public:
       { "relations whose outer ways do not close were left out", this->Unclosed },
       { "relations lack courtyards whose ways are missing or do not close", this->Filled },
       { "ways that are not closed were left out", this->Open },
+      { "closed ways that are lines by GDAL's rules were left out", this->Lines },
       { "ways of which too few nodes are in the file were left out", this->Lost },
       { "ways and relations lack corners whose nodes are missing", this->Clipped } };
   }
@@ -485,13 +487,19 @@ private:
   void Check(Relation& relation)
   {
     std::vector<Member>& members = relation.members;
+    const bool fits = this->AreWanted && this->Fits(this->TagsOf(relation), "osm_id", relation.id);
+    if (this->AreWanted && !fits)
+    {
+      // GDAL draws no outer way of a relation by itself, even if only the way is wanted.
+      relation.isLost = true;
+      return;
+    }
     std::unordered_set<Id> ways;
     members.erase(
       std::remove_if(members.begin(), members.end(),
         [&](const Member& one) { return one.IsRing() && !ways.insert(one.ref).second; }),
       members.end());
     this->OfRelations.insert(ways.begin(), ways.end());
-    const bool fits = this->AreWanted && this->Fits(this->TagsOf(relation), "osm_id", relation.id);
     const std::string name = "relation " + std::to_string(relation.id);
     Names ignored;
     const auto leave = [&](Names& names)
@@ -605,12 +613,41 @@ private:
     }
   }
 
+  // Draws a closed way that is wanted as a line as a line, although it has a tag of areas. Names a
+  // closed way that is wanted as an area, and is a line by its tags.
+  void Turn(Way& way)
+  {
+    if (this->Wanted.filters.empty() || !way.isClosed || way.isLost ||
+      !this->Fits(way.tags, this->AreWanted ? "osm_way_id" : "osm_id", way.id))
+    {
+      return;
+    }
+    const bool isArea = IsArea(way.tags);
+    if (this->AreWanted && !isArea && this->OfRelations.count(way.id) == 0)
+    {
+      this->Lines.Add("way " + std::to_string(way.id));
+    }
+    if (this->Wanted.layer == "lines" && isArea)
+    {
+      const auto area = std::find_if(
+        way.tags.begin(), way.tags.end(), [](const Tag& tag) { return tag.key == "area"; });
+      if (area == way.tags.end())
+      {
+        way.tags.push_back({ "area", "no" });
+      }
+      else
+      {
+        area->value = "no";
+      }
+    }
+  }
+
   Map& Found;
   const OsmWanted& Wanted;
   const bool AreWanted; // whether areas are wanted
   Steps Step;
   std::unordered_set<Id> OfRelations; // ways that are rings of relations
-  Names Missing, Empty, Unclosed, Filled, Open, Lost, Clipped;
+  Names Missing, Empty, Unclosed, Filled, Open, Lines, Lost, Clipped;
 };
 
 // Writes a map as XML.

@@ -491,6 +491,22 @@ class SceneObjects(unittest.TestCase):
                 found = self.volumes(text, *(note.replace("N", "1" if text.startswith("<node") else "1") for note in notes))
                 self.assertEqual(sorted(found), sorted(expected), body)
 
+    def test_ways_of_other_relations_and_closed_lines_of_osm(self):
+        """A building that is also the outline of a school stands, and a closed wall around an industrial site is a wall."""
+        other = self.way(19, 11, 12, 13, 14, 11, more=self.BUILDING)
+        ring, schools = self.way(1, 1, 2, 3, 4, 1, more=self.BUILDING), '<tag k="amenity" v="school"/>'
+        for relation in (self.area(9, (1, "outer"), more=schools), self.area(9, (1, "outer"), (19, "outer"), more=schools),
+                         self.area(9, (1, "outer"), more='<tag k="name" v="A"/>'), self.area(9, (1, "outer"), (77, "outer"), more=schools)):
+            self.assertEqual(self.volumes(self.NODES + ring + other + relation), [1, 1], relation)
+        tank = self.way(1, 1, 2, 3, 4, 1, more='<tag k="man_made" v="storage_tank"/><tag k="building:part" v="yes"/>')
+        self.assertEqual(self.volumes(self.NODES + tank + other.replace("</way>", '<tag k="building:part" v="yes"/></way>'),
+                                      "1 closed ways that are lines by GDAL's rules were left out: way 1", filter={"building:part": "*"}), [1])
+        walls = [self.way(1, 1, 2, 3, 4, 1, more=f'<tag k="barrier" v="wall"/>{more}') for more in (
+            "", '<tag k="landuse" v="industrial"/>', self.BUILDING, '<tag k="area" v="yes"/>', '<tag k="leisure" v="pitch"/><tag k="area" v="no"/>')]
+        found = [self.volumes(self.NODES + wall, layer="lines", filter={"barrier": "wall"}, width=0.3) for wall in walls]
+        self.assertEqual(found, 5 * [found[0]])
+        self.assertEqual(len(found[0]), 1)
+
     def test_repeated_and_deleted_objects_of_osm(self):
         ring, other = self.way(1, 1, 2, 3, 4, 1, more=self.BUILDING), self.way(19, 11, 12, 13, 14, 11, more=self.BUILDING)
         tagged = '<node id="1" lat="53.6" lon="13.3"><tag k="entrance" v="yes"/></node>'

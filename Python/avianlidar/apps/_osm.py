@@ -33,7 +33,7 @@ NODE = re.compile(rb"""<node id=["'](\d{1,18})["'](?: [\w:]+=(?:"[^"<>]*"|'[^'<>
 OBJECTS = (b"<node", NODE), *((b"<" + name, re.compile(b"<" + name + rb""" id=["'](\d{1,18})["']"""))
                               for name in (b"way", b"relation"))
 # What decides where the scene lies, or reaches the scene from afar
-FIRST = re.compile("aeroway|aerodrome|airport|coastline", re.IGNORECASE)
+FIRST = re.compile("aeroway|aerodrome|airport|coastline|runway", re.IGNORECASE)
 CRS = re.compile(rb'"crs"\s*:\s*(\{[^{}]*(?:\{[^{}]*\}[^{}]*)?\})')
 
 
