@@ -830,6 +830,8 @@ std::vector<Part> ReadFootprints(const Object& object, const Scene& scene, const
   std::string source = VirtualName(object.file);
   const std::string start = StartOf(source);
   std::optional<OsmFile> xml;
+  failIf(start.find("<osmChange") != std::string::npos,
+    "is a change of OpenStreetMap's data, expected a map");
   if (IsOsmXml(start))
   {
     xml.emplace(source, object.footprints, counts.map, keepGoing);

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exception>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <set>
 #include <unordered_map>
@@ -305,15 +306,16 @@ private:
                                                : this->OneRelation.tags;
       tags.push_back({ std::string(own.Get("k")), std::string(own.Get("v")) });
     }
-    const std::optional<Id> ref = ReadNumber<Id>(own.Get("ref"));
-    if (name == "nd" && this->Current == Kind::Way && ref)
+    // A reference that is not a number is one to a missing object.
+    const Id ref = ReadNumber<Id>(own.Get("ref")).value_or(std::numeric_limits<Id>::min());
+    if (name == "nd" && this->Current == Kind::Way)
     {
-      this->OneWay.nodes.push_back(*ref);
+      this->OneWay.nodes.push_back(ref);
     }
-    if (name == "member" && this->Current == Kind::Relation && ref)
+    if (name == "member" && this->Current == Kind::Relation)
     {
       this->OneRelation.members.push_back(
-        { std::string(own.Get("type")), std::string(own.Get("role")), *ref });
+        { std::string(own.Get("type")), std::string(own.Get("role")), ref });
     }
   }
 
@@ -424,6 +426,11 @@ public:
       {
         this->Check(relation);
       }
+      else if (this->AreWanted && !this->Wanted.filters.empty() &&
+        this->Fits(relation.tags, "osm_id", relation.id))
+      {
+        this->Others.Add("relation " + std::to_string(relation.id));
+      }
     }
     for (Way& way : this->Found.ways)
     {
@@ -437,6 +444,8 @@ public:
       { "relations without ways were left out", this->Empty },
       { "relations whose outer ways do not close were left out", this->Unclosed },
       { "relations lack courtyards whose ways are missing or do not close", this->Filled },
+      { "relations that are not multipolygons were left out", this->Others },
+      { "relations lack parts that are relations", this->Nested },
       { "ways that are not closed were left out", this->Open },
       { "closed ways that are lines by GDAL's rules were left out", this->Lines },
       { "ways of which too few nodes are in the file were left out", this->Lost },
@@ -511,6 +520,11 @@ private:
     {
       leave(this->Empty);
       return;
+    }
+    if (std::any_of(members.begin(), members.end(),
+          [](const Member& one) { return one.type == "relation" && one.role != "subarea"; }))
+    {
+      this->Nested.Add(name);
     }
     const auto isMissing = [this](const Member& one)
     { return one.IsRing() && !this->FindWay(one); };
@@ -647,7 +661,7 @@ private:
   const bool AreWanted; // whether areas are wanted
   Steps Step;
   std::unordered_set<Id> OfRelations; // ways that are rings of relations
-  Names Missing, Empty, Unclosed, Filled, Open, Lines, Lost, Clipped;
+  Names Missing, Empty, Unclosed, Filled, Others, Nested, Open, Lines, Lost, Clipped;
 };
 
 // Writes a map as XML.

@@ -527,6 +527,10 @@ class LeftOut(unittest.TestCase):
         mast = next(row for row in rows(folder) if row["kind"] == "obstacle")
         self.assertEqual((mast["top"], mast["top_from"]), (30.0, "height"))
 
+    def test_all_runways_come_first(self):
+        for tags in KNOWN["kinds"]["runway"]["tags"]:
+            self.assertRegex(" ".join(f"{name} {value}" for name, value in tags.items()), _osm.FIRST)
+
     def test_what_lies_apart_makes_no_difference(self):
         """The scene is the same as if the rules had looked at everything, in XML and GeoJSON, with bounds and
         without."""

@@ -501,6 +501,15 @@ class SceneObjects(unittest.TestCase):
         tank = self.way(1, 1, 2, 3, 4, 1, more='<tag k="man_made" v="storage_tank"/><tag k="building:part" v="yes"/>')
         self.assertEqual(self.volumes(self.NODES + tank + other.replace("</way>", '<tag k="building:part" v="yes"/></way>'),
                                       "1 closed ways that are lines by GDAL's rules were left out: way 1", filter={"building:part": "*"}), [1])
+        whole = self.area(200, (1, "outer"))
+        for body, expected, *notes in (
+                (ring + whole.replace("multipolygon", "site"), [1, 1], "1 relations that are not multipolygons were left out: relation 200"),
+                (self.way(1, 1, 2, 3, 4, 1) + whole.replace('<tag', '<member type="relation" ref="5" role="outer"/><tag', 1), [1, 1], "1 relations lack parts that are relations: relation 200"),
+                (ring.replace('ref="4"', 'ref="4x"'), [0.5, 1], "1 ways and relations lack corners whose nodes are missing: way 1"),
+                (self.way(1, 1, 2, 3, 4, 1) + whole.replace('<tag', '<member type="way" ref="18x" role="outer"/><tag', 1), [1], "1 relations with missing ways were left out: relation 200")):
+            self.assertEqual(sorted(self.volumes(self.NODES + other + body, *notes)), expected, body)
+        change = st.write_scene(self.folder, "town", self.osm('<osmChange version="0.6"><create>' + self.NODES + ring + "</create></osmChange>"))
+        self.assertIn("is a change of OpenStreetMap's data, expected a map", " ".join(st.Read(change).errors))
         walls = [self.way(1, 1, 2, 3, 4, 1, more=f'<tag k="barrier" v="wall"/>{more}') for more in (
             "", '<tag k="landuse" v="industrial"/>', self.BUILDING, '<tag k="area" v="yes"/>', '<tag k="leisure" v="pitch"/><tag k="area" v="no"/>')]
         found = [self.volumes(self.NODES + wall, layer="lines", filter={"barrier": "wall"}, width=0.3) for wall in walls]

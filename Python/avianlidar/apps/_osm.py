@@ -43,7 +43,7 @@ def _needs_order(file: pathlib.Path) -> bool:
     with open(file, "rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data:
         return (any(0 <= data.find(after) < data.rfind(before)
                     for before, after in itertools.combinations((b"<node ", b"<way ", b"<relation "), 2))
-                or re.search(rb"""action=["']delete|visible=["']false|<nd [^>]*lat=""", data) is not None)
+                or re.search(rb"""action\s*=\s*["']delete|visible\s*=\s*["']false|<nd\s[^>]*lat\s*=""", data) is not None)
 
 
 def _memberless(file: pathlib.Path) -> int:
