@@ -53,8 +53,8 @@ constexpr double RaysOfHeard = 2.0;
 constexpr std::uint64_t HeardParts = std::uint64_t(1) << 43;
 
 /// If small objects cover this share of a beam without lists, large objects show small parts
-/// between them. All cells then have at least m = BlocksOfCrowd. With m = 3, energies in the scenes
-/// of cliff_crowded.py err by up to 1.9 times as much as with 4.
+/// between them. All cells then have at least m = BlocksOfCrowd. With m = 3, energies in
+/// cliff_crowded.py err by up to 1.9 times as much as with 4.
 constexpr double ShareOfCrowd = 0.0625;
 constexpr int BlocksOfCrowd = 4;
 
@@ -171,7 +171,8 @@ void BeamCells::begin(std::uint64_t beam, const BeamFrame& frame)
 }
 
 /// Add an area to an object, often the object added last. Integer sums do not depend on the order
-/// of areas. @param heard energy that the area would return, divided by the lower limit
+/// in which areas are added. @param heard energy that the area would return, divided by the lower
+/// limit
 void BeamCells::addToObject(int id, double area, double heard)
 {
   if (this->Objects.empty() || id != this->Objects.back().id)
