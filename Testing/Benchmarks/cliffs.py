@@ -15,7 +15,7 @@ import sys
 import time
 from typing import Callable, Dict, NamedTuple, Optional
 
-PARTS = ("crowded", "silent")
+PARTS = ("crowded", "silent", "gate")
 
 
 class Row(NamedTuple):

@@ -82,6 +82,32 @@ TEST(Background, OfPlatesByClosedForm)
   }
 }
 
+TEST(Background, SurfacesBehindTheGateCount)
+{
+  // A near plate fills one half of the beam, and a plate behind the gate the other half.
+  const double lit = 0.4 * (Sky + Sun * std::cos(30.0 * RadiansPerDegree) / Pi);
+  Scene scene = plateFrom(0.0, 0.4);
+  scene.plate({ 600.0, -50.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, { 0.4, 0.0, 0.0 });
+  const Sensor sensor = noonSensor();
+  EXPECT_NEAR(radianceOf(scene, sensor, BeamSampleSource::Cells), lit, 0.02 * lit);
+  // Also for a beam without near surfaces that was seen at night before.
+  Scene far;
+  far.plate({ 600.0, 0.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, { 0.4, 0.0, 0.0 });
+  Sensor night = sensor;
+  night.sunlight = 0.0;
+  TraceCache cache;
+  ScanResult result;
+  const ScanBeams beams = alike(2000);
+  const std::size_t most = std::size_t{ 1 } << 30;
+  ASSERT_TRUE(
+    simulateScan(makeSetup(far, night, noisySettings()), beams, 1, cache, most, {}, result));
+  EXPECT_EQ(result.reports[0].status, BeamStatus::OutsideGate);
+  ASSERT_TRUE(
+    simulateScan(makeSetup(far, sensor, noisySettings()), beams, 1, cache, most, {}, result));
+  ASSERT_FALSE(result.echoes.empty()); // false alarms
+  EXPECT_NEAR(result.echoes[0].background, lit, 1e-10);
+}
+
 TEST(Background, GroundThatIsFaintToTheLaserCounts)
 {
   // Level ground, 2 m below, seen at 0.4 degrees: over many range units.

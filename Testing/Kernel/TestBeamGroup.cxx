@@ -125,8 +125,9 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
       while (candidates.next())
       {
         EXPECT_TRUE(lists[candidates.beam()].empty());
-        lists[candidates.beam()].insert(
-          candidates.triangles().begin(), candidates.triangles().end());
+        const std::vector<std::uint32_t>& found =
+          candidates.collect(std::numeric_limits<double>::infinity());
+        lists[candidates.beam()].insert(found.begin(), found.end());
       }
       OneBeamTracer alone(*tree);
       std::vector<Hit> hits;

@@ -101,9 +101,16 @@ TEST(Scan, AnyTreeAndWayDownGivesTheSameBits)
 {
   const Scene scene = townWithWall();
   const ScanBeams beams = horizon(90, 4);
-  for (EchoSettings settings : bothSources())
+  std::vector<std::pair<Sensor, EchoSettings>> ways;
+  for (const EchoSettings& settings : bothSources())
   {
-    const ScanResult reference = runScan(makeSetup(scene, wide(), settings), beams);
+    ways.emplace_back(wide(), settings);
+  }
+  ways.push_back(ways.back());
+  ways.back().first.rangeGate = 130.0; // ends in the middle of the town
+  for (auto& [sensor, settings] : ways)
+  {
+    const ScanResult reference = runScan(makeSetup(scene, sensor, settings), beams);
     int beamsIn[5] = {};
     for (const BeamReport& report : reference.reports)
     {
@@ -122,16 +129,58 @@ TEST(Scan, AnyTreeAndWayDownGivesTheSameBits)
         {
           const TreeOptions options{ static_cast<SplitRule>(rule),
             static_cast<BoundingVolumeType>(volume), leaf };
-          expectSame(reference, runScan(makeSetup(scene, wide(), settings, options), beams));
+          expectSame(reference, runScan(makeSetup(scene, sensor, settings, options), beams));
         }
       }
     }
     for (const TraceMode mode : { TraceMode::SingleRays, TraceMode::Beams })
     {
       settings.traceMode = mode;
-      expectSame(reference, runScan(makeSetup(scene, wide(), settings), beams));
+      expectSame(reference, runScan(makeSetup(scene, sensor, settings), beams));
     }
   }
+}
+
+TEST(Scan, SurfacesBehindTheGateChangeNoEcho)
+{
+  // Some far surfaces are large or begin before the gate ends, and some share a beam with near
+  // ones.
+  const Scene near = townWithWall();
+  Scene both = townWithWall();
+  Sensor sensor = wide();
+  sensor.rangeGate = 600.0;
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i)
+  {
+    const double angle = 2.0 * Pi * uniform(random);
+    const double range = 700.0 + 2000.0 * uniform(random);
+    const double half = i % 100 == 0 ? 60.0 : 4.0;
+    both.box(Vec3(range * std::cos(angle), range * std::sin(angle), half - 2.0), Vec3(half), Wall,
+      1000 + i);
+  }
+  const ScanBeams beams = horizon(180, 4);
+  const ScanResult alone = runScan(makeSetup(near, sensor, usual()), beams);
+  const ScanResult gated = runScan(makeSetup(both, sensor, usual()), beams);
+  ASSERT_GT(alone.echoes.size(), 100u);
+  expectSame(alone, gated);
+  sensor.rangeGate = 4000.0;
+  const ScanResult open = runScan(makeSetup(both, sensor, usual()), beams);
+  std::size_t behind = 0;
+  std::uint64_t nodes[2] = {};
+  for (std::size_t b = 0; b < beams.size(); ++b)
+  {
+    // A beam that meets nothing near meets something behind the gate if it does without a gate.
+    const bool isBehind = alone.reports[b].status == BeamStatus::NoSurface &&
+      open.reports[b].status != BeamStatus::NoSurface;
+    behind += isBehind ? 1 : 0;
+    EXPECT_EQ(gated.reports[b].status, isBehind ? BeamStatus::OutsideGate : alone.reports[b].status)
+      << b;
+    nodes[0] += gated.reports[b].counters.nodesVisited;
+    nodes[1] += open.reports[b].counters.nodesVisited;
+  }
+  EXPECT_GT(behind, 10u);
+  EXPECT_LT(nodes[0], nodes[1]);
 }
 
 TEST(Scan, ACacheThatIsTooSmallChangesNothing)

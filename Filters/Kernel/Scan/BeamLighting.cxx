@@ -149,11 +149,8 @@ bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
 {
   const double lostBefore = this->Lost;
   // No path is shorter than twice the range of either end.
-  const Sensor& sensor = this->Setup.sensor;
-  const double farthestRecorded =
-    sensor.rangeGate + sensor.rangeUnitLength() + 0.25 * SpeedOfLight * sensor.pulseWidth;
   if (dropsFaintPaths(this->Setup.settings) && !this->LightsAll &&
-    this->nearestRange() > farthestRecorded)
+    this->nearestRange() > this->Setup.sensor.farthestReceived())
   {
     return true;
   }

@@ -37,6 +37,10 @@ void BeamSimulator::light(
   {
     this->lightBeam(beam, trace, echoes, report);
   }
+  if (report.status == BeamStatus::NoSurface && trace.isBehindGate())
+  {
+    report.status = BeamStatus::OutsideGate;
+  }
   addCounters(this->Block.counters(beam), trace.counters);
   trace.held = isLit ? trace.heldBytes() : trace.held;
   report.counters = trace.counters;

@@ -57,7 +57,11 @@ public:
   void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
 
   /// See BeamLighting::lightAll().
-  void lightAll() { this->Lighting.lightAll(); }
+  void lightAll()
+  {
+    this->Tracing.lightAll();
+    this->Lighting.lightAll();
+  }
 
   /// Mean light from the air, J, that a threshold may follow in a unit of the beam lit last.
   double followedIn(std::int64_t unit) { return this->Air.followed(unit); }

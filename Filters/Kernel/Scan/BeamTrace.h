@@ -33,9 +33,10 @@ namespace avianlidar
 struct RayView
 {
 };
-/// View of a beam that no surface enters.
+/// View of a beam that no surface enters within the range gate.
 struct EmptyView
 {
+  bool isBehindGate = false; ///< whether a surface enters the beam behind the gate
 };
 
 /// The view of a beam, with alternatives in the order of DirectEcho and pointers that are not null.
@@ -56,6 +57,12 @@ struct BeamTrace
   DirectEcho direct() const { return static_cast<DirectEcho>(this->view.index()); }
   /// Visible polygons of an integrated beam; null for other beams.
   const VisiblePolygons* polygons() const { return this->part<VisiblePolygons>(); }
+  /// True if the beam meets surfaces, all of them behind the range gate.
+  bool isBehindGate() const
+  {
+    const auto* const empty = std::get_if<EmptyView>(&this->view);
+    return empty && empty->isBehindGate;
+  }
   /// Samples of a beam divided into cells; null for other beams.
   const CellSamples* cells() const { return this->part<CellSamples>(); }
 

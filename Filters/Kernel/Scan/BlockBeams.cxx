@@ -22,7 +22,6 @@ void BlockBeams::begin(std::size_t begin, std::size_t end)
 {
   this->First = begin;
   this->GeometryBeam = NoBeam;
-  this->TracerBeam = NoBeam;
   this->BeamStates.resize(std::max(this->BeamStates.size(), end - begin));
   for (std::size_t beam = begin; beam < end; ++beam)
   {
@@ -109,11 +108,7 @@ const SampleGeometry& BlockBeams::geometryOf(std::size_t beam, const BeamSamples
 
 BeamTracer& BlockBeams::tracerOf(std::size_t beam)
 {
-  if (this->TracerBeam != beam)
-  {
-    this->Tracer.setBeam(this->frameOf(beam));
-    this->TracerBeam = beam;
-  }
+  this->Tracer.setBeam(this->frameOf(beam));
   return this->Tracer;
 }
 }

@@ -53,7 +53,7 @@ public:
   const SampleGeometry& geometryOf(std::size_t beam, const BeamSamples& hits);
 
   BeamTracer& tracer() { return this->Tracer; }
-  /// The tracer, set to the beam with counters of 0, valid until a call for another beam.
+  /// The tracer, set to the beam with counters of 0, valid until the next call.
   BeamTracer& tracerOf(std::size_t beam);
 
   /// Cost of tracing the beam in this run.
@@ -83,7 +83,6 @@ private:
   std::size_t First = 0;          ///< first beam of the block
   std::vector<BeamState> BeamStates;
   std::size_t GeometryBeam = NoBeam; ///< beam that `Geometry` belongs to
-  std::size_t TracerBeam = NoBeam;   ///< beam that `Tracer` is set to
 };
 }
 

@@ -9,6 +9,8 @@ ScanBlock::ScanBlock(
   , Scene(scene)
   , Beams(beams)
   , Block(block)
+  , Gate(setup.sensor.seesDaylight() ? std::numeric_limits<double>::infinity()
+                                     : setup.sensor.farthestReceived())
   , Views(setup, scene, block.tracer())
 {
 }
@@ -70,6 +72,39 @@ void ScanBlock::addRaysOf(std::size_t beam)
   this->TracedRays.push_back(beam);
 }
 
+/// True if the beam's axis meets a surface behind the gate.
+bool ScanBlock::meetsBehindGate(std::size_t beam)
+{
+  BeamTracer& tracer = this->Block.tracerOf(beam);
+  const Hit hit = tracer.traceFromApex(this->Block.frameOf(beam).axis);
+  addCounters(tracer.counters(), this->Block.counters(beam));
+  return hit.valid() && hit.range > this->Gate;
+}
+
+/// Find the view of the beam at which the search has arrived.
+BeamView ScanBlock::findView(std::size_t beam)
+{
+  constexpr double Everywhere = std::numeric_limits<double>::infinity();
+  const auto viewWithin = [&](double range) -> BeamView
+  {
+    const std::vector<std::uint32_t>& found = this->Candidates.collect(range);
+    return found.empty() ? BeamView(EmptyView{})
+                         : this->Views.find(this->Beams.ids[beam], this->Block.frameOf(beam), found,
+                             this->Block.counters(beam));
+  };
+  if (!(this->Gate < this->Candidates.farthest()))
+  {
+    return viewWithin(Everywhere);
+  }
+  BeamView view = viewWithin(this->Gate);
+  const auto* const cells = std::get_if<std::unique_ptr<CellSamples>>(&view);
+  if (!std::holds_alternative<EmptyView>(view) && !(cells && (*cells)->samples.size() == 0))
+  {
+    return view;
+  }
+  return this->meetsBehindGate(beam) ? BeamView(EmptyView{ true }) : viewWithin(Everywhere);
+}
+
 /// Find the views of the searched beams, and which of these beams need rays.
 void ScanBlock::findViews(std::vector<BeamTrace>& traces)
 {
@@ -78,12 +113,9 @@ void ScanBlock::findViews(std::vector<BeamTrace>& traces)
   while (this->Candidates.next())
   {
     const std::size_t beam = this->Searched[this->Candidates.beam()];
-    const BeamFrame& frame = this->Block.frameOf(beam);
-    TraceCounters& counters = this->Block.counters(beam);
-    counters.nodesVisited += this->Candidates.nodesVisited();
     BeamTrace& trace = traces[beam];
-    trace.view =
-      this->Views.find(this->Beams.ids[beam], frame, this->Candidates.triangles(), counters);
+    trace.view = this->findView(beam);
+    this->Block.counters(beam).nodesVisited += this->Candidates.nodesVisited();
     if (trace.direct() == DirectEcho::Rays || this->needsPathStarts(trace))
     {
       this->addRaysOf(beam);

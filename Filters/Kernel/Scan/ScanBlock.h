@@ -5,8 +5,9 @@
  * earlier run.
  *
  * The view of a beam (ViewFinder.h) is found from the triangles that may enter the beam
- * (Candidates.h). Rays are traced through the tree (BeamTracer.h) if the settings or a view require
- * rays, or if paths with two reflections start from rays.
+ * (Candidates.h) before the range gate ends. If the beam sees nothing there, what lies behind the
+ * gate matters only for the report. Rays are traced through the tree (BeamTracer.h) if the settings
+ * or a view require rays, or if paths with two reflections start from rays.
  *
  * Source: paper, Algorithm 2 and Sec. 3.2.
  * Differs: see the headers named above.
@@ -25,6 +26,7 @@
 #include "ViewFinder.h"
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace avianlidar
@@ -43,9 +45,14 @@ public:
   std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
     const std::function<bool(std::size_t)>& leaveOut = {});
 
+  /// See BeamLighting::lightAll().
+  void lightAll() { this->Gate = std::numeric_limits<double>::infinity(); }
+
 private:
   bool needsPathStarts(const BeamTrace& trace) const;
   void addRaysOf(std::size_t beam);
+  BeamView findView(std::size_t beam);
+  bool meetsBehindGate(std::size_t beam);
   void findViews(std::vector<BeamTrace>& traces);
   void traceRays();
 
@@ -53,6 +60,7 @@ private:
   const SceneTriangles& Scene;
   const ScanBeams& Beams;
   BlockBeams& Block;
+  double Gate; ///< range behind which surfaces do not matter, m
   BeamCandidates Candidates;
   ViewFinder Views;
 

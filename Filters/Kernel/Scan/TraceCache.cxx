@@ -101,13 +101,15 @@ void TraceCache::forgetLight()
 }
 
 /// Forget the views of crowded beams, and of beams with too many strips, which may be crowded.
+/// Surfaces behind the gate matter in daylight.
 void TraceCache::forgetCrowds()
 {
   for (std::vector<BeamTrace>* traces : { &this->beams, &this->absent })
   {
     for (BeamTrace& trace : *traces)
     {
-      if (trace.direct() == DirectEcho::Rays || (trace.cells() && trace.cells()->isCrowded))
+      if (trace.direct() == DirectEcho::Rays || trace.isBehindGate() ||
+        (trace.cells() && trace.cells()->isCrowded))
       {
         trace = BeamTrace{};
       }
@@ -213,7 +215,8 @@ std::uint64_t crowdKey(const ScanSetup& setup)
 {
   const Sensor& sensor = setup.sensor;
   const double numbers[] = { sensor.pulseEnergy, sensor.lowerEnergyLimit, sensor.receiverAperture,
-    setup.largestReflectance, static_cast<double>(setup.settings.reflectanceModel) };
+    setup.largestReflectance, static_cast<double>(setup.settings.reflectanceModel),
+    sensor.seesDaylight() ? 1.0 : 0.0 };
   return setup.settings.beamSamples == BeamSampleSource::Cells
     ? hashOf(numbers, sizeof(numbers), setup.materials.checksum())
     : 0;

@@ -67,8 +67,8 @@ std::uint64_t checksumOf(const ScanBeams& beams);
 /// be integrated or divided into cells, the hash includes range units, gate and object ids.
 std::uint64_t traceKey(const ScanSetup& setup);
 
-/// Hash of what decides how many rays the objects in crowded beams have (BeamCells::place()); 0 if
-/// no beam is divided into cells.
+/// Hash of what decides how many rays the objects in crowded beams have (BeamCells::place()), and
+/// whether surfaces behind the gate matter; 0 if no beam is divided into cells.
 std::uint64_t crowdKey(const ScanSetup& setup);
 }
 

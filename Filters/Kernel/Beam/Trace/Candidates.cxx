@@ -4,6 +4,7 @@
 #include "Descents.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace avianlidar
@@ -14,13 +15,45 @@ namespace
 struct LeafCollector
 {
   std::vector<std::uint32_t>& triangles;
-  double limit() const { return std::numeric_limits<double>::infinity(); }
+  double range; ///< largest range of leaves, m
+  double limit() const { return this->range; }
   bool leaf(const std::uint32_t* first, std::uint32_t count)
   {
     this->triangles.insert(this->triangles.end(), first, first + count);
     return true;
   }
 };
+
+double squareOf(const Vec3& v)
+{
+  return glm::dot(v, v);
+}
+
+/// Squared distance of the apex from the side between two corners, m2.
+double squareToSide(const Vec3& a, const Vec3& b)
+{
+  const Vec3 side = b - a;
+  const double length2 = squareOf(side);
+  const double t = length2 > 0.0 ? std::clamp(-glm::dot(a, side) / length2, 0.0, 1.0) : 0.0;
+  return squareOf(a + t * side);
+}
+
+/// True if the whole triangle, with corners relative to the apex, is farther than a range, m.
+bool isFarther(const Corners& t, double range)
+{
+  const double square = range * range;
+  if (squareOf(t.a) <= square || squareToSide(t.a, t.b) <= square ||
+    squareToSide(t.b, t.c) <= square || squareToSide(t.c, t.a) <= square)
+  {
+    return false;
+  }
+  const Vec3 normal = normalOf(t);
+  const double height = glm::dot(normal, t.a);
+  const auto side = [&](const Vec3& a, const Vec3& b)
+  { return glm::dot(glm::cross(b - a, -a), normal) > 0.0; };
+  const bool isAbove = side(t.a, t.b) && side(t.b, t.c) && side(t.c, t.a);
+  return !(isAbove && height * height <= square * squareOf(normal));
+}
 }
 
 void BeamCandidates::begin(
@@ -61,9 +94,9 @@ bool BeamCandidates::next()
     {
       this->Beam = this->Order[this->Now.first++];
       --this->Now.count;
-      const EntryPoints* const entryPoints =
-        this->FromRoot ? nullptr : &this->Work.entryPoints[this->Member++];
-      if (this->collect(entryPoints))
+      this->Entries = this->FromRoot ? nullptr : &this->Work.entryPoints[this->Member++];
+      this->NodesVisited = this->Share;
+      if (this->FromRoot || !this->Entries->nodes.empty() || !this->Scene->moved().empty())
       {
         return true;
       }
@@ -110,20 +143,51 @@ bool BeamCandidates::descendNextGroup()
   return true;
 }
 
-/// Collect the triangles of the beam. @param entryPoints null: descend from the root @return false
-/// if there are no triangles
-bool BeamCandidates::collect(const EntryPoints* entryPoints)
+const std::vector<std::uint32_t>& BeamCandidates::collect(double range)
 {
   this->Triangles.clear();
-  this->NodesVisited = this->Share;
-  if (!this->Tree->empty() && (!entryPoints || !entryPoints->nodes.empty()))
+  if (!this->Tree->empty() && (!this->Entries || !this->Entries->nodes.empty()))
   {
-    LeafCollector leaves{ this->Triangles };
-    this->NodesVisited +=
-      descendCone(*this->Tree, this->Frames[this->Beam], leaves, this->Work.stack, entryPoints);
+    // Triangles beyond the range go by their own distances, so that no list depends on the tree.
+    constexpr double Margin = 1.0 + 1e-6;
+    const BeamFrame& frame = this->Frames[this->Beam];
+    const double most = Margin * limitOf(*this->Tree, range);
+    LeafCollector leaves{ this->Triangles, Margin * most };
+    this->NodesVisited += descendCone(*this->Tree, frame, leaves, this->Work.stack, this->Entries);
+    if (most < std::numeric_limits<double>::infinity())
+    {
+      this->Triangles.erase(
+        std::remove_if(this->Triangles.begin(), this->Triangles.end(),
+          [&](std::uint32_t triangle)
+          { return isFarther(this->Scene->cornersFrom(triangle, frame.origin), most); }),
+        this->Triangles.end());
+    }
   }
   const std::vector<std::uint32_t>& moved = this->Scene->moved();
   this->Triangles.insert(this->Triangles.end(), moved.begin(), moved.end());
-  return !this->Triangles.empty();
+  return this->Triangles;
+}
+
+double BeamCandidates::farthest() const
+{
+  const WideTree& boxes = this->Tree->wide;
+  if (boxes.nodes.empty() || !this->Scene->moved().empty())
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  const WideNode& root = boxes.nodes[0];
+  const Vec3 apex = this->Frames[this->Beam].origin - boxes.reference;
+  double square = 0.0;
+  for (std::uint32_t i = 0; i < WideNode::Width; ++i)
+  {
+    if (root.first[i] != NoChild)
+    {
+      const Vec3 center(root.x[i], root.y[i], root.z[i]);
+      const Vec3 half(root.halfX[i], root.halfY[i], root.halfZ[i]);
+      square = std::max(square, squareOf(glm::abs(center - apex) + half));
+    }
+  }
+  constexpr double Rounding = 1.0 + 1e-5;
+  return Rounding * std::sqrt(square);
 }
 }
