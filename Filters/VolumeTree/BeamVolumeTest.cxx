@@ -5,6 +5,7 @@
 #include "TriangleTest.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace avianlidar
 {
@@ -55,16 +56,6 @@ BeamVolumeTest::BeamVolumeTest(const BeamFrame& frame)
   this->Cosine = cone.cosine;
 }
 
-BeamVolumeTest::BeamVolumeTest(
-  const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin)
-  : Apex(apex)
-  , Origin(origin)
-  , Axis(direction)
-  , Sine(std::sin(angularMargin + HitMargin))
-  , Cosine(std::cos(angularMargin + HitMargin))
-{
-}
-
 bool BeamVolumeTest::separated(const Vec3& axis, const Vec3& center, const Vec3& half) const
 {
   const double z = glm::dot(center, axis);
@@ -95,26 +86,35 @@ bool BeamVolumeTest::projectionsMeet(const Vec3& axis, const Vec3& center, const
     meetsWedge(ConeWedge(this->Sine, axis.x, axis.y), center.x, center.y, half.x, half.y);
 }
 
-bool BeamVolumeTest::meets(const OBB& volume, double& nearest) const
+template <class Box>
+bool BeamVolumeTest::meetsBox(const Box& volume, double& nearest) const
 {
   const Vec3 fromApex = volume.center - this->Apex;
-  const double margin = 2.0 * HitMargin *
-    (sumOfMagnitudes(fromApex) + sumOfMagnitudes(this->Origin) + sumOfMagnitudes(volume.half));
+  const double margin =
+    2.0 * HitMargin * (sumOfMagnitudes(fromApex) + sumOfMagnitudes(volume.half));
   const Vec3 half = volume.half + Vec3(margin);
-  const Vec3 center = volume.along(fromApex - this->Origin);
+  const Vec3 center = volume.along(fromApex);
   const Vec3 axis = volume.along(this->Axis);
   const Vec3 outside = glm::max(glm::abs(center) - half, Vec3(0.0));
   nearest = asLowerBound(std::sqrt(glm::dot(outside, outside)));
   return !this->separated(axis, center, half) && this->projectionsMeet(axis, center, half);
 }
 
+bool BeamVolumeTest::meets(const AlignedBox& volume, double& nearest) const
+{
+  return this->meetsBox(volume, nearest);
+}
+
+bool BeamVolumeTest::meets(const OBB& volume, double& nearest) const
+{
+  return this->meetsBox(volume, nearest);
+}
+
 bool BeamVolumeTest::meets(const BoundingSphere& volume, double& nearest) const
 {
-  const Vec3 fromApex = volume.center - this->Apex;
-  const Vec3 center = fromApex - this->Origin;
+  const Vec3 center = volume.center - this->Apex;
   const double distance = std::sqrt(glm::dot(center, center));
-  const double radius = volume.radius +
-    2.0 * HitMargin * (sumOfMagnitudes(fromApex) + sumOfMagnitudes(this->Origin) + volume.radius);
+  const double radius = volume.radius + 2.0 * HitMargin * (sumOfMagnitudes(center) + volume.radius);
   const double z = glm::dot(center, this->Axis);
   const Vec3 radial = center - z * this->Axis;
   const double q = std::sqrt(glm::dot(radial, radial));
@@ -124,5 +124,77 @@ bool BeamVolumeTest::meets(const BoundingSphere& volume, double& nearest) const
     return distance <= radius; // the apex is the cone's nearest point
   }
   return q * this->Cosine - z * this->Sine <= radius;
+}
+
+namespace
+{
+Vec3 inverseOf(const Vec3& v)
+{
+  constexpr double Smallest = 1e-100; // in place of 0, by which nothing can be divided
+  const auto inverse = [](double x) { return 1.0 / (std::fabs(x) < Smallest ? Smallest : x); };
+  return { inverse(v.x), inverse(v.y), inverse(v.z) };
+}
+}
+
+double sizeFrom(const Vec3& apex, const OBB& volume)
+{
+  return sumOfMagnitudes(volume.center - apex) + sumOfMagnitudes(volume.half);
+}
+
+double sizeFrom(const Vec3& apex, const BoundingSphere& volume)
+{
+  return sumOfMagnitudes(volume.center - apex) + volume.radius;
+}
+
+RayVolumeTest::RayVolumeTest(
+  const Vec3& apex, const Vec3& origin, const Vec3& direction, double angularMargin, double size)
+  : Apex(apex)
+  , Origin(origin)
+  , Direction(direction)
+  , Inverse(inverseOf(direction))
+  , Margin((3.0 * HitMargin + angularMargin) * (size + sumOfMagnitudes(origin)))
+{
+}
+
+/// @param center,half centre, relative to the ray's origin, and half extents of a box, m, in the
+/// frame of the box @param inverse inverse direction in this frame
+bool RayVolumeTest::meetsSlabs(
+  const Vec3& center, const Vec3& half, const Vec3& inverse, double& nearest)
+{
+  const Vec3 middle = center * inverse;
+  const Vec3 reach = half * glm::abs(inverse);
+  const Vec3 from = middle - reach;
+  const Vec3 to = middle + reach;
+  const double entry = std::max(std::max(from.x, from.y), std::max(from.z, 0.0));
+  nearest = asLowerBound(entry);
+  return entry <= std::min(std::min(to.x, to.y), to.z);
+}
+
+bool RayVolumeTest::meets(const AlignedBox& volume, double& nearest) const
+{
+  return meetsSlabs(
+    volume.center - this->Apex - this->Origin, volume.half + this->Margin, this->Inverse, nearest);
+}
+
+bool RayVolumeTest::meets(const OBB& volume, double& nearest) const
+{
+  return meetsSlabs(volume.along(volume.center - this->Apex - this->Origin),
+    volume.half + this->Margin, inverseOf(volume.along(this->Direction)), nearest);
+}
+
+bool RayVolumeTest::meets(const BoundingSphere& volume, double& nearest) const
+{
+  const Vec3 center = volume.center - this->Apex - this->Origin;
+  const double radius = volume.radius + this->Margin;
+  const double z = glm::dot(center, this->Direction);
+  const Vec3 radial = center - z * this->Direction;
+  const double half2 = radius * radius - glm::dot(radial, radial); // of the chord, squared
+  if (half2 < 0.0 || z + radius < 0.0)
+  {
+    return false;
+  }
+  const double half = std::sqrt(half2);
+  nearest = asLowerBound(std::max(0.0, z - half));
+  return z + half >= 0.0;
 }
 }

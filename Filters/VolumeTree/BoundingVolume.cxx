@@ -58,9 +58,10 @@ double surfaceArea(const OBB& v)
   return v.empty() ? 0.0 : 8.0 * (v.half.x * v.half.y + v.half.y * v.half.z + v.half.z * v.half.x);
 }
 
-OBB alignedBox(const TriangleList& triangles)
+AlignedBox alignedBox(const TriangleList& triangles)
 {
-  return fitAlong(triangles, OBB());
+  const OBB box = fitAlong(triangles, OBB());
+  return { box.center, box.half };
 }
 
 OBB orientedBox(const TriangleList& triangles)

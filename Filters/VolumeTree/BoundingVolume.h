@@ -7,8 +7,8 @@
  *
  * Source: paper, Sec. 3.1; for spheres Badoiu and Clarkson, "Smaller core-sets for balls", SODA
  * 2003.
- * Differs: axis-aligned boxes are oriented boxes along the coordinate axes. A few steps of Badoiu
- * and Clarkson's method come within some per cent of the smallest sphere.
+ * Differs: a few steps of Badoiu and Clarkson's method come within some per cent of the smallest
+ * sphere.
  * Valid: coordinates up to MaximumCoordinate in magnitude. A fitted volume holds every corner of
  * its triangles, rounding included.
  * Test: TestBoundingVolume.cxx.
@@ -36,6 +36,17 @@ struct OBB
   Vec3 along(const Vec3& v) const { return v * this->axes; }
 };
 
+/// Box along the coordinate axes.
+struct AlignedBox
+{
+  Vec3 center{ 0.0 };
+  Vec3 half{ -1.0 };
+
+  bool empty() const { return this->half.x < 0.0; }
+  static const Vec3& along(const Vec3& v) { return v; }
+  operator OBB() const { return { this->center, glm::dmat3(1.0), this->half }; }
+};
+
 /// Bounding sphere: |p - center| <= radius.
 struct BoundingSphere
 {
@@ -56,7 +67,7 @@ struct TriangleList
 };
 
 /// Smallest box along the coordinate axes.
-OBB alignedBox(const TriangleList& triangles);
+AlignedBox alignedBox(const TriangleList& triangles);
 /// Smallest box along the principal axes of the corners or along the coordinate axes, whichever has
 /// the smaller surface.
 OBB orientedBox(const TriangleList& triangles);

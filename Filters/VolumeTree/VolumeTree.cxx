@@ -15,48 +15,64 @@ namespace
 {
 /// Visit the leaves whose volumes `probe` meets, the nearer child first.
 /// @return number of nodes whose volume was tested
-std::uint64_t descend(const VolumeTree& tree, const std::vector<std::uint32_t>& order,
-  const BeamVolumeTest& probe, TreeLeaves& leaves, TraversalStack& stack)
+template <class Probe, class Volume>
+std::uint64_t descend(const std::vector<BinaryNode>& nodes, const std::vector<Volume>& volumes,
+  const std::vector<std::uint32_t>& order, const Probe& probe, TreeLeaves& leaves,
+  TraversalStack& stack)
 {
-  std::uint64_t visited = 0;
-  stack.clear();
-  const auto push = [&](std::uint32_t node)
+  if (nodes.empty())
   {
-    ++visited;
-    double nearest = 0.0;
-    if (std::visit([&](const auto& all) { return probe.meets(all[node], nearest); }, tree.volumes))
-    {
-      stack.push_back({ node, 0, 0, nearest, 0, 0 });
-    }
-  };
-  if (!tree.nodes.empty())
-  {
-    push(0);
+    return 0;
   }
-  while (!stack.empty())
+  // Every level leaves at most one entry on the stack.
+  stack.resize(std::max<std::size_t>(stack.size(), nodes.back().depth + 2));
+  DescentEntry* const bottom = stack.data();
+  DescentEntry* top = bottom;
+  const auto push = [&](std::uint32_t node, double nearest)
   {
-    const DescentEntry entry = stack.back();
-    stack.pop_back();
+    top->node = node;
+    top->nearest = nearest;
+    ++top;
+  };
+  std::uint64_t visited = 1;
+  double nearest = 0.0;
+  if (probe.meets(volumes[0], nearest))
+  {
+    push(0, nearest);
+  }
+  double limit = leaves.limit();
+  while (top != bottom)
+  {
+    --top;
     // A volume at the limit may still hold a hit of equal range and lower number.
-    if (entry.nearest > leaves.limit())
+    if (top->nearest > limit)
     {
       continue;
     }
-    const BinaryNode& node = tree.nodes[entry.node];
+    const BinaryNode& node = nodes[top->node];
     if (node.children == 0)
     {
       if (!leaves.leaf(order.data() + node.begin, node.count))
       {
         break;
       }
+      limit = leaves.limit();
       continue;
     }
-    const std::size_t before = stack.size();
-    push(node.children + 1);
-    push(node.children);
-    if (stack.size() == before + 2 && stack[before].nearest < stack[before + 1].nearest)
+    visited += 2;
+    double second = 0.0;
+    const bool meetsFirst = probe.meets(volumes[node.children], nearest);
+    const bool meetsSecond = probe.meets(volumes[node.children + 1], second);
+    const std::uint32_t first = node.children;
+    if (meetsFirst && meetsSecond)
     {
-      std::swap(stack[before], stack[before + 1]);
+      const bool inOrder = nearest <= second;
+      push(first + (inOrder ? 1 : 0), inOrder ? second : nearest);
+      push(first + (inOrder ? 0 : 1), inOrder ? nearest : second);
+    }
+    else if (meetsFirst || meetsSecond)
+    {
+      push(first + (meetsFirst ? 0 : 1), meetsFirst ? nearest : second);
     }
   }
   return visited;
@@ -87,15 +103,25 @@ bool fit(Volume (*fitted)(const TriangleList&), const TriangleMesh& mesh,
 std::uint64_t VolumeTree::descendCone(const CollisionTree& tree, const BeamFrame& frame,
   TreeLeaves& leaves, TraversalStack& stack) const
 {
-  return descend(*this, tree.order, BeamVolumeTest(frame), leaves, stack);
+  const BeamVolumeTest probe(frame);
+  return std::visit([&](const auto& all)
+    { return descend(this->nodes, all, tree.order, probe, leaves, stack); },
+    this->volumes);
 }
 
 std::uint64_t VolumeTree::descendRay(const CollisionTree& tree, const Vec3& apex,
   const Vec3& origin, const Vec3& direction, double angularMargin, TreeLeaves& leaves,
   TraversalStack& stack) const
 {
-  const BeamVolumeTest probe(apex, origin, direction, angularMargin);
-  return descend(*this, tree.order, probe, leaves, stack);
+  constexpr double OfRoot = 2.0; // volumes may extend beyond the root's volume
+  return std::visit(
+    [&](const auto& all)
+    {
+      const double size = all.empty() ? 0.0 : OfRoot * sizeFrom(apex, all[0]);
+      const RayVolumeTest probe(apex, origin, direction, angularMargin, size);
+      return descend(this->nodes, all, tree.order, probe, leaves, stack);
+    },
+    this->volumes);
 }
 
 std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const TriangleMesh> mesh,
@@ -138,10 +164,12 @@ std::shared_ptr<const CollisionTree> buildVolumeTree(std::shared_ptr<const Trian
   tree->leaves = static_cast<std::uint32_t>((own->nodes.size() + 1) / 2);
   tree->depth = own->nodes.empty() ? 0 : own->nodes.back().depth;
   const KeepGoing rest = partOf(keepGoing, Built, 1.0);
+  const auto fitted = [&](auto make)
+  { return fit(make, *tree->mesh, tree->order, rest, threads, *own); };
   const bool finished = options.boundingVolume == BoundingVolumeType::Sphere
-    ? fit(boundingSphere, *tree->mesh, tree->order, rest, threads, *own)
-    : fit(options.boundingVolume == BoundingVolumeType::OBB ? orientedBox : alignedBox, *tree->mesh,
-        tree->order, rest, threads, *own);
+    ? fitted(boundingSphere)
+    : options.boundingVolume == BoundingVolumeType::OBB ? fitted(orientedBox)
+                                                        : fitted(alignedBox);
   tree->other = own;
   return finished ? tree : nullptr;
 }

@@ -11,7 +11,7 @@
  * front to back.
  * Valid: the descent visits every leaf whose volumes the cone or ray meets within the limit. A
  * volume whose lower bound equals the limit is visited because it may hold a hit of equal range and
- * lower triangle number. The code is not optimised for speed.
+ * lower triangle number.
  * Test: TestCollisionTreeBuilder.cxx, TestBeamTracer.cxx, TestGeometryProperties.cxx.
  */
 #ifndef avianlidar_VolumeTree_h
@@ -29,7 +29,8 @@
 
 namespace avianlidar
 {
-using TreeVolumes = std::variant<std::vector<OBB>, std::vector<BoundingSphere>>;
+using TreeVolumes =
+  std::variant<std::vector<AlignedBox>, std::vector<OBB>, std::vector<BoundingSphere>>;
 
 struct VolumeTree final : public OtherVolumes
 {

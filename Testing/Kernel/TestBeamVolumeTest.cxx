@@ -165,7 +165,10 @@ TYPED_TEST(BeamVolumes, NoVolumeThatARayOfTheConeMeetsIsRejected)
     double nearest = -1.0;
     double entry = -1.0;
     wrong += BeamVolumeTest(c.frame).meets(volume, nearest) ? 0 : 1;
-    wrong += BeamVolumeTest(c.frame.origin, Vec3(0.0), c.ray, 0.0).meets(volume, entry) ? 0 : 1;
+    wrong += RayVolumeTest(c.frame.origin, Vec3(0.0), c.ray, 0.0, sizeFrom(c.frame.origin, volume))
+               .meets(volume, entry)
+      ? 0
+      : 1;
     late += nearest > range || entry > range ? 1 : 0;
   }
   EXPECT_EQ(wrong, 0);
@@ -292,7 +295,7 @@ TEST(BeamProjections, FalsePositivesAreFewAndFewerWithTheTangentPlane)
       const Vec3 d =
         unitDirection(frame.direction(rho * std::cos(2.4 * ray), rho * std::sin(2.4 * ray)));
       double entry;
-      met = BeamVolumeTest(Vec3(0.0), Vec3(0.0), d, 0.0).meets(box, entry);
+      met = RayVolumeTest(Vec3(0.0), Vec3(0.0), d, 0.0, sizeFrom(Vec3(0.0), box)).meets(box, entry);
     }
     double nearest;
     const bool all = BeamVolumeTest(frame).meets(box, nearest);

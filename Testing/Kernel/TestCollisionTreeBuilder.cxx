@@ -250,12 +250,12 @@ TEST(VolumeTree, BoxesAreMadeWhenAskedFor)
   const auto some = volumesOf(*tree, 4);
   ASSERT_LT(some->nodes.size(), all->nodes.size());
   EXPECT_EQ(some->nodes.back().depth, 4u);
-  const auto& boxes = std::get<std::vector<OBB>>(all->volumes);
+  const auto& boxes = std::get<std::vector<AlignedBox>>(all->volumes);
   for (std::size_t i = 0; i < some->nodes.size(); ++i)
   {
     EXPECT_EQ(some->nodes[i].begin, all->nodes[i].begin);
     EXPECT_EQ(some->nodes[i].count, all->nodes[i].count);
-    const OBB& box = std::get<std::vector<OBB>>(some->volumes)[i];
+    const AlignedBox& box = std::get<std::vector<AlignedBox>>(some->volumes)[i];
     EXPECT_EQ(box.center, boxes[i].center);
     EXPECT_EQ(box.half, boxes[i].half);
   }
