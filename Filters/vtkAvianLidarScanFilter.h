@@ -44,7 +44,8 @@ public:
   enum LightEnergyThresholdType
   {
     LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT = 0,
-    LIGHT_ENERGY_THRESHOLD_LIMIT = 1
+    LIGHT_ENERGY_THRESHOLD_LIMIT = 1,
+    LIGHT_ENERGY_THRESHOLD_LIMIT_PER_RAY = 2
   };
 
   enum ReflectanceModelType
@@ -174,8 +175,9 @@ public:
 
   ///@{
   /// Energy below which LightEnergyConstraint drops a path: LightEnergyFraction times the lower
-  /// limit, divided by the number of paths of the beam; or the lower limit, as in the paper (Sec.
-  /// 3.4). Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
+  /// limit, divided by the number of paths of the beam; or, for each path with two reflections
+  /// alone, the lower limit or the lower limit divided by RaysPerBeam. Sec. 3.4 of the paper may be
+  /// read in both of the latter ways. Default: LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT.
   vtkAvianLidarPropertyMacro(LightEnergyThreshold, int, LIGHT_ENERGY_THRESHOLD_SHARE_OF_LIMIT);
   void SetLightEnergyThresholdToShareOfLimit()
   {
@@ -184,6 +186,10 @@ public:
   void SetLightEnergyThresholdToLimit()
   {
     this->SetLightEnergyThreshold(LIGHT_ENERGY_THRESHOLD_LIMIT);
+  }
+  void SetLightEnergyThresholdToLimitPerRay()
+  {
+    this->SetLightEnergyThreshold(LIGHT_ENERGY_THRESHOLD_LIMIT_PER_RAY);
   }
   ///@}
 

@@ -271,6 +271,29 @@ TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)
   EXPECT_NEAR(left.reports[0].lost / path, 1.0, 1e-9);
 }
 
+TEST(SecondaryConstraints, TheLimitPerRayIsTheLimitDividedByTheRays)
+{
+  const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 });
+  Sensor sensor = openSensor();
+  EchoSettings settings = secondarySettings(100, 2);
+  settings.beamSamples = BeamSampleSource::Rays;
+  sensor.lowerEnergyLimit = 0.0;
+  const double full = secondaryOf(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  double least = full;
+  for (const double limit : { 1e-5, 3e-6, 1e-6, 3e-7 })
+  {
+    sensor.lowerEnergyLimit = limit;
+    settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
+    const double whole = secondaryOf(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+    settings.lightEnergyThreshold = LightEnergyThreshold::LimitPerRay;
+    sensor.lowerEnergyLimit = 100.0 * limit;
+    const double perRay = secondaryOf(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+    EXPECT_EQ(perRay, whole) << limit;
+    least = std::min(least, whole);
+  }
+  EXPECT_LT(least, 0.99 * full);
+}
+
 TEST(SecondaryConstraints, InThickAirWhatIsJustAboveTheLimitIsSeen)
 {
   const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 });

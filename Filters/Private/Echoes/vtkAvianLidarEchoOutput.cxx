@@ -115,6 +115,14 @@ std::string Joules(double value)
   return Number(value) + " J";
 }
 
+/// The energy with which each path is compared, in words.
+std::string LimitOfPath(const ScanSetup& setup)
+{
+  return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::LimitPerRay
+    ? "lower energy limit divided by the number of rays"
+    : "lower energy limit";
+}
+
 /// A bound, and its share of the lower energy limit.
 std::string OfLimit(const ScanSetup& setup, double bound)
 {
@@ -155,9 +163,9 @@ std::string TwoReflections(const ScanSetup& setup)
   {
     return "modelled";
   }
-  return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
-    ? "modelled, without paths below the lower energy limit"
-    : "modelled, without faint paths";
+  return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::ShareOfLimit
+    ? "modelled, without faint paths"
+    : "modelled, without paths below the " + LimitOfPath(setup);
 }
 
 std::string FurtherReflections(const ScanSetup& setup)
@@ -178,12 +186,12 @@ std::string FaintPaths(const ScanSetup& setup)
   if (avianlidar::dropsFaintPaths(setup.settings))
   {
     const std::string most = OfLimit(setup, setup.needs.lightEnergyBound);
-    return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::Limit
-      ? "left out below the lower energy limit" +
+    return setup.settings.lightEnergyThreshold == avianlidar::LightEnergyThreshold::ShareOfLimit
+      ? "left out: at most " + most + " in a range unit"
+      : "left out below the " + LimitOfPath(setup) +
         (setup.needs.lightEnergyBound > setup.sensor.lowerEnergyLimit
             ? std::string()
-            : ": together at most " + most + " of a beam")
-      : "left out: at most " + most + " in a range unit";
+            : ": together at most " + most + " of a beam");
   }
   return std::string("followed to the end because ") +
     (setup.settings.fullModel ? "FullModel is on" : "LightEnergyConstraint is off");

@@ -91,7 +91,7 @@ const std::vector<EchoSetting>& echoSettings()
     row<&S::lightEnergyFraction>("LightEnergyFraction", "light_energy_fraction", E::Echoes, 0.0,
       MaximumLightEnergyFraction, "0 to 1e8", "1", false),
     row<&S::lightEnergyThreshold>("LightEnergyThreshold", "light_energy_threshold", E::Echoes, 0.0,
-      1.0, "0 (share of the limit) or 1 (the limit)"),
+      2.0, "0 (share of the limit), 1 (the limit) or 2 (the limit per ray)"),
     row<&S::traceMode>("BatchCollisionDetection", "batch_collision_detection", E::None, 0.0, 2.0,
       "0 (every ray), 1 (groups of beams) or 2 (every beam)"),
     toggle<&S::noise>("Noise", "noise"), toggle<&S::fullModel>("FullModel", "full_model"),

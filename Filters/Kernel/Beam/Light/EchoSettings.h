@@ -91,7 +91,8 @@ enum class BeamSampleSource
 enum class LightEnergyThreshold
 {
   ShareOfLimit = 0, ///< lightEnergyFraction Qlow / (number of paths of the beam)
-  Limit = 1         ///< Qlow, only for paths with two reflections (paper, Sec. 3.4)
+  Limit = 1,        ///< Qlow, only for paths with two reflections (paper, Sec. 3.4)
+  LimitPerRay = 2   ///< Qlow / raysPerBeam, only for paths with two reflections
 };
 
 struct EchoSettings
@@ -106,7 +107,6 @@ struct EchoSettings
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
   /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose, 0 to 1e8.
-  /// With epsilon equal to the number of paths of a beam, each path is compared with Qlow.
   double lightEnergyFraction = 1e-3;
   LightEnergyThreshold lightEnergyThreshold = LightEnergyThreshold::ShareOfLimit;
   TraceMode traceMode = TraceMode::Automatic; ///< descent of the tree; affects only time

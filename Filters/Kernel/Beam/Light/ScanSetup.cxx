@@ -64,11 +64,25 @@ bool dropsFaintPaths(const EchoSettings& settings)
   return settings.lightEnergyConstraint && !settings.fullModel;
 }
 
+double limitOfPath(const ScanSetup& setup)
+{
+  const double limit = setup.sensor.lowerEnergyLimit;
+  switch (setup.settings.lightEnergyThreshold)
+  {
+    case LightEnergyThreshold::Limit:
+      return limit;
+    case LightEnergyThreshold::LimitPerRay:
+      return limit / setup.settings.raysPerBeam;
+    default:
+      return 0.0;
+  }
+}
+
 double lightEnergyTolerance(const ScanSetup& setup)
 {
-  return setup.settings.lightEnergyThreshold == LightEnergyThreshold::Limit
-    ? 0.0
-    : setup.settings.lightEnergyFraction * setup.sensor.lowerEnergyLimit;
+  return setup.settings.lightEnergyThreshold == LightEnergyThreshold::ShareOfLimit
+    ? setup.settings.lightEnergyFraction * setup.sensor.lowerEnergyLimit
+    : 0.0;
 }
 
 ModelNeeds needsOf(const ScanSetup& setup)
@@ -83,16 +97,14 @@ ModelNeeds needsOf(const ScanSetup& setup)
   needs.furtherBound = setup.sensor.pulseEnergy *
     std::pow(setup.largestReflectance, settings.numberOfReflections) * once * SurelyAbove;
   // Direct echoes may lose the other half of the tolerance.
-  const double least = settings.lightEnergyThreshold == LightEnergyThreshold::Limit
-    ? setup.sensor.lowerEnergyLimit
-    : 0.5 * lightEnergyTolerance(setup);
+  const double least = limitOfPath(setup) + 0.5 * lightEnergyTolerance(setup);
   needs.secondaryReflections =
     settings.numberOfReflections > 1 && !(drops && needs.secondaryBound < least);
   if (drops)
   {
-    needs.lightEnergyBound = settings.lightEnergyThreshold == LightEnergyThreshold::Limit
-      ? (settings.numberOfReflections > 1 ? needs.secondaryBound : 0.0)
-      : lightEnergyTolerance(setup);
+    needs.lightEnergyBound = settings.lightEnergyThreshold == LightEnergyThreshold::ShareOfLimit
+      ? lightEnergyTolerance(setup)
+      : (settings.numberOfReflections > 1 ? needs.secondaryBound : 0.0);
   }
   needs.skippedEnergyBound =
     needs.lightEnergyBound + (setup.noise.active ? 0.0 : setup.noise.bound);

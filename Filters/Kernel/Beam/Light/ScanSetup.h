@@ -144,8 +144,12 @@ double returnBound(const ScanSetup& setup, double range);
 /// True if paths that cannot matter are dropped.
 bool dropsFaintPaths(const EchoSettings& settings);
 
+/// Energy, J, with which the light-energy constraint compares each path with two reflections alone;
+/// 0 with LightEnergyThreshold::ShareOfLimit.
+double limitOfPath(const ScanSetup& setup);
+
 /// Energy, J, that a range unit may lose by dropped paths with LightEnergyThreshold::ShareOfLimit.
-/// Otherwise 0, because LightEnergyThreshold::Limit drops no direct echoes.
+/// Otherwise 0, because the other thresholds drop no direct echoes.
 double lightEnergyTolerance(const ScanSetup& setup);
 }
 

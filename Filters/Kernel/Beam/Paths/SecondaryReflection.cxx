@@ -451,12 +451,9 @@ bool SecondaryReflection::collect(
     lost = ofMirrors < needed ? before + most * ofMirrors : lost;
     return ofMirrors < needed;
   };
-  double threshold = 0.0;
-  if (dropsFaintPaths(settings) && settings.lightEnergyThreshold == LightEnergyThreshold::Limit)
-  {
-    threshold = this->Setup.sensor.lowerEnergyLimit;
-  }
-  else if (dropsFaintPaths(settings))
+  const bool shares = settings.lightEnergyThreshold == LightEnergyThreshold::ShareOfLimit;
+  double threshold = dropsFaintPaths(settings) ? limitOfPath(this->Setup) : 0.0;
+  if (dropsFaintPaths(settings) && shares)
   {
     const double budget = lightEnergyTolerance(this->Setup);
     const double all = most * (this->mostOfMirrors(byRegions) + others);
@@ -473,19 +470,18 @@ bool SecondaryReflection::collect(
   double ofMirrors = threshold;
   if (byRegions)
   {
-    // The paths share the tolerance equally, unless each path is compared with the limit.
-    const bool shares =
-      threshold > 0.0 && settings.lightEnergyThreshold != LightEnergyThreshold::Limit;
+    // The paths share the tolerance equally, unless each path is compared with a limit.
+    const bool sharesPart = threshold > 0.0 && shares;
     const double part = MirrorPart * lightEnergyTolerance(this->Setup);
     const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
     const double left =
-      this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold), needed);
+      this->placeMirrors(beam, throughputOf(sharesPart ? ofSurface : threshold), needed);
     if (isSilent(left + sumOf(this->MirrorThroughputs)))
     {
       return false;
     }
     lost += most * left;
-    ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
+    ofMirrors = sharesPart ? part / std::max(1.0, this->NumberWanted) : threshold;
     if (beam.units && !this->MirrorThroughputs.empty())
     {
       const double strongest = this->addPaths(beam, sure, lost + most * ofShort, true);
