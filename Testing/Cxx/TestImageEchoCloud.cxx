@@ -4,6 +4,7 @@
 #include "TestImages.h"
 
 #include "vtkAvianLidarHSBColorMap.h"
+#include "vtkLookupTable.h"
 
 int TestImageEchoCloud(int argc, char* argv[])
 {
@@ -23,5 +24,7 @@ int TestImageEchoCloud(int argc, char* argv[])
   window.AddWireframe(scan.tree->GetOutputPort(0), 0.6, 0.6, 0.6);
   window.renderer->AddActor(actor);
   window.LookFromAbove(430.0);
+  colors->Update();
+  window.AddLegend(colors->GetLookupTable(), "energy (J)");
   return window.Compare(argc, argv);
 }

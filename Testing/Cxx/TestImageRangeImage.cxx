@@ -38,6 +38,7 @@ int TestImageRangeImage(int argc, char* argv[])
   testimages::Window window;
   window.renderer->SetBackground(0.5, 0.5, 0.5);
   window.renderer->AddActor(actor);
+  window.AddLegend(table, "distance (m)", true);
   window.renderer->GetActiveCamera()->ParallelProjectionOn();
   window.renderer->ResetCamera();
   window.renderer->GetActiveCamera()->Zoom(1.6);

@@ -72,6 +72,7 @@ def test_picture():
     colours.AutomaticRescaleRangeMode = "Never"
     colours.ApplyPreset("Avian lidar HSB", True)
     colours.RescaleTransferFunction(2e-6, 6.25e-5)
+    points.SetScalarBarVisibility(view, True)
     view.CameraPosition = [100, -700, 600]
     view.CameraFocalPoint = [-850, -150, 0]
     view.CameraViewUp = [0, 0, 1]

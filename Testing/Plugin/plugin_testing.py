@@ -14,7 +14,6 @@ SOURCE_DIR = os.environ["AVIANLIDAR_SOURCE_DIR"]
 OUTPUT_DIR = os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]
 SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 
-THRESHOLD = 15  # image error
 
 sys.path.insert(0, os.path.join(SOURCE_DIR, "Testing", "Python"))
 import echotools  # noqa: E402
@@ -74,4 +73,4 @@ def direct_echoes(columns):
 
 def compare(name):
     """The picture in the folder for temporary files with the baseline of that name."""
-    pictures.compare(os.path.join(OUTPUT_DIR, name), name, THRESHOLD)
+    pictures.compare(os.path.join(OUTPUT_DIR, name), name)
