@@ -143,7 +143,8 @@ enum FaceNumber : std::size_t
   FaceNumbers
 };
 
-/// Set the numbers of up to FaceWidth faces. @param to the numbers of a face are `stride` apart
+/// Set the numbers of FaceWidth faces, of which `count` are used. @param to the numbers of a face
+/// are `stride` apart
 AVIANLIDAR_MULTIVERSION void setFaces(const TriangleMesh& mesh, const std::uint32_t* triangles,
   std::size_t count, const Vec3& reference, float* to, std::size_t stride)
 {
@@ -166,7 +167,6 @@ AVIANLIDAR_MULTIVERSION void setFaces(const TriangleMesh& mesh, const std::uint3
   }
   constexpr float up = 1.0f + 1e-6f;
   constexpr double most = 5e-4;
-  float numbers[FaceNumbers][FaceWidth];
 #pragma omp simd
   for (std::size_t i = 0; i < FaceWidth; ++i)
   {
@@ -189,19 +189,15 @@ AVIANLIDAR_MULTIVERSION void setFaces(const TriangleMesh& mesh, const std::uint3
       (32.0 * RoundOffDouble * glm::max(largest.x, glm::max(largest.y, largest.z)) +
         (single < most ? single : most));
     const Vec3 point = a - reference;
-    numbers[NormalX][i] = static_cast<float>(n.x);
-    numbers[NormalY][i] = static_cast<float>(n.y);
-    numbers[NormalZ][i] = static_cast<float>(n.z);
-    numbers[Tilt][i] =
+    to[NormalX * stride + i] = static_cast<float>(n.x);
+    to[NormalY * stride + i] = static_cast<float>(n.y);
+    to[NormalZ * stride + i] = static_cast<float>(n.z);
+    to[Tilt * stride + i] =
       up * static_cast<float>((2.0 * tolerance + 8.0 * RoundOffDouble * longest) * longest / size);
-    numbers[Tolerance][i] = up * static_cast<float>(tolerance);
-    numbers[PointX][i] = static_cast<float>(point.x);
-    numbers[PointY][i] = static_cast<float>(point.y);
-    numbers[PointZ][i] = static_cast<float>(point.z);
-  }
-  for (std::size_t k = 0; k < FaceNumbers; ++k)
-  {
-    std::copy_n(numbers[k], count, to + k * stride);
+    to[Tolerance * stride + i] = up * static_cast<float>(tolerance);
+    to[PointX * stride + i] = static_cast<float>(point.x);
+    to[PointY * stride + i] = static_cast<float>(point.y);
+    to[PointZ * stride + i] = static_cast<float>(point.z);
   }
 }
 
@@ -468,10 +464,10 @@ private:
     const Vec3 n = areaOf(plane) / glm::length(areaOf(plane));
     const double least = leastAltitudeOf(plane);
     const std::uint32_t both[] = { triangle, owner };
-    float faces[FaceNumbers * 2];
-    setFaces(this->Mesh, both, 2, Vec3(0.0), faces, 2);
-    const double own = faces[2 * Tolerance];
-    const double ofPlane = faces[2 * Tolerance + 1];
+    float faces[FaceNumbers * FaceWidth];
+    setFaces(this->Mesh, both, 2, Vec3(0.0), faces, FaceWidth);
+    const double own = faces[FaceWidth * Tolerance];
+    const double ofPlane = faces[FaceWidth * Tolerance + 1];
     const auto isOnPlane = [&](const Vec3& corner)
     {
       const double reach = 1.0 + 4.0 * glm::length(corner) / least;
