@@ -28,28 +28,20 @@ std::uint64_t spread(std::uint64_t bits)
 /// diagonal.
 Vec3 middleOf(const TriangleMesh& mesh, std::uint32_t triangle)
 {
-  const Vec3 corners[] = { mesh.corner(triangle, 0), mesh.corner(triangle, 1),
-    mesh.corner(triangle, 2) };
-  double lengths[3];
-  int longest = 0;
-  const auto measure = [&](auto length)
+  Vec3 middle(0.0);
+  double longest = -1.0;
+  for (int c = 0; c < 3; ++c)
   {
-    for (int c = 0; c < 3; ++c)
+    const Vec3& p = mesh.corner(triangle, c);
+    const Vec3& q = mesh.corner(triangle, (c + 1) % 3);
+    const double length = safeLength(q - p);
+    if (length > longest)
     {
-      lengths[c] = length(corners[(c + 1) % 3] - corners[c]);
+      longest = length;
+      middle = 0.5 * p + 0.5 * q;
     }
-    longest = lengths[1] > lengths[0] ? 1 : 0;
-    longest = lengths[2] > lengths[longest] ? 2 : longest;
-  };
-  measure([](const Vec3& side) { return glm::dot(side, side); });
-  // Squares that are about equal, overflow or underflow do not decide.
-  const double least = (1.0 - 1e-12) * lengths[longest];
-  if ((lengths[0] >= least) + (lengths[1] >= least) + (lengths[2] >= least) > 1 ||
-    !(least > 1e-200 && least < 1e200))
-  {
-    measure(safeLength);
   }
-  return 0.5 * corners[longest] + 0.5 * corners[(longest + 1) % 3];
+  return middle;
 }
 
 bool isLess(const Vec3& p, const Vec3& q)
