@@ -15,14 +15,14 @@ import sys
 import time
 from typing import Callable, Dict, NamedTuple, Optional
 
-PARTS = ("crowded", "silent", "gate")
+PARTS = ("crowded", "silent", "gate", "tree")
 
 
 class Row(NamedTuple):
     part: str
     what: str
     value: float
-    unit: str                    # s, MB, or empty for a ratio
+    unit: str                    # s, MB, B, or empty for a ratio
     aim: Optional[float] = None  # at most; None for rows that explain others
 
 

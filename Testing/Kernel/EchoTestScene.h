@@ -103,9 +103,13 @@ inline EchoSettings inCells(int rays = 100)
 template <class T, class Change>
 void edit(SharedVector<T>& values, Change change)
 {
-  std::vector<T> copy(values.begin(), values.end());
+  std::vector<T> copy;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    copy.push_back(values[i]);
+  }
   change(copy);
-  values = std::move(copy);
+  values = copy;
 }
 
 inline ScanSetup makeSetup(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,

@@ -22,4 +22,10 @@ void sortKeys(std::vector<std::uint64_t>& keys)
   }
   hwy::Sorter()(keys.data(), keys.size(), hwy::SortAscending());
 }
+
+void sortKeys(std::vector<LongKey>& keys)
+{
+  static_assert(sizeof(LongKey) == sizeof(hwy::uint128_t), "both hold the low half first");
+  hwy::Sorter()(reinterpret_cast<hwy::uint128_t*>(keys.data()), keys.size(), hwy::SortAscending());
+}
 }

@@ -7,7 +7,7 @@
  * VQSort).
  * Differs: short vectors are sorted by std::sort(), which is faster for few integers.
  * Valid: any integers. Two threads must not sort one vector.
- * Test: TestBeamCells.cxx, TestVisiblePolygons.cxx.
+ * Test: TestBeamCells.cxx, TestTriangleOrder.cxx, TestVisiblePolygons.cxx.
  */
 #ifndef avianlidar_KeySort_h
 #define avianlidar_KeySort_h
@@ -31,7 +31,15 @@ inline std::uint32_t numberOf(std::uint64_t both)
   return static_cast<std::uint32_t>(both);
 }
 
+/// Integer of 128 bits.
+struct alignas(16) LongKey
+{
+  std::uint64_t low;
+  std::uint64_t high;
+};
+
 void sortKeys(std::vector<std::uint64_t>& keys);
+void sortKeys(std::vector<LongKey>& keys);
 }
 
 #endif

@@ -8,15 +8,10 @@ namespace avianlidar
 SceneSummary summarise(const ScanSetup& setup)
 {
   SceneSummary summary;
-  const Material* last = nullptr; // neighbours often have the same material
-  for (const Material& material : setup.materials)
+  for (const Material& material : setup.materials.different())
   {
-    if (!last || material != *last)
-    {
-      summary.largestReflectance = std::max(summary.largestReflectance, material.albedo());
-      summary.largestGain = std::max(summary.largestGain, apertureGain(material));
-    }
-    last = &material;
+    summary.largestReflectance = std::max(summary.largestReflectance, material.albedo());
+    summary.largestGain = std::max(summary.largestGain, apertureGain(material));
   }
   return summary;
 }

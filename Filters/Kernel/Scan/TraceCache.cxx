@@ -205,8 +205,8 @@ std::uint64_t traceKey(const ScanSetup& setup)
           volume.radius(), volume.bottom, volume.top, volume.softness });
     }
   }
-  const std::uint64_t objects = hashOf(places.data(), places.size() * sizeof(double),
-    cells ? hashOf(setup.objectIds.data(), setup.objectIds.size() * sizeof(int), 0) : 0);
+  const std::uint64_t objects =
+    hashOf(places.data(), places.size() * sizeof(double), cells ? setup.objectIds.checksum() : 0);
   return hashOf(numbers.data(), numbers.size() * sizeof(double),
     hashOf(&setup.tree->checksum, sizeof(setup.tree->checksum), objects));
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleOrder.h"
 
+#include "KeySort.h"
+
 #include <algorithm>
-#include <functional>
+#include <iterator>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
 namespace avianlidar
@@ -48,79 +49,83 @@ bool isLess(const Vec3& p, const Vec3& q)
   return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
 }
 
-/// Compares triangles by their numbers.
-class IsBefore
+/// Keys of triangles: 32 bits of the object, 63 bits of the place on the curve, and 32 bits of the
+/// triangle's number.
+std::vector<LongKey> keysOf(const std::vector<Vec3>& middles, const std::vector<int>& objectIds)
 {
-public:
-  IsBefore(const TriangleMesh& mesh, const std::vector<int>& objectIds,
-    const std::vector<int>& materialIds)
-    : Mesh(mesh)
-    , Objects(objectIds)
-    , Materials(materialIds)
+  Vec3 lower(std::numeric_limits<double>::infinity());
+  Vec3 upper = -lower;
+  for (const Vec3& middle : middles)
   {
-    Vec3 lower(std::numeric_limits<double>::infinity());
-    Vec3 upper = -lower;
-    this->Middles.reserve(mesh.size());
-    for (std::uint32_t t = 0; t < mesh.size(); ++t)
-    {
-      this->Middles.push_back(middleOf(mesh, t));
-      lower = glm::min(lower, this->Middles[t]);
-      upper = glm::max(upper, this->Middles[t]);
-    }
-    this->Places.reserve(mesh.size());
-    for (const Vec3& middle : this->Middles)
-    {
-      std::uint64_t place = 0;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double size = upper[axis] - lower[axis];
-        const double share = size > 0.0 ? (middle[axis] - lower[axis]) / size : 0.0;
-        place |= spread(static_cast<std::uint64_t>(std::min(Steps * share, Steps - 1.0))) << axis;
-      }
-      this->Places.push_back(place);
-    }
+    lower = glm::min(lower, middle);
+    upper = glm::max(upper, middle);
   }
-
-  bool operator()(std::uint32_t a, std::uint32_t b) const
+  std::vector<LongKey> keys(middles.size());
+  for (std::uint32_t t = 0; t < keys.size(); ++t)
   {
-    if (this->Objects[a] != this->Objects[b] || this->Places[a] != this->Places[b])
+    std::uint64_t place = 0;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      return std::tie(this->Objects[a], this->Places[a]) <
-        std::tie(this->Objects[b], this->Places[b]);
+      const double size = upper[axis] - lower[axis];
+      const double share = size > 0.0 ? (middles[t][axis] - lower[axis]) / size : 0.0;
+      place |= spread(static_cast<std::uint64_t>(std::min(Steps * share, Steps - 1.0))) << axis;
     }
-    if (this->Middles[a] != this->Middles[b])
-    {
-      return isLess(this->Middles[a], this->Middles[b]);
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-      if (this->Mesh.corner(a, c) != this->Mesh.corner(b, c))
-      {
-        return isLess(this->Mesh.corner(a, c), this->Mesh.corner(b, c));
-      }
-    }
-    return std::tie(this->Materials[a], a) < std::tie(this->Materials[b], b);
+    // Negative ids become the lower numbers.
+    const std::uint32_t object = static_cast<std::uint32_t>(objectIds[t]) ^ 0x80000000u;
+    keys[t] = { place << 33 | t, static_cast<std::uint64_t>(object) << 32 | place >> 31 };
   }
-
-private:
-  const TriangleMesh& Mesh;
-  const std::vector<int>&Objects, &Materials;
-  std::vector<Vec3> Middles;
-  std::vector<std::uint64_t> Places; ///< places on the curve
-};
+  return keys;
+}
 }
 
 std::vector<std::uint32_t> triangleOrder(
   const TriangleMesh& mesh, const std::vector<int>& objectIds, const std::vector<int>& materialIds)
 {
-  const IsBefore isBefore(mesh, objectIds, materialIds);
-  std::vector<std::uint32_t> order(mesh.size());
-  std::iota(order.begin(), order.end(), 0u);
-  if (std::is_sorted(order.begin(), order.end(), std::cref(isBefore)))
+  std::vector<Vec3> middles(mesh.size());
+  for (std::uint32_t t = 0; t < mesh.size(); ++t)
+  {
+    middles[t] = middleOf(mesh, t);
+  }
+  std::vector<LongKey> keys = keysOf(middles, objectIds);
+  sortKeys(keys);
+  std::vector<std::uint32_t> order;
+  order.reserve(keys.size());
+  std::transform(keys.begin(), keys.end(), std::back_inserter(order),
+    [](const LongKey& key) { return numberOf(key.low); });
+  const auto isBefore = [&](std::uint32_t a, std::uint32_t b)
+  {
+    if (middles[a] != middles[b])
+    {
+      return isLess(middles[a], middles[b]);
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      if (mesh.corner(a, c) != mesh.corner(b, c))
+      {
+        return isLess(mesh.corner(a, c), mesh.corner(b, c));
+      }
+    }
+    return std::tie(materialIds[a], a) < std::tie(materialIds[b], b);
+  };
+  for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end)
+  {
+    constexpr std::size_t ahead = 32;
+    const std::uint32_t next = order[std::min(begin + ahead, keys.size() - 1)];
+    __builtin_prefetch(&middles[next]);
+    __builtin_prefetch(&mesh.triangles[next]);
+    while (++end < keys.size() && keys[end].high == keys[begin].high &&
+      keys[end].low >> 33 == keys[begin].low >> 33)
+    {
+    }
+    if (end > begin + 1)
+    {
+      std::sort(order.begin() + begin, order.begin() + end, isBefore);
+    }
+  }
+  if (std::is_sorted(order.begin(), order.end()))
   {
     return {};
   }
-  std::sort(order.begin(), order.end(), std::cref(isBefore));
   return order;
 }
 }

@@ -23,14 +23,6 @@ constexpr float TiltOfRounding = 1e-6f;
 /// first triangle then remains the owner.
 constexpr double ClearlyLarger = 1.001;
 
-/// Plane of a triangle in single precision.
-struct Face
-{
-  glm::vec3 normal{ 0.0f };
-  float tilt = 0.0f;      ///< angle by which rounding may turn the plane, rad
-  float tolerance = 0.0f; ///< toleranceOf(), rounded up, m
-};
-
 /// Vector along the normal whose length is twice the area, m2.
 Vec3 areaOf(const Corners& t)
 {
@@ -56,64 +48,30 @@ Corners cornersOf(const TriangleMesh& mesh, std::uint32_t triangle)
   return cornersFrom(mesh, triangle, mesh.corner(triangle, 0));
 }
 
-/// True if a number has no more digits than single precision. Its bits are tested because GCC 12
-/// drops roundings to single precision and back where it vectorises them.
-bool isSingle(double x)
+/// True if a side separates two triangles, seen along an axis. @param corners corners of both
+bool areBeside(const Vec3* const* corners, int axis)
 {
-  std::uint64_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  return (bits & 0x1fffffffu) == 0;
-}
-
-/// Most by which rounding moves a corner of the triangle off its plane, m. @param normal unit
-/// normal
-double toleranceOf(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& normal)
-{
-  constexpr double ofDouble = 32.0 * RoundOffDouble;
-  constexpr double ofSingle = 4.0 * RoundOffSingle;
-  constexpr double most = 5e-4;
-  Vec3 largest(0.0);
-  bool allSingle = true;
-  for (int c = 0; c < 3; ++c)
+  double x[6];
+  double y[6];
+  for (int c = 0; c < 6; ++c)
   {
-    const Vec3& p = mesh.corner(triangle, c);
-    allSingle = allSingle && isSingle(p.x) && isSingle(p.y) && isSingle(p.z);
-    largest = glm::max(largest, glm::abs(p));
+    x[c] = (&corners[c]->x)[(axis + 1) % 3];
+    y[c] = (&corners[c]->x)[(axis + 2) % 3];
   }
-  return ofDouble * std::max({ largest.x, largest.y, largest.z }) +
-    (allSingle ? std::min(most, ofSingle * glm::dot(glm::abs(normal), largest)) : 0.0);
-}
-
-Face faceOf(const TriangleMesh& mesh, std::uint32_t triangle)
-{
-  const Corners t = cornersOf(mesh, triangle);
-  const Vec3 area = areaOf(t);
-  const double size = glm::length(area);
-  if (!(size > 0.0))
+  constexpr int nexts[] = { 1, 2, 0, 4, 5, 3 };
+  for (int from = 0; from < 6; ++from)
   {
-    return {};
+    const int to = nexts[from];
+    const auto side = [&](int c)
+    { return (x[to] - x[from]) * (y[c] - y[from]) - (y[to] - y[from]) * (x[c] - x[from]); };
+    const double sign = side(nexts[to]) > 0.0 ? 1.0 : -1.0;
+    const int other = from < 3 ? 3 : 0;
+    if (sign * side(other) <= 0.0 && sign * side(other + 1) <= 0.0 && sign * side(other + 2) <= 0.0)
+    {
+      return true;
+    }
   }
-  const Vec3 n = area / size;
-  const double tolerance = toleranceOf(mesh, triangle, n);
-  const double longest = longestSideOf(t);
-  constexpr float up = 1.0f + 1e-6f;
-  return { glm::vec3(n),
-    up * static_cast<float>((2.0 * tolerance + 8.0 * RoundOffDouble * longest) * longest / size),
-    up * static_cast<float>(tolerance) };
-}
-
-/// True if, seen along the normal of the first triangle, one of its sides separates the two
-/// triangles.
-bool isBeside(const Corners& one, const Corners& two)
-{
-  const Vec3 n = areaOf(one);
-  const auto separates = [&](const Vec3& from, const Vec3& to)
-  {
-    const Vec3 inwards = glm::cross(n, to - from);
-    return glm::dot(inwards, two.a - from) <= 0.0 && glm::dot(inwards, two.b - from) <= 0.0 &&
-      glm::dot(inwards, two.c - from) <= 0.0;
-  };
-  return separates(one.a, one.b) || separates(one.b, one.c) || separates(one.c, one.a);
+  return false;
 }
 
 /// True if two triangles overlap, and are nowhere in their overlap farther apart than `tolerance`.
@@ -167,6 +125,120 @@ bool coincide(const Corners& one, const Corners& two, double tolerance)
   const double edge = 8.0 * tolerance * std::min(longestSideOf(one), longestSideOf(two));
   return farthest <= tolerance &&
     std::fabs(glm::dot(n, overlap)) > std::max(LeastOverlap * least, edge);
+}
+
+constexpr std::size_t FaceWidth = 8; ///< number of faces in a loop over lanes
+
+/// Numbers of a face in single precision.
+enum FaceNumber : std::size_t
+{
+  NormalX, ///< unit normal; 0 if the triangle is degenerate
+  NormalY,
+  NormalZ,
+  Tilt,      ///< angle by which rounding may turn the plane, rad
+  Tolerance, ///< most by which rounding moves a corner off the plane, rounded up, m
+  PointX,    ///< first corner relative to a reference, m
+  PointY,
+  PointZ,
+  FaceNumbers
+};
+
+/// Set the numbers of FaceWidth faces, of which `count` are used. @param to the numbers of a face
+/// are `stride` apart
+AVIANLIDAR_MULTIVERSION void setFaces(const TriangleMesh& mesh, const std::uint32_t* triangles,
+  std::size_t count, const Vec3& reference, float* to, std::size_t stride)
+{
+  double corners[9][FaceWidth] = {};
+  double ofSingle[FaceWidth] = {}; ///< rounding to single precision, if all numbers are single
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    std::uint64_t digits = 0;
+    for (int k = 0; k < 9; ++k)
+    {
+      const double x = mesh.corner(triangles[i], k / 3)[k % 3];
+      std::uint64_t bits;
+      std::memcpy(&bits, &x, sizeof bits);
+      corners[k][i] = x;
+      digits |= bits;
+    }
+    // A number of single precision has zeros in the last bits of its double. The bits are tested
+    // because GCC 12 drops roundings to single precision and back where it vectorises them.
+    ofSingle[i] = (digits & 0x1fffffffu) == 0 ? 4.0 * RoundOffSingle : 0.0;
+  }
+  constexpr float up = 1.0f + 1e-6f;
+  constexpr double most = 5e-4;
+#pragma omp simd
+  for (std::size_t i = 0; i < FaceWidth; ++i)
+  {
+    const Vec3 a(corners[0][i], corners[1][i], corners[2][i]);
+    const Vec3 b(corners[3][i], corners[4][i], corners[5][i]);
+    const Vec3 c(corners[6][i], corners[7][i], corners[8][i]);
+    const Vec3 ab = b - a;
+    const Vec3 ac = c - a;
+    const Vec3 bc = ac - ab;
+    const Vec3 area = glm::cross(ab, ac);
+    const double squared = glm::dot(area, area);
+    const double longest =
+      std::sqrt(glm::max(glm::dot(ab, ab), glm::max(glm::dot(bc, bc), glm::dot(ac, ac))));
+    const Vec3 largest = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+    const double good = squared > 0.0 ? 1.0 : 0.0; // 0 for a degenerate triangle
+    const double size = std::sqrt(squared + (1.0 - good));
+    const Vec3 n = area / size;
+    const double single = ofSingle[i] * glm::dot(glm::abs(n), largest);
+    const double tolerance = good *
+      (32.0 * RoundOffDouble * glm::max(largest.x, glm::max(largest.y, largest.z)) +
+        (single < most ? single : most));
+    const Vec3 point = a - reference;
+    to[NormalX * stride + i] = static_cast<float>(n.x);
+    to[NormalY * stride + i] = static_cast<float>(n.y);
+    to[NormalZ * stride + i] = static_cast<float>(n.z);
+    to[Tilt * stride + i] =
+      up * static_cast<float>((2.0 * tolerance + 8.0 * RoundOffDouble * longest) * longest / size);
+    to[Tolerance * stride + i] = up * static_cast<float>(tolerance);
+    to[PointX * stride + i] = static_cast<float>(point.x);
+    to[PointY * stride + i] = static_cast<float>(point.y);
+    to[PointZ * stride + i] = static_cast<float>(point.z);
+  }
+}
+
+/// Find pairs of faces that may have one plane. @param one,two numbers of FaceWidth faces, read as
+/// setFaces() writes them @param countOne number of faces `one` @param slack rounding of points, m
+/// @return bit FaceWidth i + j for the faces i and j
+AVIANLIDAR_MULTIVERSION std::uint64_t facesNear(
+  const float* one, std::size_t countOne, const float* two, std::size_t stride, float slack)
+{
+  std::uint64_t near = 0;
+  for (std::size_t i = 0; i < countOne; ++i)
+  {
+    const float* const a = one + i;
+    const float ax = a[NormalX * stride];
+    const float ay = a[NormalY * stride];
+    const float az = a[NormalZ * stride];
+    std::uint32_t bits = 0;
+#pragma omp simd reduction(| : bits)
+    for (std::size_t j = 0; j < FaceWidth; ++j)
+    {
+      const float* const b = two + j;
+      const float bx = b[NormalX * stride];
+      const float by = b[NormalY * stride];
+      const float bz = b[NormalZ * stride];
+      const float sineX = ay * bz - by * az;
+      const float sineY = az * bx - bz * ax;
+      const float sineZ = ax * by - bx * ay;
+      const float tilt = a[Tilt * stride] + b[Tilt * stride] + TiltOfRounding;
+      const float x = b[PointX * stride] - a[PointX * stride];
+      const float y = b[PointY * stride] - a[PointY * stride];
+      const float z = b[PointZ * stride] - a[PointZ * stride];
+      const float level = a[Tolerance * stride] + b[Tolerance * stride] + slack +
+        tilt * (std::fabs(x) + std::fabs(y) + std::fabs(z));
+      const bool met = (sineX * sineX + sineY * sineY + sineZ * sineZ <= tilt * tilt) &
+        (std::fabs(ax * bx + ay * by + az * bz) > 0.5f) &
+        !(std::fabs(ax * x + ay * y + az * z) > level);
+      bits |= (met ? 1u : 0u) << j;
+    }
+    near |= static_cast<std::uint64_t>(bits) << (FaceWidth * i);
+  }
+  return near;
 }
 
 /// Bits of the children of `node` within `slack` (m) of the child `lane` of `other`.
@@ -243,7 +315,8 @@ public:
   explicit Search(const CollisionTree& tree)
     : Tree(tree)
     , Mesh(*tree.mesh)
-    , Faces(tree.order.size())
+    , Stride(tree.order.size() + FaceWidth)
+    , Faces(FaceNumbers * this->Stride)
     , Sets(tree.order.size())
   {
   }
@@ -251,20 +324,21 @@ public:
   /// Set planeOwners and planeDepth of the tree. @return false if stopped
   bool run(const KeepGoing& keepGoing, int threads, CollisionTree& tree)
   {
+    const std::vector<std::uint32_t>& order = this->Tree.order;
     constexpr std::size_t block = 1024;
-    parallelFor(this->Faces.size(), block, threads,
-      [this](std::size_t begin, std::size_t end, int)
+    parallelFor(order.size(), block, threads,
+      [&](std::size_t begin, std::size_t end, int)
       {
-        for (std::size_t k = begin; k < end; ++k)
+        for (std::size_t k = begin; k < end; k += FaceWidth)
         {
-          this->Faces[k] = faceOf(this->Mesh, this->Tree.order[k]);
+          setFaces(this->Mesh, &order[k], std::min(FaceWidth, end - k), tree.wide.reference,
+            &this->Faces[k], this->Stride);
         }
       });
-    const float widest = std::max_element(this->Faces.begin(), this->Faces.end(),
-      [](const Face& a, const Face& b) {
-        return a.tolerance < b.tolerance;
-      })->tolerance;
-    this->Slack = 2.0f * widest + WideRounding * static_cast<float>(tree.wide.extent);
+    const auto tolerances = this->Faces.begin() + Tolerance * this->Stride;
+    const float widest = *std::max_element(tolerances, tolerances + order.size());
+    this->Rounding = WideRounding * static_cast<float>(tree.wide.extent);
+    this->Slack = 2.0f * widest + this->Rounding;
     constexpr std::size_t nodes = 64;
     const bool finished = parallelFor(
       tree.wide.nodes.size(), nodes, threads,
@@ -290,12 +364,9 @@ private:
   {
     for (int i = 0; i < WideNode::Width && node.first[i] != NoChild; ++i)
     {
-      for (std::uint32_t k = 1; k < node.count[i]; ++k)
+      if (node.count[i] > 1)
       {
-        for (std::uint32_t j = 0; j < k; ++j)
-        {
-          this->compare(node.first[i] + j, node.first[i] + k);
-        }
+        this->compareLeaves({ &node, i }, { &node, i });
       }
       this->compareNear({ &node, i }, node, ~1u << i);
     }
@@ -316,13 +387,7 @@ private:
   {
     if (one.count() > 0 && two.count() > 0)
     {
-      for (std::uint32_t i = 0; i < one.count(); ++i)
-      {
-        for (std::uint32_t j = 0; j < two.count(); ++j)
-        {
-          this->compare(one.first() + i, two.first() + j);
-        }
-      }
+      this->compareLeaves(one, two);
       return;
     }
     if (two.count() > 0 || (one.count() == 0 && one.size() > two.size()))
@@ -332,32 +397,60 @@ private:
     this->compareNear(one, this->Tree.wide.nodes[two.first()], ~0u);
   }
 
+  /// Compare the triangles of two leaves, or of one leaf.
+  void compareLeaves(const Child& one, const Child& two)
+  {
+    const std::uint32_t endOne = one.first() + one.count();
+    const std::uint32_t endTwo = two.first() + two.count();
+    for (std::uint32_t i = one.first(); i < endOne; i += FaceWidth)
+    {
+      for (std::uint32_t j = two.first(); j < endTwo; j += FaceWidth)
+      {
+        std::uint64_t near =
+          facesNear(&this->Faces[i], std::min<std::size_t>(FaceWidth, endOne - i), &this->Faces[j],
+            this->Stride, this->Rounding);
+        for (; near != 0; near &= near - 1)
+        {
+          const auto pair = static_cast<std::uint32_t>(__builtin_ctzll(near));
+          const std::uint32_t placeOne = i + pair / FaceWidth;
+          const std::uint32_t placeTwo = j + pair % FaceWidth;
+          if (placeTwo < endTwo && (one.first() != two.first() || placeOne < placeTwo))
+          {
+            this->compare(placeOne, placeTwo);
+          }
+        }
+      }
+    }
+  }
+
+  float face(FaceNumber number, std::uint32_t place) const
+  {
+    return this->Faces[number * this->Stride + place];
+  }
+
   void compare(std::uint32_t placeOne, std::uint32_t placeTwo)
   {
-    const Face& a = this->Faces[placeOne];
-    const Face& b = this->Faces[placeTwo];
-    const glm::vec3 sine = glm::cross(a.normal, b.normal);
-    const float tilt = a.tilt + b.tilt + TiltOfRounding;
-    if (!(glm::dot(sine, sine) <= tilt * tilt) || !(std::fabs(glm::dot(a.normal, b.normal)) > 0.5f))
-    {
-      return;
-    }
     // The order of triangle numbers makes the result independent of the tree.
     const auto [lower, higher] =
       std::minmax({ this->Tree.order[placeOne], this->Tree.order[placeTwo] });
-    const Vec3& apex = this->Mesh.corner(lower, 0);
-    const Vec3 between = this->Mesh.corner(higher, 0) - apex;
-    const double tolerance = static_cast<double>(a.tolerance) + static_cast<double>(b.tolerance);
-    // Most parallel planes lie apart and need no exact comparison.
-    const double level = tolerance + tilt * glm::dot(glm::abs(between), Vec3(1.0));
-    if (std::fabs(glm::dot(Vec3(a.normal), between)) > level)
+    const float normal[] = { std::fabs(this->face(NormalX, placeOne)),
+      std::fabs(this->face(NormalY, placeOne)), std::fabs(this->face(NormalZ, placeOne)) };
+    const auto axis = static_cast<int>(std::max_element(normal, normal + 3) - normal);
+    const Vec3* corners[6];
+    for (int c = 0; c < 3; ++c)
+    {
+      corners[c] = &this->Mesh.corner(lower, c);
+      corners[c + 3] = &this->Mesh.corner(higher, c);
+    }
+    if (areBeside(corners, axis) || this->Sets.rootOf(lower) == this->Sets.rootOf(higher))
     {
       return;
     }
-    const Corners one = cornersFrom(this->Mesh, lower, apex);
-    const Corners two = cornersFrom(this->Mesh, higher, apex);
-    if (!isBeside(one, two) && !isBeside(two, one) &&
-      this->Sets.rootOf(lower) != this->Sets.rootOf(higher) && coincide(one, two, tolerance))
+    const Vec3& apex = this->Mesh.corner(lower, 0);
+    const double tolerance =
+      double{ this->face(Tolerance, placeOne) } + double{ this->face(Tolerance, placeTwo) };
+    if (coincide(
+          cornersFrom(this->Mesh, lower, apex), cornersFrom(this->Mesh, higher, apex), tolerance))
     {
       this->Sets.unite(lower, higher);
     }
@@ -370,8 +463,11 @@ private:
     const Corners t = cornersFrom(this->Mesh, triangle, this->Mesh.corner(owner, 0));
     const Vec3 n = areaOf(plane) / glm::length(areaOf(plane));
     const double least = leastAltitudeOf(plane);
-    const double own = faceOf(this->Mesh, triangle).tolerance;
-    const double ofPlane = faceOf(this->Mesh, owner).tolerance;
+    const std::uint32_t both[] = { triangle, owner };
+    float faces[FaceNumbers * FaceWidth];
+    setFaces(this->Mesh, both, 2, Vec3(0.0), faces, FaceWidth);
+    const double own = faces[FaceWidth * Tolerance];
+    const double ofPlane = faces[FaceWidth * Tolerance + 1];
     const auto isOnPlane = [&](const Vec3& corner)
     {
       const double reach = 1.0 + 4.0 * glm::length(corner) / least;
@@ -384,7 +480,7 @@ private:
   std::vector<std::uint32_t> owners()
   {
     bool found = false;
-    const auto size = static_cast<std::uint32_t>(this->Faces.size());
+    const auto size = static_cast<std::uint32_t>(this->Mesh.size());
     std::vector<std::uint32_t> owners(size, NoTriangle); // owners by root of a set
     for (std::uint32_t t = 0; t < size; ++t)
     {
@@ -410,8 +506,10 @@ private:
 
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
-  std::vector<Face> Faces; ///< faces in the tree's order
-  float Slack = 0.0f;      ///< largest distance between the boxes of coincident triangles, m
+  const std::size_t Stride; ///< distance of the numbers of a face in `Faces`
+  std::vector<float> Faces; ///< faces in the tree's order
+  float Rounding = 0.0f;    ///< rounding of positions in single precision, m
+  float Slack = 0.0f;       ///< largest distance between the boxes of coincident triangles, m
   Forest Sets;
 };
 }

@@ -144,12 +144,16 @@ AVIANLIDAR_MULTIVERSION std::size_t splitBySurfaceArea(
       number[axis][bin] = 0;
     }
   }
+  // One register of AVX holds both corners of a box.
+  using Both = float __attribute__((vector_size(sizeof(LaneBox)), may_alias, aligned(16)));
   for (std::size_t i = 0; i < count; ++i)
   {
     const BinMapping::Numbers bin = mapping.binsOf(from[i]);
+    const Both own = *reinterpret_cast<const Both*>(&from[i]);
     for (int axis = 0; axis < 3; ++axis)
     {
-      box[axis][bin[axis]].include(from[i]);
+      Both& sum = *reinterpret_cast<Both*>(&box[axis][bin[axis]]);
+      sum = sum > own ? sum : own;
       ++number[axis][bin[axis]];
     }
   }

@@ -360,8 +360,9 @@ void vtkAvianLidarMovers::ReadAll(
     vtkAvianLidarSurfaces::Merge(leaves, input->GetFieldData(), nullptr, 1, true);
   vtkAvianLidarRequire(merged.problem);
   const auto first = static_cast<int>(surfaces.objectNames.size());
-  const auto least = std::min_element(merged.objectIds.begin(), merged.objectIds.end());
-  const int shift = least == merged.objectIds.end() ? 0 : std::max(0, first - *least);
+  const std::vector<int>& ids = merged.objectIds.different();
+  const auto least = std::min_element(ids.begin(), ids.end());
+  const int shift = least == ids.end() ? 0 : std::max(0, first - *least);
   const auto append = [shift](const auto& more, std::vector<std::string>& all)
   {
     for (std::size_t id = 0; id < more.size(); ++id)

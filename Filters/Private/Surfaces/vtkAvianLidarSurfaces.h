@@ -32,8 +32,8 @@ struct vtkAvianLidarSurfaces
   std::shared_ptr<const avianlidar::TriangleMesh> mesh;
   std::uint64_t checksum = 0; ///< checksum of the mesh
   std::uint64_t geometry = 0; ///< hash of the input apart from its materials
-  avianlidar::SharedVector<std::uint32_t>
-    order; ///< order of triangles (TriangleOrder.h); empty: as given
+  std::shared_ptr<const std::vector<std::uint32_t>>
+    order; ///< order of triangles (TriangleOrder.h); null or empty: as given
   avianlidar::SharedVector<avianlidar::Material> materials; ///< material of each triangle
   avianlidar::SharedVector<int> objectIds;                  ///< object id of each triangle
   avianlidar::SharedVector<int> materialIds;                ///< material id of each triangle

@@ -211,18 +211,21 @@ private:
     }
     else if (!this->KeepsOrder)
     {
-      this->Result.order =
-        avianlidar::triangleOrder(*this->Mesh, this->ObjectIds, this->MaterialIds);
-      avianlidar::reorder(this->Mesh->triangles, this->Result.order);
+      this->Result.order = std::make_shared<const std::vector<std::uint32_t>>(
+        avianlidar::triangleOrder(*this->Mesh, this->ObjectIds, this->MaterialIds));
+      avianlidar::reorder(this->Mesh->triangles, *this->Result.order);
     }
-    avianlidar::reorder(this->Materials, this->Result.order);
-    avianlidar::reorder(this->ObjectIds, this->Result.order);
-    avianlidar::reorder(this->MaterialIds, this->Result.order);
+    if (this->Result.order)
+    {
+      avianlidar::reorder(this->Materials, *this->Result.order);
+      avianlidar::reorder(this->ObjectIds, *this->Result.order);
+      avianlidar::reorder(this->MaterialIds, *this->Result.order);
+    }
     this->Result.mesh = this->MeshIsKnown ? known->mesh : this->Mesh;
     this->Result.checksum = this->MeshIsKnown ? known->checksum : this->Mesh->checksum();
-    this->Result.materials = std::move(this->Materials);
-    this->Result.objectIds = std::move(this->ObjectIds);
-    this->Result.materialIds = std::move(this->MaterialIds);
+    this->Result.materials = this->Materials;
+    this->Result.objectIds = this->ObjectIds;
+    this->Result.materialIds = this->MaterialIds;
     this->Result.objectNames = std::move(this->Ids.ObjectNames);
     this->Result.objectClasses = std::move(this->Ids.ObjectClasses);
     this->Result.materialNames = std::move(this->Ids.MaterialNames);

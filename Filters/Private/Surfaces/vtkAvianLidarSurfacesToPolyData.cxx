@@ -31,8 +31,9 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fie
 {
   namespace Arrays = vtkAvianLidarArrays;
   // Cells are in the order of the input.
-  const auto cellOf = [this](std::size_t i)
-  { return static_cast<vtkIdType>(this->order.empty() ? i : this->order[i]); };
+  const bool isSorted = !this->order || this->order->empty();
+  const auto cellOf = [&](std::size_t i)
+  { return static_cast<vtkIdType>(isSorted ? i : (*this->order)[i]); };
   auto poly = vtkSmartPointer<vtkPolyData>::New();
   poly->SetPoints(MakePoints(*this->mesh));
   poly->SetPolys(vtkAvianLidarMakeTriangles(this->mesh->triangles, cellOf));
