@@ -311,10 +311,14 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
   this->Directions->forEachNear(at.direction, reach,
     [&](std::uint32_t beam, double cosine)
     {
+      if (cosine < beyond)
+      {
+        return;
+      }
       const bool isHeld = this->holds(beam, at.direction, cosine);
       // The cone around a beam that is not round is larger than the beam.
       const double away = this->Shape.isRound() ? 0.0 : this->beamAt(at, beam).beyond();
-      const bool isNear = isHeld || (cosine > beyond && away < at.target.law->reach());
+      const bool isNear = isHeld || away < at.target.law->reach();
       if (isNear && !this->isInClutter(beam, at.range))
       {
         near.clear += isHeld;
@@ -365,8 +369,10 @@ BeamAtTarget Coverage::beamAt(const PlacedTarget& at, std::uint32_t beam) const
 
 /// Replaces results for the whole target by results for the parts that the beams light.
 void Coverage::share(
-  const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const
+  const PlacedTarget& at, NearBeams& near, double* ofPoses, CoverageValue& value) const
 {
+  std::sort(near.beams, near.beams + near.count,
+    [](const auto& a, const auto& b) { return a.nearness > b.nearness; });
   std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
   double irradiance = 0.0; // sum over the beams that contain the place
   for (std::size_t b = 0; b < near.count; ++b)
@@ -406,7 +412,7 @@ CoverageValue Coverage::valueOf(
     }
     return value;
   }
-  const NearBeams near = this->clearBeams(at);
+  NearBeams near = this->clearBeams(at);
   if (near.count > 0)
   {
     at.fill(value, near.clear);

@@ -149,8 +149,7 @@ private:
   bool isHopeless(const PlacedTarget& at, double step) const;
   NearBeams clearBeams(const PlacedTarget& at) const;
   bool isCertain(const PlacedTarget& at, double step, const NearBeams& near) const;
-  void share(
-    const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const;
+  void share(const PlacedTarget& at, NearBeams& near, double* ofPoses, CoverageValue& value) const;
   CoverageValue valueOf(const PlacedTarget& at, const CoverageSight& sight, double* ofPoses) const;
   bool isInClutter(std::uint32_t beam, double range) const;
 

@@ -53,9 +53,6 @@ struct BeamAtTarget
 
   bool isRound() const { return !this->isRectangle && this->across == this->radius; }
 
-  /// True if the beam is round, and its profile is uniform or falls to 1/e^2 at the border.
-  bool isUsual() const { return this->isRound() && this->fall == 2.0; }
-
   /// Squared coordinates of a point along the beam's sides, in units of half the side.
   /// @param right, above distances of the point from the axis, m
   Squares squaresOf(double right, double above) const
@@ -123,23 +120,30 @@ public:
   LitPart litBy(const BeamAtTarget& beam) const;
 
 private:
-  /// Sums of effective areas, areas times depth, and areas times squared depth.
-  struct Sums
-  {
-    float area = 0.0F, depth = 0.0F, square = 0.0F;
-  };
   struct Image
   {
     double pixel = 0.0;             ///< side of a pixel, m
     double left = 0.0, below = 0.0; ///< centre of the first pixel, m
     int columns = 0, rows = 0;
-    std::vector<Sums> pixels; ///< pixels row by row
+    std::size_t stride = 0, plane = 0; ///< numbers from one row, or one plane, to the next
+    /// Sums of effective areas, areas times depth, and areas times squared depth: three planes of
+    /// pixels row by row.
+    std::vector<float> pixels;
+
+    void allocate();
+    float& at(int sum, int row, int column)
+    {
+      return this->pixels[sum * plane + row * stride + column];
+    }
+    float at(int sum, int row, int column) const
+    {
+      return this->pixels[sum * plane + row * stride + column];
+    }
   };
   static Image halved(const Image& fine);
   const Image& imageFor(const BeamAtTarget& beam) const;
   static void rangeOf(
     double place, double reach, double first, double pixel, int count, int& begin, int& end);
-  LitPart litByOther(const BeamAtTarget& beam) const;
 
   LitPart All;
   double Reach = 0.0;        ///< value of reach(), m
