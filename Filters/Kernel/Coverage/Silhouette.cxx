@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 namespace avianlidar
 {
@@ -155,24 +156,10 @@ AVIANLIDAR_ALWAYS_INLINE float exponential(float x)
   return power * (1.0F + u * (1.0F + u * (0.5F + u * (1.0F / 6.0F + u * (1.0F / 24.0F)))));
 }
 
-enum class Outline
+/// Rows and columns [begin, end) of an image.
+struct Window
 {
-  Circle,
-  Ellipse,
-  Rectangle
-};
-
-/// Pixels of a rectangle of an image, in a beam.
-struct LitPixels
-{
-  const float* pixels; ///< areas; the depths and the squares follow, `plane` numbers later each
-  std::size_t plane, stride;
-  int columns, rows;
-  float along, beside;   ///< first pixel's coordinates along the beam's sides, in half sides
-  float alongX, besideX; ///< change of the coordinates to the next column
-  float alongY, besideY; ///< change of the coordinates to the next row
-  float pixelAlong, pixelBeside; ///< side of a pixel, in half sides
-  float fall;                    ///< see BeamAtTarget
+  int left, right, below, above;
 };
 
 /// Sums over pixels by lane.
@@ -181,68 +168,74 @@ struct LitSums
   float area[Lanes] = {}, depth[Lanes] = {}, square[Lanes] = {};
 };
 
-template <Outline outline, bool isGaussian>
-AVIANLIDAR_ALWAYS_INLINE void addPixels(const LitPixels& of, LitSums& sums)
+enum class Outline
 {
-  for (int row = 0; row < of.rows; ++row)
+  Circle,
+  Ellipse,
+  Rectangle
+};
+
+template <Outline outline, bool isGaussian>
+AVIANLIDAR_ALWAYS_INLINE void addPixels(
+  const Silhouette::Image& image, const BeamAtTarget& beam, const Window& window, LitSums& sums)
+{
+  const auto single = [](double value) { return static_cast<float>(value); };
+  // Coordinates along the beam's sides, in half sides, at the first pixel and from pixel to pixel.
+  const double px = image.pixel, cosine = beam.cosine, sine = beam.sine;
+  const double x = image.left + window.left * px - beam.x;
+  const float alongX = single(cosine * px / beam.radius),
+              besideX = single(-sine * px / beam.across);
+  const float pixelAlong = single(px / beam.radius), pixelBeside = single(px / beam.across);
+  const float fall = single(beam.fall);
+  for (int row = window.below; row < window.above; ++row)
   {
-    const float alongRow = of.along + static_cast<float>(row) * of.alongY;
-    const float besideRow = of.beside + static_cast<float>(row) * of.besideY;
-    for (int column = 0; column < of.columns; column += Lanes)
+    const double y = image.below + row * px - beam.y;
+    const float alongRow = single((cosine * x + sine * y) / beam.radius);
+    const float besideRow = single((cosine * y - sine * x) / beam.across);
+    for (int column = window.left; column < window.right; column += Lanes)
     {
-      const float* const area = of.pixels + row * of.stride + column;
+      const float* const area = &image.pixels[row * image.stride + column];
 #pragma omp simd
       for (int lane = 0; lane < Lanes; ++lane)
       {
-        const float along = alongRow + static_cast<float>(column + lane) * of.alongX;
-        const float beside = besideRow + static_cast<float>(column + lane) * of.besideX;
+        const auto step = static_cast<float>(column - window.left + lane);
+        const float along = alongRow + step * alongX;
+        const float beside = besideRow + step * besideX;
         const float square = along * along + beside * beside;
         // The share falls linearly from 1 half a pixel inside the border to 0 half a pixel outside.
         const auto within = [](float pixels) AVIANLIDAR_INLINE_LAMBDA
         { return lanes::larger(0.0F, lanes::smaller(0.5F + pixels, 1.0F)); };
-        float share;
-        if constexpr (outline == Outline::Rectangle)
-        {
-          share = within((1.0F - std::fabs(along)) / of.pixelAlong) *
-            within((1.0F - std::fabs(beside)) / of.pixelBeside);
-        }
-        else if constexpr (outline == Outline::Ellipse)
-        {
-          const float a = along * of.pixelAlong;
-          const float b = beside * of.pixelBeside;
-          share = within(0.5F * (1.0F - square) / std::sqrt(a * a + b * b));
-        }
-        else
-        {
-          share = within(0.5F * (1.0F - square) / of.pixelAlong); // a disc keeps its area
-        }
-        share *= isGaussian ? exponential(of.fall * square) : 1.0F;
+        const float a = along * pixelAlong;
+        const float b = beside * pixelBeside;
+        // With the constant slope, a disc keeps its area.
+        const float slope = outline == Outline::Ellipse ? std::sqrt(a * a + b * b) : pixelAlong;
+        float share = outline == Outline::Rectangle
+          ? within((1.0F - std::fabs(along)) / pixelAlong) *
+            within((1.0F - std::fabs(beside)) / pixelBeside)
+          : within(0.5F * (1.0F - square) / slope);
+        share *= isGaussian ? exponential(fall * square) : 1.0F;
         sums.area[lane] += share * area[lane];
-        sums.depth[lane] += share * area[lane + of.plane];
-        sums.square[lane] += share * area[lane + 2 * of.plane];
+        sums.depth[lane] += share * area[lane + image.plane];
+        sums.square[lane] += share * area[lane + 2 * image.plane];
       }
     }
   }
 }
 
-AVIANLIDAR_MULTIVERSION void addUniform(Outline outline, const LitPixels& of, LitSums& sums)
+AVIANLIDAR_MULTIVERSION LitSums lit(
+  const Silhouette::Image& image, const BeamAtTarget& beam, const Window& window)
 {
-  outline == Outline::Circle      ? addPixels<Outline::Circle, false>(of, sums)
-    : outline == Outline::Ellipse ? addPixels<Outline::Ellipse, false>(of, sums)
-                                  : addPixels<Outline::Rectangle, false>(of, sums);
+  LitSums sums;
+  const auto add = [&](auto outline) AVIANLIDAR_INLINE_LAMBDA
+  {
+    beam.profile == BeamProfile::Gaussian ? addPixels<outline(), true>(image, beam, window, sums)
+                                          : addPixels<outline(), false>(image, beam, window, sums);
+  };
+  beam.isRound()       ? add(std::integral_constant<Outline, Outline::Circle>())
+    : beam.isRectangle ? add(std::integral_constant<Outline, Outline::Rectangle>())
+                       : add(std::integral_constant<Outline, Outline::Ellipse>());
+  return sums;
 }
-
-AVIANLIDAR_MULTIVERSION void addGaussian(Outline outline, const LitPixels& of, LitSums& sums)
-{
-  outline == Outline::Circle      ? addPixels<Outline::Circle, true>(of, sums)
-    : outline == Outline::Ellipse ? addPixels<Outline::Ellipse, true>(of, sums)
-                                  : addPixels<Outline::Rectangle, true>(of, sums);
-}
-}
-
-Silhouette::Silhouette()
-  : Silhouette(1.0)
-{
 }
 
 Silhouette::Silhouette(double area)
@@ -309,7 +302,21 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
   this->Images.push_back(std::move(fine));
   while (this->Images.size() < MostImages)
   {
-    this->Images.push_back(halved(this->Images.back()));
+    const Image& last = this->Images.back();
+    Image coarse{ 2.0 * last.pixel, last.left + 0.5 * last.pixel, last.below + 0.5 * last.pixel,
+      last.columns / 2, last.rows / 2, 0, 0, {} };
+    coarse.allocate();
+    for (int plane = 0; plane < 3; ++plane)
+    {
+      for (int row = 0; row < last.rows; ++row)
+      {
+        for (int column = 0; column < last.columns; ++column)
+        {
+          coarse.at(plane, row / 2, column / 2) += last.at(plane, row, column);
+        }
+      }
+    }
+    this->Images.push_back(std::move(coarse));
   }
 }
 
@@ -321,45 +328,6 @@ void Silhouette::Image::allocate()
   this->pixels.resize(3 * this->plane);
 }
 
-Silhouette::Image Silhouette::halved(const Image& fine)
-{
-  Image coarse{ 2.0 * fine.pixel, fine.left + 0.5 * fine.pixel, fine.below + 0.5 * fine.pixel,
-    fine.columns / 2, fine.rows / 2, 0, 0, {} };
-  coarse.allocate();
-  for (int plane = 0; plane < 3; ++plane)
-  {
-    for (int row = 0; row < fine.rows; ++row)
-    {
-      for (int column = 0; column < fine.columns; ++column)
-      {
-        coarse.at(plane, row / 2, column / 2) += fine.at(plane, row, column);
-      }
-    }
-  }
-  return coarse;
-}
-
-/// The coarsest image that is fine enough for a beam.
-const Silhouette::Image& Silhouette::imageFor(const BeamAtTarget& beam) const
-{
-  auto image = this->Images.rbegin();
-  while (image + 1 != this->Images.rend() && RadiusInPixels * image->pixel > beam.across)
-  {
-    ++image;
-  }
-  return *image;
-}
-
-/// Finds the pixels [begin, end) of a row or column within a reach of a place.
-void Silhouette::rangeOf(
-  double place, double reach, double first, double pixel, int count, int& begin, int& end)
-{
-  const auto indexOf = [&](double at)
-  { return static_cast<int>(std::clamp<double>((at - first) / pixel, -1.0, count)); };
-  begin = std::max(0, indexOf(place - reach));
-  end = std::min(count, indexOf(place + reach) + 1);
-}
-
 std::size_t Silhouette::bytes() const
 {
   return std::accumulate(this->Images.begin(), this->Images.end(), std::size_t(0),
@@ -368,13 +336,14 @@ std::size_t Silhouette::bytes() const
 
 LitPart Silhouette::litBy(const BeamAtTarget& beam) const
 {
-  const double away2 = beam.x * beam.x + beam.y * beam.y;
   if (this->Images.empty())
   {
-    const bool isHeld = beam.isRound() ? away2 <= beam.radius * beam.radius : beam.beyond() <= 0.0;
-    return isHeld ? LitPart{ this->All.area * beam.irradiance(), 0.0, 0.0 } : LitPart();
+    return beam.beyond() <= 0.0 ? LitPart{ this->All.area * beam.irradiance(), 0.0, 0.0 }
+                                : LitPart();
   }
-  const Image& image = this->imageFor(beam);
+  // The coarsest image that is fine enough
+  const Image& image = *std::find_if(this->Images.rbegin(), this->Images.rend() - 1,
+    [&](const Image& coarse) { return RadiusInPixels * coarse.pixel <= beam.across; });
   const double pixel = image.pixel;
   BeamAtTarget wide = beam;
   wide.radius = std::max(beam.radius, LeastRadiusInPixels * pixel);
@@ -386,28 +355,17 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
     return beam.isRound() ? wide.radius + 0.5 * pixel
                           : pixel + (beam.isRectangle ? a + b : std::hypot(a, b));
   };
-  int left, right, below, above;
-  rangeOf(beam.x, reachOf(beam.cosine, beam.sine), image.left, pixel, image.columns, left, right);
-  rangeOf(beam.y, reachOf(beam.sine, beam.cosine), image.below, pixel, image.rows, below, above);
-  if (left >= right || below >= above)
+  const auto rangeOf = [&](double from, double to, double first, int count, int& begin, int& end)
   {
-    return {};
-  }
-  const double x = image.left + left * pixel - beam.x;
-  const double y = image.below + below * pixel - beam.y;
-  const double alongX = wide.cosine / wide.radius, alongY = wide.sine / wide.radius;
-  const double besideX = -wide.sine / wide.across, besideY = wide.cosine / wide.across;
-  const auto single = [](double value) { return static_cast<float>(value); };
-  const LitPixels lit = { &image.pixels[below * image.stride + left], image.plane, image.stride,
-    right - left, above - below, single(alongX * x + alongY * y), single(besideX * x + besideY * y),
-    single(alongX * pixel), single(besideX * pixel), single(alongY * pixel),
-    single(besideY * pixel), single(pixel / wide.radius), single(pixel / wide.across),
-    single(beam.fall) };
-  const Outline outline = beam.isRound() ? Outline::Circle
-    : beam.isRectangle                   ? Outline::Rectangle
-                                         : Outline::Ellipse;
-  LitSums sums;
-  (beam.profile == BeamProfile::Gaussian ? addGaussian : addUniform)(outline, lit, sums);
+    begin = static_cast<int>(std::clamp<double>((from - first) / pixel, 0.0, count));
+    end = static_cast<int>(std::clamp<double>((to - first) / pixel + 1.0, 0.0, count));
+  };
+  const double wideX = reachOf(beam.cosine, beam.sine);
+  const double wideY = reachOf(beam.sine, beam.cosine);
+  Window window;
+  rangeOf(beam.x - wideX, beam.x + wideX, image.left, image.columns, window.left, window.right);
+  rangeOf(beam.y - wideY, beam.y + wideY, image.below, image.rows, window.below, window.above);
+  const LitSums sums = lit(image, wide, window);
   const auto total = [](const float(&lanes)[Lanes])
   { return std::accumulate(lanes, lanes + Lanes, 0.0); };
   const double area = total(sums.area);
@@ -416,7 +374,8 @@ LitPart Silhouette::litBy(const BeamAtTarget& beam) const
     return {};
   }
   LitPart part = partOf(area, total(sums.depth), total(sums.square));
-  part.area *= beam.radius * beam.across / (wide.radius * wide.across) * beam.irradiance(0.0);
+  part.area *= beam.radius * beam.across / (wide.radius * wide.across);
+  part.area *= beam.profile == BeamProfile::Gaussian ? beam.most : 1.0;
   return part;
 }
 

@@ -6,9 +6,8 @@
  *
  * The image is drawn as seen from afar, with 3 x 3 samples for each pixel. A depth buffer leaves
  * out parts that other parts hide. Coarser images sum the pixels of the drawn image. A beam uses
- * the coarsest image in which its radius spans RadiusInPixels. A round beam takes about fifty
- * pixels. Any other beam takes more pixels than a round beam, by the ratio of its length to its
- * width. effectiveArea() draws a finer image and does not keep it.
+ * the coarsest image in which its shorter half side spans RadiusInPixels: about fifty pixels if the
+ * beam is round. effectiveArea() draws a finer image and does not keep it.
  *
  * Source: none.
  * Valid: beams wider than 0.02 of the target's longer side. A narrower beam is replaced by a beam
@@ -25,18 +24,12 @@
 #include "Vector.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 namespace avianlidar
 {
-struct Squares
-{
-  double along, beside;
-  double sum() const { return this->along + this->beside; }
-  double most() const { return std::max(this->along, this->beside); }
-};
-
 /// A beam at a target, in the plane across the line of sight through the target's middle.
 struct BeamAtTarget
 {
@@ -48,18 +41,16 @@ struct BeamAtTarget
   double cosine = 1.0;    ///< cosine of the longer side's angle, counted from right towards up
   double sine = 0.0;
   bool isRectangle = false;
-  double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squaresOf().sum()
+  double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squared distance in half sides
   double most = 2.0 / -std::expm1(-2.0); ///< irradiance on the axis relative to the beam's mean
 
   bool isRound() const { return !this->isRectangle && this->across == this->radius; }
 
-  /// Squared coordinates of a point along the beam's sides, in units of half the side.
-  /// @param right, above distances of the point from the axis, m
-  Squares squaresOf(double right, double above) const
+  /// Coordinates of the target's middle along the beam's sides, in units of half the side.
+  std::array<double, 2> middle() const
   {
-    const double along = (this->cosine * right + this->sine * above) / this->radius;
-    const double beside = (this->cosine * above - this->sine * right) / this->across;
-    return { along * along, beside * beside };
+    return { (this->cosine * this->x + this->sine * this->y) / this->radius,
+      (this->cosine * this->y - this->sine * this->x) / this->across };
   }
 
   /// Distance of the target's middle outside the beam's border, m; negative inside the border. For
@@ -70,19 +61,20 @@ struct BeamAtTarget
     {
       return std::hypot(this->x, this->y) - this->radius;
     }
-    const Squares at = this->squaresOf(this->x, this->y);
-    return this->across * (std::sqrt(this->isRectangle ? at.most() : at.sum()) - 1.0);
+    const auto [along, beside] = this->middle();
+    return this->across *
+      ((this->isRectangle ? std::max(std::fabs(along), std::fabs(beside))
+                          : std::hypot(along, beside)) -
+        1.0);
   }
 
   /// Irradiance at the target's middle, inside or beyond the border, relative to the beam's mean.
-  double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
-
-  /// Irradiance at a point relative to the beam's mean. @param square sum of squaresOf() at the
-  /// point
-  double irradiance(double square) const
+  double irradiance() const
   {
-    return this->profile == BeamProfile::Gaussian ? this->most * std::exp(-this->fall * square)
-                                                  : 1.0;
+    const auto [along, beside] = this->middle();
+    return this->profile == BeamProfile::Gaussian
+      ? this->most * std::exp(-this->fall * (along * along + beside * beside))
+      : 1.0;
   }
 };
 
@@ -97,29 +89,6 @@ struct LitPart
 class Silhouette
 {
 public:
-  /// A point of area 1.
-  Silhouette();
-
-  /// A point of the given area.
-  explicit Silhouette(double area);
-
-  /// @param mesh target with its middle at the origin
-  /// @param view unit vector from the distant observer to the target, not vertical
-  /// @param unit unit of areas, m^2
-  Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit);
-
-  const LitPart& all() const { return this->All; } ///< part that a wide uniform beam lights
-
-  /// Largest distance of any point from the middle, across the line of sight, m.
-  double reach() const { return this->Reach; }
-
-  /// Memory of the images, bytes.
-  std::size_t bytes() const;
-
-  /// Returns the part that a beam lights.
-  LitPart litBy(const BeamAtTarget& beam) const;
-
-private:
   struct Image
   {
     double pixel = 0.0;             ///< side of a pixel, m
@@ -140,11 +109,27 @@ private:
       return this->pixels[sum * plane + row * stride + column];
     }
   };
-  static Image halved(const Image& fine);
-  const Image& imageFor(const BeamAtTarget& beam) const;
-  static void rangeOf(
-    double place, double reach, double first, double pixel, int count, int& begin, int& end);
 
+  /// A point of the given area.
+  explicit Silhouette(double area = 1.0);
+
+  /// @param mesh target with its middle at the origin
+  /// @param view unit vector from the distant observer to the target, not vertical
+  /// @param unit unit of areas, m^2
+  Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit);
+
+  const LitPart& all() const { return this->All; } ///< part that a wide uniform beam lights
+
+  /// Largest distance of any point from the middle, across the line of sight, m.
+  double reach() const { return this->Reach; }
+
+  /// Memory of the images, bytes.
+  std::size_t bytes() const;
+
+  /// Returns the part that a beam lights.
+  LitPart litBy(const BeamAtTarget& beam) const;
+
+private:
   LitPart All;
   double Reach = 0.0;        ///< value of reach(), m
   std::vector<Image> Images; ///< images, finest first; empty for a point
