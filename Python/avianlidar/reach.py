@@ -98,8 +98,12 @@ def within_beams(sensor: Sensor, species: str = "herring gull", ranges: Sequence
     sensor = copy.deepcopy(sensor).set(position=(0.0, 0.0, 0.0), orientation=(0.0, 0.0, 0.0))
     directions = sensor.beams["direction"]
     part = [0.0, 0.0 if ranges is not None else SEARCHED]  # of the work that runs
-    cover = Coverage(Scene(), sensor, progress=progress and (
-        lambda share, name: progress(part[0] + share * (part[1] - part[0]), name)))
+
+    def tell(share: float, name: str) -> None:
+        if progress and name == cover.algorithm.GetClassName():  # other filters count from 0 to 1, too
+            progress(part[0] + share * (part[1] - part[0]), name)
+
+    cover = Coverage(Scene(), sensor, progress=tell if progress else None)
     cover.set(**{**settings, "species": species, "clutter": False})
     random, (low, high) = np.random.default_rng(SEED), np.radians(band(sensor))
     heights, shares = (EVENLY * np.arange(0.5, birds)[:, None] % 1.0).T

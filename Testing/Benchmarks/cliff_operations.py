@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Part of cliffs.py: whole commands, each in a process of its own. The range of gulls for all lidars on sale, and the report
-of gulls for the example airport: processor time of all threads, peak memory, and wall time by two threads over wall time by
-one, which other work on the machine makes larger. With --short, only the ranges of two lidars, without an aim."""
+"""Part of cliffs.py: whole commands, each in a process of its own. The range of gulls for all lidars on sale, and the
+report of gulls for the example airport: processor time of all threads, peak memory, and wall time by two threads over
+wall time by one, which other work on the machine makes larger. With --short, only the ranges of two lidars, without an
+aim."""
 import os
 import pathlib
 import subprocess
@@ -47,4 +48,5 @@ def rows(short):
               for threads in (1, 2)}
     yield Row("operations", "avianlidar report of gulls, one thread", by[1].processor, "s", 75.0)
     yield Row("operations", "avianlidar report of gulls, peak memory by two threads", by[2].memory, "MB", 700.0)
-    yield Row("operations", "avianlidar report of gulls, wall time by two threads over one", by[2].wall / by[1].wall, "", 0.6)
+    yield Row("operations", "avianlidar report of gulls, wall time by two threads over one", by[2].wall / by[1].wall,
+              "", 0.6)
