@@ -34,7 +34,7 @@ BIRDS = 256  # birds at each range
 FEW = 40  # birds at each range in the search for the end of the ranges
 SEED = 1
 # Roberts' sequence in the unit square: the powers 1 and 2 of 1/1.3247..., the real root of x^3 = x + 1. Its points are
-# evenly spread, so that a share is as sure as with two to ten times as many random birds.
+# evenly spread, so that a share is as sure as with at least twice as many random birds.
 EVENLY = np.array([0.7548776662466927, 0.5698402909980532])
 SEARCHED = 0.3  # share of the work in the search for the end of the ranges
 LEAST = 0.005  # least share that counts as detected when the end of the ranges is searched
