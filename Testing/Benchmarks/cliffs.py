@@ -6,7 +6,7 @@ taken in turn in one process.
 
     AVIANLIDAR_DATA_DIR=sceneries cliffs.py [--short] [--parts crowded silent ...] [-o cliffs.csv]
 
-The whole takes about thirty minutes, --short about five. A row is never an error because something is slow."""
+The whole takes about forty minutes, --short about five. A row is never an error because something is slow."""
 import argparse
 import csv
 import importlib
@@ -15,7 +15,7 @@ import sys
 import time
 from typing import Callable, Dict, NamedTuple, Optional
 
-PARTS = ("crowded", "silent", "gate", "tree")
+PARTS = ("crowded", "silent", "gate", "tree", "operations")
 
 
 class Row(NamedTuple):

@@ -61,9 +61,9 @@ struct Site
   {
     Sensor sensor = this->setup.sensor;
     sensor.receiverAperture *= aperture;
-    return CoverageTarget(sensor, 8.9e-5, area, reflectance,
+    return { 8.9e-5, area, reflectance,
       std::make_shared<const DetectionLaw>(sensor, views, this->coverage.lowest(),
-        this->coverage.highest(), this->coverage.mostBeams()));
+        this->coverage.highest(), this->coverage.mostBeams()) };
   }
 
   std::vector<CoverageValue> values(const std::vector<Vec3>& places, const CoverageTarget& target,

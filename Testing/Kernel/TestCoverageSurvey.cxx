@@ -95,10 +95,10 @@ TEST(CoverageSurvey, IsThatOfEachPlaceAndSumsThoseWithARegion)
   EXPECT_EQ(survey.traced(), 9000u);
 
   const Coverage coverage(site.setup, site.beams, Vec3(0.0, 0.0, 1.0), site.still);
-  const CoverageTarget target(site.setup.sensor, site.setup.settings.attenuationCoefficient,
-    Gull.area, Gull.reflectance,
-    std::make_shared<const DetectionLaw>(
-      site.setup.sensor, *Gull.views, coverage.lowest(), coverage.highest(), coverage.mostBeams()));
+  const CoverageTarget target = { site.setup.settings.attenuationCoefficient, Gull.area,
+    Gull.reflectance,
+    std::make_shared<const DetectionLaw>(site.setup.sensor, *Gull.views, coverage.lowest(),
+      coverage.highest(), coverage.mostBeams()) };
   std::vector<CoverageSight> sights(around.points.size());
   ASSERT_TRUE(coverage.look(around.places.at, sights.size(), 1, {}, sights.data()));
   std::vector<CoverageShares> wanted(8);

@@ -123,18 +123,22 @@ BeamDirections::BeamDirections(
 void BeamDirections::fill(Grid& grid, double halfBeamwidth) const
 {
   grid.begins.assign(6 * grid.side * grid.side + 1, 0);
-  for (const Vec3& axis : this->Axes)
-  {
-    forEachCell(grid.side, axis, halfBeamwidth + grid.margin,
-      [&](std::size_t cell) { ++grid.begins[cell + 1]; });
-  }
-  std::partial_sum(grid.begins.begin(), grid.begins.end(), grid.begins.begin());
-  grid.beams.resize(grid.begins.back());
-  std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
+  std::vector<std::pair<std::size_t, std::uint32_t>> pairs; // cell and beam
   for (std::uint32_t beam = 0; beam < this->Axes.size(); ++beam)
   {
     forEachCell(grid.side, this->Axes[beam], halfBeamwidth + grid.margin,
-      [&](std::size_t cell) { grid.beams[next[cell]++] = beam; });
+      [&](std::size_t cell)
+      {
+        ++grid.begins[cell + 1];
+        pairs.emplace_back(cell, beam);
+      });
+  }
+  std::partial_sum(grid.begins.begin(), grid.begins.end(), grid.begins.begin());
+  grid.beams.resize(pairs.size());
+  std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
+  for (const auto& [cell, beam] : pairs)
+  {
+    grid.beams[next[cell]++] = beam;
   }
 }
 

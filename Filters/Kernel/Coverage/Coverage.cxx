@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace avianlidar
@@ -67,6 +68,9 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
                               this->Shape.width().half, marginsFor(this->Shape.width().half)))
   , Air(setup.sensor, setup.air())
   , Most(static_cast<int>(std::clamp<std::size_t>(this->Directions->mostNear(), 1, 255)))
+  , ElectronsPerJoule(setup.sensor.receiverModel == ReceiverModel::Photons
+        ? PhotonReceiver(setup.sensor).electronsPerJoule
+        : 0.0)
   , CosineHeld(std::cos(this->Shape.width().half))
   , Lowest(std::numeric_limits<double>::infinity())
   , Highest(-std::numeric_limits<double>::infinity())
@@ -84,10 +88,8 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
     ++this->ClutterBegins[still.beamOfEcho[e] + 1];
     this->Clutter.push_back(static_cast<std::int64_t>(std::floor(still.echoes[e].range / length)));
   }
-  for (std::size_t b = 0; b < beams.size(); ++b)
-  {
-    this->ClutterBegins[b + 1] += this->ClutterBegins[b];
-  }
+  std::partial_sum(
+    this->ClutterBegins.begin(), this->ClutterBegins.end(), this->ClutterBegins.begin());
   this->HasClutter.resize(this->Directions->cells());
   for (std::size_t cell = 0; cell < this->HasClutter.size() && !this->Clutter.empty(); ++cell)
   {
@@ -184,28 +186,16 @@ bool Coverage::look(const PlaceAt& placeAt, std::size_t count, int threads,
     keepGoing);
 }
 
-CoverageTarget::CoverageTarget(const Sensor& sensor, double air, double meanArea, double reflected,
-  std::shared_ptr<const DetectionLaw> ofSensor)
-  : attenuation(air)
-  , area(meanArea)
-  , reflectance(reflected)
-  , electronsPerJoule(sensor.receiverModel == ReceiverModel::Photons
-        ? PhotonReceiver(sensor).electronsPerJoule
-        : 0.0)
-  , law(std::move(ofSensor))
-{
-}
-
 /// A target at a place, and the energies that beams receive from the target.
 struct Coverage::PlacedTarget
 {
   const CoverageTarget& target;
-  double range;   ///< range of the target, m
-  Vec3 direction; ///< unit vector towards the target
-  Vec3 right, up; ///< unit vectors across the direction, as in Silhouette.h
-  double filling; ///< energy of a target that fills the beam, J
-  double energy;  ///< energy if the beam contains the whole target, J
-  double growth;  ///< factor of the threshold in air, by which the energies are divided
+  double range;             ///< range of the target, m
+  Vec3 direction;           ///< unit vector towards the target
+  Vec3 right, up;           ///< unit vectors across the direction, as in Silhouette.h
+  double filling;           ///< energy of a target that fills the beam, J
+  double energy;            ///< energy if the beam contains the whole target, J
+  double electronsPerJoule; ///< photoelectrons per joule of these energies
   DetectionLaw::Between elevation;
 
   double probability(double step, int beams) const
@@ -214,16 +204,20 @@ struct Coverage::PlacedTarget
   }
 
   /// Sets the results for `beams` beams, each of which contains the whole target.
-  void fill(CoverageValue& value, int beams) const
+  void fill(CoverageValue& value, int beams, double* ofPoses) const
   {
     const double received = std::min(this->energy, this->filling);
     value.probability = this->target.law->probability(received, beams, this->elevation);
-    value.photoelectrons = this->target.electronsPerJoule * this->energy * this->growth;
+    value.photoelectrons = this->electronsPerJoule * this->energy;
     if (beams > 0)
     {
       const std::size_t view = this->elevation.below + (this->elevation.share > 0.5 ? 1 : 0);
       value.leastArea =
         this->target.area / this->energy * this->target.law->energyFor(0.5, beams, view);
+    }
+    if (ofPoses)
+    {
+      this->target.law->ofPoses(this->energy, beams, this->elevation, ofPoses);
     }
   }
 };
@@ -287,7 +281,8 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   const Vec3 right =
     glm::dot(across, across) > 0.0 ? unitVector(across) : Vec3(this->Up.y, this->Up.z, this->Up.x);
   return { target, range, direction, right, glm::cross(right, direction), filling / growth,
-    energy / growth, growth, target.law->betweenAt(elevationOf(to, this->Up)) };
+    energy / growth, growth * this->ElectronsPerJoule,
+    target.law->betweenAt(elevationOf(to, this->Up)) };
 }
 
 /// True if no number of beams detects the target and no beam that may be near has clutter.
@@ -311,10 +306,14 @@ Coverage::NearBeams Coverage::clearBeams(const PlacedTarget& at) const
   this->Directions->forEachNear(at.direction, reach,
     [&](std::uint32_t beam, double cosine)
     {
+      if (cosine < beyond)
+      {
+        return;
+      }
       const bool isHeld = this->holds(beam, at.direction, cosine);
       // The cone around a beam that is not round is larger than the beam.
       const double away = this->Shape.isRound() ? 0.0 : this->beamAt(at, beam).beyond();
-      const bool isNear = isHeld || (cosine > beyond && away < at.target.law->reach());
+      const bool isNear = isHeld || away < at.target.law->reach();
       if (isNear && !this->isInClutter(beam, at.range))
       {
         near.clear += isHeld;
@@ -365,8 +364,10 @@ BeamAtTarget Coverage::beamAt(const PlacedTarget& at, std::uint32_t beam) const
 
 /// Replaces results for the whole target by results for the parts that the beams light.
 void Coverage::share(
-  const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const
+  const PlacedTarget& at, NearBeams& near, double* ofPoses, CoverageValue& value) const
 {
+  std::sort(near.beams, near.beams + near.count,
+    [](const auto& a, const auto& b) { return a.nearness > b.nearness; });
   std::array<BeamAtTarget, DetectionLaw::MostBeams> beams;
   double irradiance = 0.0; // sum over the beams that contain the place
   for (std::size_t b = 0; b < near.count; ++b)
@@ -399,24 +400,17 @@ CoverageValue Coverage::valueOf(
   const double step = at.target.law->stepOf(at.energy); // upper bound: parts receive no more
   if (sight.beams > 0 && this->isHopeless(at, step))
   {
-    at.fill(value, sight.beams);
-    if (ofPoses)
-    {
-      at.target.law->ofPoses(at.energy, sight.beams, at.elevation, ofPoses);
-    }
+    at.fill(value, sight.beams, ofPoses);
     return value;
   }
-  const NearBeams near = this->clearBeams(at);
+  NearBeams near = this->clearBeams(at);
   if (near.count > 0)
   {
-    at.fill(value, near.clear);
-    if (!this->isCertain(at, step, near))
+    const bool isCertain = this->isCertain(at, step, near);
+    at.fill(value, near.clear, isCertain ? ofPoses : nullptr);
+    if (!isCertain)
     {
       this->share(at, near, ofPoses, value);
-    }
-    else if (ofPoses)
-    {
-      at.target.law->ofPoses(at.energy, near.clear, at.elevation, ofPoses);
     }
   }
   if (value.probability >= WeakProbability)

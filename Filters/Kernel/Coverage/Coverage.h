@@ -85,18 +85,10 @@ class Coverage;
 /// A target as a sensor sees it through the air.
 struct CoverageTarget
 {
-  /// @param attenuation extinction coefficient, 1/m
-  /// @param area mean effective area (silhouette weighted by cosine), m^2 @param reflectance
-  /// reflectance of the target, 0 to 1
-  /// @param law law of the sensor and the target's views, for the number and the elevations of the
-  /// coverage's beams
-  CoverageTarget(const Sensor& sensor, double attenuation, double area, double reflectance,
-    std::shared_ptr<const DetectionLaw> law);
-
-  double attenuation;
-  double area;
-  double reflectance;
-  double electronsPerJoule; ///< electrons per joule of light; 0 without a photon receiver
+  double attenuation; ///< extinction coefficient, 1/m
+  double area;        ///< mean effective area (silhouette weighted by cosine), m^2
+  double reflectance; ///< 0 to 1
+  /// Law of the sensor and the target's views, for the number and elevations of the beams.
   std::shared_ptr<const DetectionLaw> law;
 };
 
@@ -149,8 +141,7 @@ private:
   bool isHopeless(const PlacedTarget& at, double step) const;
   NearBeams clearBeams(const PlacedTarget& at) const;
   bool isCertain(const PlacedTarget& at, double step, const NearBeams& near) const;
-  void share(
-    const PlacedTarget& at, const NearBeams& near, double* ofPoses, CoverageValue& value) const;
+  void share(const PlacedTarget& at, NearBeams& near, double* ofPoses, CoverageValue& value) const;
   CoverageValue valueOf(const PlacedTarget& at, const CoverageSight& sight, double* ofPoses) const;
   bool isInClutter(std::uint32_t beam, double range) const;
 
@@ -161,6 +152,7 @@ private:
   std::shared_ptr<const BeamDirections> Directions;
   BeamAir Air; ///< air along a ray; copied for each place
   int Most;
+  double ElectronsPerJoule;               ///< 0 without a photon receiver
   double CosineHeld;                      ///< cosine of the half-beamwidth
   double Lowest;                          ///< lowest elevation in any beam, rad
   double Highest;                         ///< highest elevation in any beam, rad

@@ -91,9 +91,9 @@ bool CoverageSurvey::evaluate(const SurveyTarget& wanted, const SurveyRules& rul
   if (this->Covered)
   {
     const Sensor& sensor = this->Covered->setup().sensor;
-    target.emplace(sensor, this->Covered->setup().attenuation(), wanted.area, wanted.reflectance,
+    target = { this->Covered->setup().attenuation(), wanted.area, wanted.reflectance,
       this->Laws->get(sensor, wanted.views, this->Covered->lowest(), this->Covered->highest(),
-        this->Covered->mostBeams()));
+        this->Covered->mostBeams()) };
   }
   std::vector<std::map<std::size_t, CoverageShares>> ofBlock(
     (this->size() + PlacesOfSum - 1) / PlacesOfSum);

@@ -40,7 +40,8 @@ constexpr double MostUnits = 64.0;
 constexpr double LeastLimit = 1e-280;
 
 /// Linear interpolation, constant beyond both ends. @param at in steps of the table
-double between(const double* table, std::size_t count, double at)
+template <class Real>
+double between(const Real* table, std::size_t count, double at)
 {
   if (!(at > 0.0))
   {
@@ -171,16 +172,21 @@ DetectionLaw::DetectionLaw(
       for (std::size_t k = 0; k < Points; ++k)
       {
         const double decade = FirstDecade + static_cast<double>(k) / PointsPerDecade;
-        this->Missed.push_back(
-          missedBy(sensor, receiver, this->Limit * std::pow(10.0, decade), shares));
+        this->Missed.push_back(static_cast<float>(
+          missedBy(sensor, receiver, this->Limit * std::pow(10.0, decade), shares)));
       }
     }
+  }
+  std::vector<std::vector<double>> wholeTargets; // by depth class
+  for (std::size_t depth = 0; depth < classes; ++depth)
+  {
+    wholeTargets.push_back(this->wholeTarget(depth));
   }
   const double steps = std::ceil((highest - this->Lowest) / this->Step);
   for (int view = 0; view <= std::max(0.0, steps); ++view)
   {
     this->Views.push_back(views.from(this->Lowest + view * this->Step));
-    this->tabulate(*this->Views.back());
+    this->tabulate(*this->Views.back(), wholeTargets);
   }
   for (std::size_t i = 0; i < this->poses(); ++i)
   {
@@ -191,29 +197,44 @@ DetectionLaw::DetectionLaw(
   }
 }
 
-void DetectionLaw::tabulate(const TargetPoses& poses)
+std::vector<double> DetectionLaw::wholeTarget(std::size_t spread) const
+{
+  std::vector<double> detected(this->Most * Points, 0.0);
+  const double weight = 1.0 / this->Places;
+  for (int place = 0; place < this->Places; ++place)
+  {
+    const float* const missedAt = &this->Missed[(spread * this->Places + place) * Points];
+    for (std::size_t k = 0; k < Points; ++k)
+    {
+      const double missed =
+        between(missedAt, Points, static_cast<double>(k) + this->spreadAt(place % PlacesOfParts));
+      double byAll = 1.0;
+      for (int beams = 0; beams < this->Most; ++beams)
+      {
+        byAll *= missed;
+        detected[beams * Points + k] += weight * (1.0 - byAll);
+      }
+    }
+  }
+  return detected;
+}
+
+void DetectionLaw::tabulate(
+  const TargetPoses& poses, const std::vector<std::vector<double>>& wholeTargets)
 {
   std::vector<double>& table = this->Tables.emplace_back(this->Most * Points, 0.0);
   std::vector<Received>& whole = this->Whole.emplace_back();
-  const std::size_t places = this->Places;
-  const double weight = 1.0 / static_cast<double>(poses.size() * places);
+  const double weight = 1.0 / static_cast<double>(poses.size());
   for (const Silhouette& pose : poses)
   {
-    const double shiftOfPose = std::log10(pose.all().area) * PointsPerDecade;
     whole.push_back(this->received(pose.all().area, pose.all()));
-    for (std::size_t place = 0; place < places; ++place)
+    const double shift = std::log10(pose.all().area) * PointsPerDecade;
+    const double* const detected = wholeTargets[whole.back().spread].data();
+    for (std::size_t row = 0; row < table.size(); row += Points)
     {
-      const double* const missedAt = &this->Missed[(whole.back().spread * places + place) * Points];
-      const double shift = shiftOfPose + this->spreadAt(place % PlacesOfParts);
       for (std::size_t k = 0; k < Points; ++k)
       {
-        const double missed = between(missedAt, Points, static_cast<double>(k) + shift);
-        double byAll = 1.0;
-        for (int beams = 1; beams <= this->Most; ++beams)
-        {
-          byAll *= missed;
-          table[(beams - 1) * Points + k] += weight * (1.0 - byAll);
-        }
+        table[row + k] += weight * between(detected + row, Points, static_cast<double>(k) + shift);
       }
     }
   }
@@ -225,7 +246,8 @@ void DetectionLaw::tabulate(const TargetPoses& poses)
 
 std::size_t DetectionLaw::bytes() const
 {
-  std::size_t sum = (this->views() * this->Most * Points + this->Missed.size()) * sizeof(double);
+  std::size_t sum =
+    this->views() * this->Most * Points * sizeof(double) + this->Missed.size() * sizeof(float);
   for (const SharedPoses& view : this->Views)
   {
     sum += std::accumulate(view->begin(), view->end(), std::size_t(0),
@@ -280,7 +302,7 @@ double DetectionLaw::spreadAt(std::size_t quantile) const
 DetectionLaw::ByPlace DetectionLaw::missed(const Received& beam) const
 {
   static_assert(std::size(Quantiles) == PlacesOfParts);
-  const double* const tables = &this->Missed[beam.spread * this->Places * Points];
+  const float* const tables = &this->Missed[beam.spread * this->Places * Points];
   ByPlace missed;
   for (int place = 0; place < PlacesOfParts; ++place)
   {
@@ -344,7 +366,8 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
     if (crossings > 0 &&
       (!isUniform || detectedBy(powers(byWhole, whole + crossings)) - p > NegligiblePart))
     {
-      for (std::size_t c = 0; c < crossings; ++c)
+      // Near 1, further beams change the probability by no more than NegligiblePart.
+      for (std::size_t c = 0; c < crossings && p < 1.0 - NegligiblePart; ++c)
       {
         const LitPart part = shown.litBy(beams[crossing[c]]);
         if (part.area > 0.0)
@@ -354,8 +377,8 @@ double DetectionLaw::probability(double energy, double most, const BeamAtTarget*
           std::transform(
             byAll.begin(), byAll.end(), byPart.begin(), byAll.begin(), std::multiplies<>());
         }
+        p = detectedBy(byAll);
       }
-      p = detectedBy(byAll);
     }
     if (ofPoses)
     {

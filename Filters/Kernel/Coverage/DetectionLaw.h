@@ -157,7 +157,10 @@ private:
   using ByPlace = std::array<double, PlacesOfParts>;
   ByPlace missed(const Received& beam) const;
   std::size_t viewOf(std::size_t pose, const Between& at) const;
-  void tabulate(const TargetPoses& poses);
+  /// Probability that beams detect a target of a depth class, mean over positions; by beams and
+  /// energy.
+  std::vector<double> wholeTarget(std::size_t spread) const;
+  void tabulate(const TargetPoses& poses, const std::vector<std::vector<double>>& wholeTargets);
 
   int Most;                       ///< largest number of beams in the tables
   double Limit;                   ///< Qlow, J
@@ -172,7 +175,7 @@ private:
   std::vector<std::vector<Received>> Whole;
   std::vector<double> Thresholds; ///< share above which a pose is taken from the next view, by pose
   /// Probability that a beam perceives nothing, by depth class, position in the unit, energy.
-  std::vector<double> Missed;
+  std::vector<float> Missed;
   int Places;                              ///< number of positions in half a unit
   std::vector<std::vector<double>> Tables; ///< probability by elevation; then beams and energy
 };

@@ -2,12 +2,16 @@
 #include "Silhouette.h"
 
 #include "BeamFrame.h"
+#include "LaneMath.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 namespace avianlidar
 {
@@ -22,6 +26,8 @@ constexpr int MostImages = 5;
 constexpr double RadiusInPixels = 3.5;
 /// Least radius of a beam in the finest image, in pixels.
 constexpr double LeastRadiusInPixels = 1.0;
+/// Pixels that are added at once.
+constexpr int Lanes = 8;
 /// Samples along the longer side for an effective area.
 constexpr int SamplesOfArea = 512;
 
@@ -135,22 +141,101 @@ LitPart partOf(double area, double depth, double square)
   return { area, mean, std::sqrt(std::max(0.0, square / area - mean * mean)) };
 }
 
-/// exp(-2u) for u from 0 to 2, with a relative error below 1e-3.
-float gaussian(float u)
+/// exp(-x) for x from 0 to 80, with a relative error below 1e-4.
+AVIANLIDAR_ALWAYS_INLINE float exponential(float x)
 {
-  const float x = 0.125F * u; // exp(-2u) is exp(-x) to the 16th
-  float e = 1.0F - x * (1.0F - x * (0.5F - x * (1.0F / 6.0F)));
-  for (int k = 0; k < 4; ++k)
-  {
-    e *= e;
-  }
-  return e;
-}
+  constexpr float rounder = 12582912.0F; // 1.5 * 2^23, see lanes::Rounder
+  const float y = -1.44269504F * lanes::smaller(x, 80.0F);
+  const float whole = y + rounder;
+  std::uint32_t bits;
+  std::memcpy(&bits, &whole, sizeof bits);
+  bits = (bits + 127u) << 23;
+  float power;
+  std::memcpy(&power, &bits, sizeof power);
+  const float u = 0.693147181F * (y - (whole - rounder));
+  return power * (1.0F + u * (1.0F + u * (0.5F + u * (1.0F / 6.0F + u * (1.0F / 24.0F)))));
 }
 
-Silhouette::Silhouette()
-  : Silhouette(1.0)
+/// Rows and columns [begin, end) of an image.
+struct Window
 {
+  int left, right, below, above;
+};
+
+/// Sums over pixels by lane.
+struct LitSums
+{
+  float area[Lanes] = {}, depth[Lanes] = {}, square[Lanes] = {};
+};
+
+enum class Outline
+{
+  Circle,
+  Ellipse,
+  Rectangle
+};
+
+template <Outline outline, bool isGaussian>
+AVIANLIDAR_ALWAYS_INLINE void addPixels(
+  const Silhouette::Image& image, const BeamAtTarget& beam, const Window& window, LitSums& sums)
+{
+  const auto single = [](double value) { return static_cast<float>(value); };
+  // Coordinates along the beam's sides, in half sides, at the first pixel and from pixel to pixel.
+  const double px = image.pixel, cosine = beam.cosine, sine = beam.sine;
+  const double x = image.left + window.left * px - beam.x;
+  const float alongX = single(cosine * px / beam.radius),
+              besideX = single(-sine * px / beam.across);
+  const float pixelAlong = single(px / beam.radius), pixelBeside = single(px / beam.across);
+  const float fall = single(beam.fall);
+  for (int row = window.below; row < window.above; ++row)
+  {
+    const double y = image.below + row * px - beam.y;
+    const float alongRow = single((cosine * x + sine * y) / beam.radius);
+    const float besideRow = single((cosine * y - sine * x) / beam.across);
+    for (int column = window.left; column < window.right; column += Lanes)
+    {
+      const float* const area = &image.pixels[row * image.stride + column];
+#pragma omp simd
+      for (int lane = 0; lane < Lanes; ++lane)
+      {
+        const auto step = static_cast<float>(column - window.left + lane);
+        const float along = alongRow + step * alongX;
+        const float beside = besideRow + step * besideX;
+        const float square = along * along + beside * beside;
+        // The share falls linearly from 1 half a pixel inside the border to 0 half a pixel outside.
+        const auto within = [](float pixels) AVIANLIDAR_INLINE_LAMBDA
+        { return lanes::larger(0.0F, lanes::smaller(0.5F + pixels, 1.0F)); };
+        const float a = along * pixelAlong;
+        const float b = beside * pixelBeside;
+        // With the constant slope, a disc keeps its area.
+        const float slope = outline == Outline::Ellipse ? std::sqrt(a * a + b * b) : pixelAlong;
+        float share = outline == Outline::Rectangle
+          ? within((1.0F - std::fabs(along)) / pixelAlong) *
+            within((1.0F - std::fabs(beside)) / pixelBeside)
+          : within(0.5F * (1.0F - square) / slope);
+        share *= isGaussian ? exponential(fall * square) : 1.0F;
+        sums.area[lane] += share * area[lane];
+        sums.depth[lane] += share * area[lane + image.plane];
+        sums.square[lane] += share * area[lane + 2 * image.plane];
+      }
+    }
+  }
+}
+
+AVIANLIDAR_MULTIVERSION LitSums lit(
+  const Silhouette::Image& image, const BeamAtTarget& beam, const Window& window)
+{
+  LitSums sums;
+  const auto add = [&](auto outline) AVIANLIDAR_INLINE_LAMBDA
+  {
+    beam.profile == BeamProfile::Gaussian ? addPixels<outline(), true>(image, beam, window, sums)
+                                          : addPixels<outline(), false>(image, beam, window, sums);
+  };
+  beam.isRound()       ? add(std::integral_constant<Outline, Outline::Circle>())
+    : beam.isRectangle ? add(std::integral_constant<Outline, Outline::Rectangle>())
+                       : add(std::integral_constant<Outline, Outline::Ellipse>());
+  return sums;
+}
 }
 
 Silhouette::Silhouette(double area)
@@ -190,7 +275,7 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
   canvas.below = fine.below - 0.5 * fine.pixel + 0.5 * canvas.step;
   canvas.samples.resize(static_cast<std::size_t>(canvas.columns) * canvas.rows);
   drawMesh(mesh, shown.Points, canvas);
-  fine.pixels.resize(static_cast<std::size_t>(fine.columns) * fine.rows);
+  fine.allocate();
   const double each = canvas.step * canvas.step / unit;
   double area = 0.0, depth = 0.0, square = 0.0;
   for (int row = 0; row < canvas.rows; ++row)
@@ -200,15 +285,16 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
       const Sample& s = canvas.samples[static_cast<std::size_t>(row) * canvas.columns + column];
       if (s.cosine > 0.0F)
       {
-        Sums& pixel = fine.pixels[static_cast<std::size_t>(row / SamplesOfPixel) * fine.columns +
-          column / SamplesOfPixel];
         const double part = each * s.cosine;
-        pixel.area += static_cast<float>(part);
-        pixel.depth += static_cast<float>(part * s.depth);
-        pixel.square += static_cast<float>(part * s.depth * s.depth);
-        area += part;
-        depth += part * s.depth;
-        square += part * s.depth * s.depth;
+        const double sums[] = { part, part * s.depth, part * s.depth * s.depth };
+        for (int plane = 0; plane < 3; ++plane)
+        {
+          fine.at(plane, row / SamplesOfPixel, column / SamplesOfPixel) +=
+            static_cast<float>(sums[plane]);
+        }
+        area += sums[0];
+        depth += sums[1];
+        square += sums[2];
       }
     }
   }
@@ -216,162 +302,81 @@ Silhouette::Silhouette(const TriangleMesh& mesh, const Vec3& view, double unit)
   this->Images.push_back(std::move(fine));
   while (this->Images.size() < MostImages)
   {
-    this->Images.push_back(halved(this->Images.back()));
-  }
-}
-
-Silhouette::Image Silhouette::halved(const Image& fine)
-{
-  Image coarse{ 2.0 * fine.pixel, fine.left + 0.5 * fine.pixel, fine.below + 0.5 * fine.pixel,
-    fine.columns / 2, fine.rows / 2, {} };
-  coarse.pixels.resize(static_cast<std::size_t>(coarse.columns) * coarse.rows);
-  for (int row = 0; row < 2 * coarse.rows; ++row)
-  {
-    for (int column = 0; column < 2 * coarse.columns; ++column)
+    const Image& last = this->Images.back();
+    Image coarse{ 2.0 * last.pixel, last.left + 0.5 * last.pixel, last.below + 0.5 * last.pixel,
+      last.columns / 2, last.rows / 2, 0, 0, {} };
+    coarse.allocate();
+    for (int plane = 0; plane < 3; ++plane)
     {
-      const Sums& from = fine.pixels[static_cast<std::size_t>(row) * fine.columns + column];
-      Sums& to = coarse.pixels[static_cast<std::size_t>(row / 2) * coarse.columns + column / 2];
-      to.area += from.area;
-      to.depth += from.depth;
-      to.square += from.square;
+      for (int row = 0; row < last.rows; ++row)
+      {
+        for (int column = 0; column < last.columns; ++column)
+        {
+          coarse.at(plane, row / 2, column / 2) += last.at(plane, row, column);
+        }
+      }
     }
+    this->Images.push_back(std::move(coarse));
   }
-  return coarse;
 }
 
-/// The coarsest image that is fine enough for a beam.
-const Silhouette::Image& Silhouette::imageFor(const BeamAtTarget& beam) const
+void Silhouette::Image::allocate()
 {
-  auto image = this->Images.rbegin();
-  while (image + 1 != this->Images.rend() && RadiusInPixels * image->pixel > beam.across)
-  {
-    ++image;
-  }
-  return *image;
-}
-
-/// Finds the pixels [begin, end) of a row or column within a reach of a place.
-void Silhouette::rangeOf(
-  double place, double reach, double first, double pixel, int count, int& begin, int& end)
-{
-  const auto indexOf = [&](double at)
-  { return static_cast<int>(std::clamp<double>((at - first) / pixel, -1.0, count)); };
-  begin = std::max(0, indexOf(place - reach));
-  end = std::min(count, indexOf(place + reach) + 1);
-}
-
-/// litBy() for beams that are not usual (BeamAtTarget::isUsual()).
-LitPart Silhouette::litByOther(const BeamAtTarget& beam) const
-{
-  const Image& image = this->imageFor(beam);
-  BeamAtTarget wide = beam;
-  wide.radius = std::max(beam.radius, LeastRadiusInPixels * image.pixel);
-  wide.across = std::max(beam.across, LeastRadiusInPixels * image.pixel);
-  const auto reachOf = [&](double along, double beside)
-  {
-    const double a = std::fabs(along * wide.radius);
-    const double b = std::fabs(beside * wide.across);
-    return image.pixel + (beam.isRectangle ? a + b : std::hypot(a, b));
-  };
-  int left, right, below, above;
-  rangeOf(
-    beam.x, reachOf(beam.cosine, beam.sine), image.left, image.pixel, image.columns, left, right);
-  rangeOf(
-    beam.y, reachOf(beam.sine, beam.cosine), image.below, image.pixel, image.rows, below, above);
-  // The share of a pixel falls linearly, from half a pixel inside the border to half outside.
-  const auto within = [&](double length, double square)
-  { return std::clamp(0.5 + length / image.pixel * (1.0 - std::sqrt(square)), 0.0, 1.0); };
-  const auto shareOf = [&](const Squares& at)
-  {
-    if (beam.isRectangle)
-    {
-      return within(wide.radius, at.along) * within(wide.across, at.beside);
-    }
-    const double slope = 2.0 *
-      std::sqrt(at.along / (wide.radius * wide.radius) + at.beside / (wide.across * wide.across));
-    return slope > 0.0 ? std::clamp(0.5 + (1.0 - at.sum()) / (slope * image.pixel), 0.0, 1.0) : 1.0;
-  };
-  double area = 0.0, depth = 0.0, square = 0.0;
-  for (int row = below; row < above; ++row)
-  {
-    for (int column = left; column < right; ++column)
-    {
-      const Squares at = wide.squaresOf(
-        image.left + column * image.pixel - beam.x, image.below + row * image.pixel - beam.y);
-      const double share = shareOf(at) * wide.irradiance(at.sum());
-      const Sums& pixel = image.pixels[static_cast<std::size_t>(row) * image.columns + column];
-      area += share * pixel.area;
-      depth += share * pixel.depth;
-      square += share * pixel.square;
-    }
-  }
-  if (!(area > 0.0))
-  {
-    return {};
-  }
-  LitPart lit = partOf(area, depth, square);
-  lit.area *= beam.radius * beam.across / (wide.radius * wide.across);
-  return lit;
+  // Lanes may lie beyond the last column.
+  this->stride = static_cast<std::size_t>(this->columns) + Lanes - 1;
+  this->plane = this->stride * this->rows;
+  this->pixels.resize(3 * this->plane);
 }
 
 std::size_t Silhouette::bytes() const
 {
   return std::accumulate(this->Images.begin(), this->Images.end(), std::size_t(0),
-    [](std::size_t sum, const Image& image) { return sum + image.pixels.size() * sizeof(Sums); });
+    [](std::size_t sum, const Image& image) { return sum + image.pixels.size() * sizeof(float); });
 }
 
 LitPart Silhouette::litBy(const BeamAtTarget& beam) const
 {
-  const double away2 = beam.x * beam.x + beam.y * beam.y;
   if (this->Images.empty())
   {
-    const bool isHeld = beam.isRound() ? away2 <= beam.radius * beam.radius : beam.beyond() <= 0.0;
-    return isHeld ? LitPart{ this->All.area * beam.irradiance(), 0.0, 0.0 } : LitPart();
+    return beam.beyond() <= 0.0 ? LitPart{ this->All.area * beam.irradiance(), 0.0, 0.0 }
+                                : LitPart();
   }
-  if (!beam.isUsual())
+  // The coarsest image that is fine enough
+  const Image& image = *std::find_if(this->Images.rbegin(), this->Images.rend() - 1,
+    [&](const Image& coarse) { return RadiusInPixels * coarse.pixel <= beam.across; });
+  const double pixel = image.pixel;
+  BeamAtTarget wide = beam;
+  wide.radius = std::max(beam.radius, LeastRadiusInPixels * pixel);
+  wide.across = std::max(beam.across, LeastRadiusInPixels * pixel);
+  const auto reachOf = [&](double along, double beside)
   {
-    return this->litByOther(beam);
-  }
-  const Image* const image = &this->imageFor(beam);
-  const double radius = std::max(beam.radius, LeastRadiusInPixels * image->pixel);
-  // The share of a pixel is linear in its squared distance. The share is 1 half a pixel inside the
-  // border and 0 half a pixel outside, so that the disc keeps its area.
-  const double radius2 = radius * radius;
-  const double edge = radius * image->pixel;
-  const double reach = std::sqrt(radius2 + edge);
-  int left, right, below, above;
-  rangeOf(beam.x, reach, image->left, image->pixel, image->columns, left, right);
-  rangeOf(beam.y, reach, image->below, image->pixel, image->rows, below, above);
-  const bool isGaussian = beam.profile == BeamProfile::Gaussian;
-  const auto perEdge = static_cast<float>(0.5 / edge);
-  const auto perRadius2 = static_cast<float>(1.0 / radius2);
-  const auto limit = static_cast<float>(radius2);
-  Sums sum;
-  for (int row = below; row < above; ++row)
+    const double a = std::fabs(along * wide.radius);
+    const double b = std::fabs(beside * wide.across);
+    return beam.isRound() ? wide.radius + 0.5 * pixel
+                          : pixel + (beam.isRectangle ? a + b : std::hypot(a, b));
+  };
+  const auto rangeOf = [&](double from, double to, double first, int count, int& begin, int& end)
   {
-    const auto y = static_cast<float>(image->below + row * image->pixel - beam.y);
-    // The pointer lies past the last pixel if the beam lies beside the image.
-    const Sums* pixel =
-      image->pixels.data() + static_cast<std::size_t>(row) * image->columns + left;
-    auto x = static_cast<float>(image->left + left * image->pixel - beam.x);
-    for (int column = left; column < right; ++column, ++pixel)
-    {
-      const float away = x * x + y * y;
-      float share = std::clamp(0.5F + (limit - away) * perEdge, 0.0F, 1.0F);
-      share *= isGaussian ? gaussian(away * perRadius2) : 1.0F;
-      sum.area += share * pixel->area;
-      sum.depth += share * pixel->depth;
-      sum.square += share * pixel->square;
-      x += static_cast<float>(image->pixel);
-    }
-  }
-  if (!(sum.area > 0.0F))
+    begin = static_cast<int>(std::clamp<double>((from - first) / pixel, 0.0, count));
+    end = static_cast<int>(std::clamp<double>((to - first) / pixel + 1.0, 0.0, count));
+  };
+  const double wideX = reachOf(beam.cosine, beam.sine);
+  const double wideY = reachOf(beam.sine, beam.cosine);
+  Window window;
+  rangeOf(beam.x - wideX, beam.x + wideX, image.left, image.columns, window.left, window.right);
+  rangeOf(beam.y - wideY, beam.y + wideY, image.below, image.rows, window.below, window.above);
+  const LitSums sums = lit(image, wide, window);
+  const auto total = [](const float(&lanes)[Lanes])
+  { return std::accumulate(lanes, lanes + Lanes, 0.0); };
+  const double area = total(sums.area);
+  if (!(area > 0.0))
   {
     return {};
   }
-  LitPart lit = partOf(sum.area, sum.depth, sum.square);
-  lit.area *= beam.radius * beam.radius / radius2 * beam.irradiance(0.0);
-  return lit;
+  LitPart part = partOf(area, total(sums.depth), total(sums.square));
+  part.area *= beam.radius * beam.across / (wide.radius * wide.across);
+  part.area *= beam.profile == BeamProfile::Gaussian ? beam.most : 1.0;
+  return part;
 }
 
 double effectiveArea(const TriangleMesh& mesh, const Vec3& view)

@@ -6,9 +6,8 @@
  *
  * The image is drawn as seen from afar, with 3 x 3 samples for each pixel. A depth buffer leaves
  * out parts that other parts hide. Coarser images sum the pixels of the drawn image. A beam uses
- * the coarsest image in which its radius spans RadiusInPixels. A round beam takes about fifty
- * pixels. Any other beam takes more pixels than a round beam, by the ratio of its length to its
- * width. effectiveArea() draws a finer image and does not keep it.
+ * the coarsest image in which its shorter half side spans RadiusInPixels: about fifty pixels if the
+ * beam is round. effectiveArea() draws a finer image and does not keep it.
  *
  * Source: none.
  * Valid: beams wider than 0.02 of the target's longer side. A narrower beam is replaced by a beam
@@ -25,18 +24,12 @@
 #include "Vector.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 namespace avianlidar
 {
-struct Squares
-{
-  double along, beside;
-  double sum() const { return this->along + this->beside; }
-  double most() const { return std::max(this->along, this->beside); }
-};
-
 /// A beam at a target, in the plane across the line of sight through the target's middle.
 struct BeamAtTarget
 {
@@ -48,21 +41,16 @@ struct BeamAtTarget
   double cosine = 1.0;    ///< cosine of the longer side's angle, counted from right towards up
   double sine = 0.0;
   bool isRectangle = false;
-  double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squaresOf().sum()
+  double fall = 2.0; ///< rate of the Gaussian exp(-fall s), s = squared distance in half sides
   double most = 2.0 / -std::expm1(-2.0); ///< irradiance on the axis relative to the beam's mean
 
   bool isRound() const { return !this->isRectangle && this->across == this->radius; }
 
-  /// True if the beam is round, and its profile is uniform or falls to 1/e^2 at the border.
-  bool isUsual() const { return this->isRound() && this->fall == 2.0; }
-
-  /// Squared coordinates of a point along the beam's sides, in units of half the side.
-  /// @param right, above distances of the point from the axis, m
-  Squares squaresOf(double right, double above) const
+  /// Coordinates of the target's middle along the beam's sides, in units of half the side.
+  std::array<double, 2> middle() const
   {
-    const double along = (this->cosine * right + this->sine * above) / this->radius;
-    const double beside = (this->cosine * above - this->sine * right) / this->across;
-    return { along * along, beside * beside };
+    return { (this->cosine * this->x + this->sine * this->y) / this->radius,
+      (this->cosine * this->y - this->sine * this->x) / this->across };
   }
 
   /// Distance of the target's middle outside the beam's border, m; negative inside the border. For
@@ -73,19 +61,20 @@ struct BeamAtTarget
     {
       return std::hypot(this->x, this->y) - this->radius;
     }
-    const Squares at = this->squaresOf(this->x, this->y);
-    return this->across * (std::sqrt(this->isRectangle ? at.most() : at.sum()) - 1.0);
+    const auto [along, beside] = this->middle();
+    return this->across *
+      ((this->isRectangle ? std::max(std::fabs(along), std::fabs(beside))
+                          : std::hypot(along, beside)) -
+        1.0);
   }
 
   /// Irradiance at the target's middle, inside or beyond the border, relative to the beam's mean.
-  double irradiance() const { return this->irradiance(this->squaresOf(this->x, this->y).sum()); }
-
-  /// Irradiance at a point relative to the beam's mean. @param square sum of squaresOf() at the
-  /// point
-  double irradiance(double square) const
+  double irradiance() const
   {
-    return this->profile == BeamProfile::Gaussian ? this->most * std::exp(-this->fall * square)
-                                                  : 1.0;
+    const auto [along, beside] = this->middle();
+    return this->profile == BeamProfile::Gaussian
+      ? this->most * std::exp(-this->fall * (along * along + beside * beside))
+      : 1.0;
   }
 };
 
@@ -100,11 +89,29 @@ struct LitPart
 class Silhouette
 {
 public:
-  /// A point of area 1.
-  Silhouette();
+  struct Image
+  {
+    double pixel = 0.0;             ///< side of a pixel, m
+    double left = 0.0, below = 0.0; ///< centre of the first pixel, m
+    int columns = 0, rows = 0;
+    std::size_t stride = 0, plane = 0; ///< numbers from one row, or one plane, to the next
+    /// Sums of effective areas, areas times depth, and areas times squared depth: three planes of
+    /// pixels row by row.
+    std::vector<float> pixels;
+
+    void allocate();
+    float& at(int sum, int row, int column)
+    {
+      return this->pixels[sum * plane + row * stride + column];
+    }
+    float at(int sum, int row, int column) const
+    {
+      return this->pixels[sum * plane + row * stride + column];
+    }
+  };
 
   /// A point of the given area.
-  explicit Silhouette(double area);
+  explicit Silhouette(double area = 1.0);
 
   /// @param mesh target with its middle at the origin
   /// @param view unit vector from the distant observer to the target, not vertical
@@ -123,24 +130,6 @@ public:
   LitPart litBy(const BeamAtTarget& beam) const;
 
 private:
-  /// Sums of effective areas, areas times depth, and areas times squared depth.
-  struct Sums
-  {
-    float area = 0.0F, depth = 0.0F, square = 0.0F;
-  };
-  struct Image
-  {
-    double pixel = 0.0;             ///< side of a pixel, m
-    double left = 0.0, below = 0.0; ///< centre of the first pixel, m
-    int columns = 0, rows = 0;
-    std::vector<Sums> pixels; ///< pixels row by row
-  };
-  static Image halved(const Image& fine);
-  const Image& imageFor(const BeamAtTarget& beam) const;
-  static void rangeOf(
-    double place, double reach, double first, double pixel, int count, int& begin, int& end);
-  LitPart litByOther(const BeamAtTarget& beam) const;
-
   LitPart All;
   double Reach = 0.0;        ///< value of reach(), m
   std::vector<Image> Images; ///< images, finest first; empty for a point

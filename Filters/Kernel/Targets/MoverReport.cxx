@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <limits>
 #include <memory>
 
@@ -43,51 +42,42 @@ std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& b
   }
   const auto times = std::minmax_element(beams.times.begin(), beams.times.end());
   const double middle = beams.times.empty() ? 0.0 : 0.5 * (*times.first + *times.second);
-  std::atomic<bool> stopped{ false };
-  const auto goOn = [&](int thread)
+  const auto describe = [&](std::size_t begin, std::size_t end, int)
   {
-    if (thread == 0 && wanted && !wanted())
+    for (std::size_t m = begin; m < end; ++m)
     {
-      stopped = true;
+      const Mover& mover = (*setup.movers)[m];
+      MoverReport& report = reports[m];
+      const std::size_t beam = best[m] ? best[m]->beam : 0;
+      const Vec3& origin = beams.origins[beam];
+      report.beam = beam;
+      report.energy = best[m] ? best[m]->energy : 0.0;
+      report.present = poseAt(mover, best[m] ? beams.timeOf(beam) : middle, report.pose);
+      report.first = report.last = report.pose;
+      if (report.present && met[m][0] <= met[m][1])
+      {
+        poseAt(mover, met[m][0], report.first);
+        poseAt(mover, met[m][1], report.last);
+      }
+      if (report.present)
+      {
+        TriangleMesh mesh;
+        place(mover, report.pose, mesh);
+        const MoverSphere sphere = sphereAt(mover, report.pose);
+        const Vec3 to = sphere.center - origin;
+        const bool isOutside = sphere.radius < safeLength(to);
+        report.effectiveArea = isOutside ? effectiveArea(mesh, unitVector(to))
+                                         : std::numeric_limits<double>::quiet_NaN();
+        report.range = safeLength(report.pose.position - origin);
+        report.origin = origin;
+      }
     }
-    return !stopped;
   };
-  parallelFor(reports.size(), 1, threads,
-    [&](std::size_t begin, std::size_t end, int thread)
-    {
-      if (!goOn(thread))
-      {
-        throw WorkStopped();
-      }
-      for (std::size_t m = begin; m < end; ++m)
-      {
-        const Mover& mover = (*setup.movers)[m];
-        MoverReport& report = reports[m];
-        const std::size_t beam = best[m] ? best[m]->beam : 0;
-        const Vec3& origin = beams.origins[beam];
-        report.beam = beam;
-        report.energy = best[m] ? best[m]->energy : 0.0;
-        report.present = poseAt(mover, best[m] ? beams.timeOf(beam) : middle, report.pose);
-        report.first = report.last = report.pose;
-        if (report.present && met[m][0] <= met[m][1])
-        {
-          poseAt(mover, met[m][0], report.first);
-          poseAt(mover, met[m][1], report.last);
-        }
-        if (report.present)
-        {
-          TriangleMesh mesh;
-          place(mover, report.pose, mesh);
-          const MoverSphere sphere = sphereAt(mover, report.pose);
-          const Vec3 to = sphere.center - origin;
-          const bool isOutside = sphere.radius < safeLength(to);
-          report.effectiveArea = isOutside ? effectiveArea(mesh, unitVector(to))
-                                           : std::numeric_limits<double>::quiet_NaN();
-          report.range = safeLength(report.pose.position - origin);
-          report.origin = origin;
-        }
-      }
-    });
+  if (!parallelFor(
+        reports.size(), 1, threads, describe, [&](double) { return !wanted || wanted(); }))
+  {
+    throw WorkStopped();
+  }
   return reports;
 }
 }

@@ -209,10 +209,12 @@ def reach(options) -> None:
     said, curve = [], []
     pairs = list(itertools.product(options.sensor, several))
     for number, (name, species) in enumerate(pairs):
-        bar("reach", number, len(pairs))
+        def progress(share: float, _: str = "", number: int = number) -> None:
+            bar("reach", round(100.0 * (number + share) / len(pairs)), 100)
+        progress(0.0)
         sensor = Sensor(name).set(**dict(options.sensor_set))
-        found = ranges.within_beams(sensor, species, **ranges.air_of(sensor, options.weather),
-                                    required_detections=2, number_of_scans=3)
+        found = ranges.within_beams(sensor, species, progress=progress,
+                                    **ranges.air_of(sensor, options.weather), required_detections=2, number_of_scans=3)
         rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found),
                      ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
         said.append(ranges.sentence(name, species, sensor, found))
@@ -220,7 +222,7 @@ def reach(options) -> None:
                    "two_of_three": found.several_scans}
         curve += [{"sensor": name, "species": species, **dict(zip(columns, map(float, row)))}
                   for row in zip(*columns.values())]
-    bar("reach", len(pairs), len(pairs))
+    bar("reach", 100, 100)
     table(rows)
     tell(*said)
     tell("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "

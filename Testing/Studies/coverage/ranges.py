@@ -18,11 +18,10 @@ SHOWN = ("Search905", "Search1550", "Automotive16", "Airport16")  # in the pictu
 DRAWN = ("starling", "crow", "herring gull", "Canada goose")
 SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goose")
 VISIBILITY = reach.CLEAR  # m
-BIRDS = 100  # of sensors that are not in the picture
 
 
 def row(name, sensor, species, found):
-    """Of the table. Ranges have the two digits that the draw of birds leaves of them."""
+    """Of the table. Ranges have the two digits that the choice of birds leaves of them."""
     return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.half(sensor, found)}**",
             reach.metres(found.to(0.1)), reach.metres(found.to(0.9, True)))
 
@@ -33,11 +32,10 @@ def main(options):
     for name in (*SHOWN, *(name for name in al.Sensor.presets() if name not in SHOWN)):
         sensor = al.Sensor(name)
         for species in SPECIES:
-            drawn = name in SHOWN and species in DRAWN
-            found = reach.within_beams(sensor, species, birds=reach.BIRDS if drawn else BIRDS, visibility=VISIBILITY)
+            found = reach.within_beams(sensor, species, visibility=VISIBILITY)
             rows.append(row(name, sensor, species, found))
             numbers.setdefault(name, {})[species] = [round(found.to(share), 1) for share in reach.SHARES]
-            if drawn:
+            if name in SHOWN and species in DRAWN:
                 curves.setdefault(name, {})[species] = found
     with tools.figure(options.out / "ranges.png", 2, 2, figsize=(9.0, 7.0)) as panels:
         for name, axes in zip(SHOWN, np.ravel(panels)):
