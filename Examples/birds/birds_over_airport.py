@@ -24,7 +24,8 @@ import tools  # noqa: E402
 COLORS = {"herring gull": (204, 0, 102), "crow": (0, 0, 0), "kestrel": (230, 97, 0), "Canada goose": (0, 125, 80),
           "starling": (120, 60, 200), "pigeon": (0, 110, 190)}
 OTHER = (110, 70, 30)  # colour of other species
-PALE = 0.55  # share of the clutter's colours in a mixture with white
+PALE = 0.55  # share of the colours of paths in a mixture with white
+CLUTTER = "0.35"
 STATUSES = ("seen", "missed", "too weak", "hidden", "outside")
 HALF = 550.0  # half of the width of the view from above, m
 
@@ -93,16 +94,11 @@ def colour_of(name):
 
 def draw_from_above(made, file):
     """Draws echoes and paths of the birds in the shown scans, and the clutter of the first scan."""
-    from matplotlib.colors import ListedColormap, LogNorm
     sequence, species, first = made["sequence"], made["species"], made["echoes"][0]
-    pale = ListedColormap(1 - PALE * (1 - al.hue_colors()(np.linspace(0, 1, 256))))
-    low, high = (1e6 * first.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
     with tools.figure(file, figsize=(11, 9)) as axes:
         tools.plan(axes, al.Scene(sequence.scenario["scene"]).surfaces.GetBlock(0), "0.6")
         clutter = np.flatnonzero(~np.isin(first["object_id"], list(species)))
-        clutter = clutter[np.argsort(first["energy"][clutter])]
-        dots = axes.scatter(*first.points[clutter, :2].T, s=3, c=1e6 * first["energy"][clutter], cmap=pale,
-                            norm=LogNorm(low, high))
+        axes.scatter(*first.points[clutter, :2].T, s=3, color=CLUTTER, label="clutter")
         for name, ways in made["trails"].items():
             for way in ways:
                 axes.plot(*way.T, color=1 - PALE * (1 - colour_of(name)), linewidth=0.8)
@@ -117,8 +113,7 @@ def draw_from_above(made, file):
                  ylabel="north (m)")
         axes.set_title(f"{scans} scans in {scans / sequence.sensor.rotation_rate:g} s: points and paths of birds, "
                        "and clutter of the first scan", loc="left")
-        axes.legend(loc="upper left", title="points of birds")
-        axes.figure.colorbar(dots, ax=axes, label="energy of clutter (µJ)", shrink=0.6)
+        axes.legend(loc="upper left", title="points")
 
 
 def main(argv=None):

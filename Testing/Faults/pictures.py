@@ -19,25 +19,26 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
 MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text(encoding="utf-8"), re.M)[1])
 TESTS = "TestExamplePictures|TestImage|Plugin-Test(Pipeline|Macros-more)$"
-ECHOES = r"^(Example|TestImageEcho|TestPipeline)"
-OUTPUT, LIGHT = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/BeamEchoes.cxx"
+ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline)"
+OUTPUT, SCAN = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/Scan.cxx"
 BAR = "axes.figure.colorbar("
 # Name, baselines in which it can occur, and for each file what is replaced by what.
 CHANGES = (
     ("nothing", "^$", ()),
-    ("energies times 0.9", ECHOES, (
+    ("energies times 0.9", ENERGIES, (
         (OUTPUT, "{ return all[i].energy; }", "{ return 0.9 * all[i].energy; }"),
         (OUTPUT, "{ return all[i].energyReceived; }", "{ return 0.9 * all[i].energyReceived; }"))),
-    ("a missing tenth of the echoes", ECHOES + "|^TestImageRange", (
-        (LIGHT, "    echoes.push_back(make(ret));\n",
-         "    static thread_local int count = 0;\n    if (++count % 10 != 0)\n      echoes.push_back(make(ret));\n"),)),
+    ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds|^TestImageRange", (
+        (SCAN, "      block.beamOfEcho.resize(block.echoes.size(), b);\n",
+         "      block.echoes.resize(b % 10 == 0 ? block.beamOfEcho.size() : block.echoes.size());\n"
+         "      block.beamOfEcho.resize(block.echoes.size(), b);\n"),)),
     ("a missing legend", ".", (
         ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
         ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
         ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
         ("Plugin/Macros/avian_lidar_coverage.py", "display.SetScalarBarVisibility(view, True)", "pass"),
         ("Examples/airport/tools.py", BAR, "print("), ("Examples/corridor/corridor_pictures.py", BAR, "print("),
-        ("Examples/birds/birds_over_airport.py", BAR, "print("))))
+        ("Examples/birds/birds_over_airport.py", "axes.legend(", "print("))))
 
 
 def drawn(build):
