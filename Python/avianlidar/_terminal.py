@@ -36,7 +36,9 @@ def names_given(words: Iterable[str]) -> None:
 
 
 def _in_line(text: str) -> str:
-    return " ".join(shown(text).split())
+    # No file has a name of more than 255 characters.
+    short = re.sub(r"[^\s/]{256,}", lambda name: f"{name[0][:100]}...{name[0][-50:]}", shown(text))
+    return " ".join(short.split())
 
 
 def bar(what: str, done: float, total: float) -> None:

@@ -301,15 +301,26 @@ class Surroundings(unittest.TestCase):
 
     def test_a_log_says_that_long_work_is_alive(self):
         """A line at each interval, without carriage returns: the share and the time left once they are known."""
-        program = "import sys; from avianlidar import _command, _terminal; _terminal.INTERVAL = 0.1; sys.exit(_command.main(sys.argv[1:]))"
-        for words, expected in ((("scan", SCENE, "--scan-set", "rays_per_beam=1000", "-o", OUTPUT / "log.vtp"), r"scan: \d+ %, about \d+ s left"),
-                                (("reach", "--sensor", "Search905"), r"reach: running for \d+ s")):
+        begin = "import sys, time; from avianlidar import _command, _terminal; _terminal.INTERVAL = 0.1\n"
+        command = begin + "sys.exit(_command.main(sys.argv[1:]))"
+        unknown = begin + "with _terminal.alive('work'): time.sleep(1.5)"
+        for program, words, expected in (
+                (command, ("scan", SCENE, "--scan-set", "rays_per_beam=1000", "-o", OUTPUT / "log.vtp"), r"scan: \d+ %, about \d+ s left"),
+                (command, ("reach", "--sensor", "Search905"), r"reach: \d+ %, about \d+ s left"),
+                (unknown, (), r"work: running for \d+ s")):
             done = subprocess.run([sys.executable, "-c", program, *map(str, words)], capture_output=True, text=True, check=True)
             lines = done.stderr.splitlines()
             self.assertEqual([line for line in lines if not re.fullmatch(r"avianlidar: \w+: (\d+ %, about \d+ s left|running( for \d+ s)?)", line)], [])
             self.assertTrue(any(re.fullmatch(f"avianlidar: {expected}", line) for line in lines), lines)
             self.assertNotIn("\r", done.stderr)
         self.assertEqual([_terminal.in_time(seconds) for seconds in (3.4, 99, 119, 5940, 7200)], ["3 s", "99 s", "2 min", "99 min", "2.0 h"])
+
+    def test_a_word_that_is_no_name_of_a_file_is_shortened(self):
+        for verb, *more in (["info"], ["scan", "-o", OUTPUT / "none.vtp"]):
+            done = subprocess.run(self.command(verb, 5000 * "x" + ".lidarscene.json", *more), capture_output=True, text=True, check=False)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertRegex(done.stderr, r"x{100}\.\.\.x+\.lidarscene\.json")
+            self.assertLess(len(done.stderr), 400)
 
     def test_control_characters_of_names_do_not_reach_the_terminal(self):
         """Of files, of what they name and of wrong words, whoever writes the message: Python, VTK, Assimp, GDAL, the parser."""

@@ -96,7 +96,7 @@ def main(options):
             if name == "airport":
                 shown.append((mine.tree.GetInputDataObject(0, 0), al.Cloud(lidar.GetOutput()),
                               f"{subject.sensor_name}, {words}"))
-        ratios[subject.sensor_name] = paper_times.times(paper_times.on_a_kd_tree(subject), options.turns)
+        ratios.update(paper_times.times(subject, options.turns))
     tools.leave(options.out, "paper-times", *tools.columns(ratios))
     tools.leave(options.out, "table", *tools.columns(columns))
     if not options.no_pictures:
