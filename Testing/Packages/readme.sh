@@ -42,7 +42,7 @@ if [ "$2" = bare ]; then
   DISPLAY= Examples/airport/run.sh > /tmp/out 2>&1 || { tail -50 /tmp/out; fail "Examples/airport/run.sh"; }
   tail -1 /tmp/out
   CMake/install.sh all > /tmp/out 2>&1 || { tail -50 /tmp/out; fail "CMake/install.sh"; }
-  [ "$(ls build/paraview/packages/*.deb | wc -l)" = 3 ] || fail "CMake/install.sh made no three packages"
+  [ "$(ls build/paraview/packages/*.deb | wc -l)" = 4 ] || fail "CMake/install.sh made no four packages"
   (cd /tmp && avianlidar sensors > /dev/null && python3 -c "import avianlidar") || fail "CMake/install.sh installed nothing"
 fi
 echo "The README's steps work"

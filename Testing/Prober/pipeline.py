@@ -40,7 +40,7 @@ VALUES = {
     "Bounds": ((-60.0, 60.0, -60.0, 60.0, 0.0, 9.0), (-9.0, 90.0, 0.0, 60.0, 0.0, 9.0)), "Spacing": ((30.0, 30.0, 9.0), (20.0, 30.0, 9.0)),
     "Origin": ((31.0, 121.0, 3.0), (31.0, 121.0, 9.0)), "NumberOfScans": (1, 2, 3), "AllSpecies": (0,), "PoseProbabilities": (0,), "Name": ("fog", "x")}
 # Columns and rows go with the table of beams; the others are other names of a setting, or need files.
-NOT_SET = {"Columns", "Rows", "BeamwidthMilliradians", "ErrorsAsData", "FileName", "SpeciesFileName", "BeamId"}
+NOT_SET = {"Columns", "Rows", "BeamwidthMilliradians", "Wavelength", "ErrorsAsData", "FileName", "SpeciesFileName", "BeamId"}
 SMALL = {("coverage", "Bounds"): VALUES["Bounds"][0], ("coverage", "Spacing"): VALUES["Spacing"][0], ("coverage", "RaysPerBeam"): 9,
          ("tracks", "NumberOfBirds"): 2, ("tracks", "Radius"): 40.0, ("tracks", "Heights"): (1.0, 9.0), ("tracks", "TimeRange"): (-5.0, 5.0)}
 

@@ -213,7 +213,7 @@ def try_plan(seed, folder):
         Sequence(asked, threads=1) if opened == "town.scenario.json" else Report(read_plan(asked), threads=1)
     except Error as error:
         words = str(error).partition(f"{opened}: ")[2]
-        of_the_file = "is not JSON|Additional properties are not allowed|is a required property|is not of type 'object'"
+        of_the_file = "is not JSON|is not known|is a required property|is not of type 'object'"
         named = words and (re.match(rf"({'|'.join([*found[opened], 'year', 'metar'])})\b", words) or re.search(of_the_file, words))
         return "" if named else f"{opened}: an error that does not name the file and its member: {error}", "refused"
     except Exception:  # noqa: B902

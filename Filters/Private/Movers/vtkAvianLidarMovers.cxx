@@ -277,7 +277,7 @@ std::vector<Leaf> TakeLeaves(vtkDataObject* input, bool named,
     vtkFieldData* const fields = leaf.data->GetFieldData();
     if (named && fields->HasArray(BlockName.name))
     {
-      leaf.name = Arrays::TextAt(fields, BlockName, 0);
+      leaf.name = names::TextAt(fields, BlockName, 0);
     }
     std::string lost;
     triangulated.push_back(leaf.Triangulated(lost));
