@@ -58,7 +58,7 @@ def is_empty(found):
 def _short(what):
     if what is None or not isinstance(what[-1], bytes):
         return repr(what)[:300]
-    kind = {"double": "f8", "float": "f4", "int": "i4"}.get(str(what[1]), "u1")
+    kind = {"double": "f8", "float": "f4", "int": "i4"}.get(str(what[1:2] and what[1]), "u1")
     return repr(what[:-1]) + np.array2string(np.frombuffer(what[-1], kind), threshold=12, edgeitems=6).replace("\n", "")
 
 
