@@ -36,7 +36,8 @@ CHANGES = (
         ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
         ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
         ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
-        ("Plugin/Macros/avian_lidar_coverage.py", "display.SetScalarBarVisibility(view, True)", "pass"),
+        ("Plugin/Macros/avian_lidar_coverage.py", "SetScalarBarVisibility(view, True)", "SetScalarBarVisibility(view, False)"),
+        ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
         ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
         ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
 
