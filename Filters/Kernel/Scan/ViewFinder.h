@@ -36,7 +36,8 @@ class ViewFinder
 public:
   ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, BeamTracer& tracer);
 
-  /// @param candidates all triangles that may enter the beam, each once, in any order
+  /// @param candidates all triangles that may enter the beam in the ranges that matter, each once,
+  /// in any order
   /// @param cost counters, increased by the cost of traced rays
   BeamView find(std::uint64_t beam, const BeamFrame& frame,
     const std::vector<std::uint32_t>& candidates, TraceCounters& cost);

@@ -451,9 +451,11 @@ bool SecondaryReflection::collect(
     lost = ofMirrors < needed ? before + most * ofMirrors : lost;
     return ofMirrors < needed;
   };
-  const bool shares = settings.lightEnergyThreshold == LightEnergyThreshold::ShareOfLimit;
-  double threshold = dropsFaintPaths(settings) ? limitOfPath(this->Setup) : 0.0;
-  if (dropsFaintPaths(settings) && shares)
+  // The paths share a tolerance, or each path is compared with a limit.
+  const bool drops = dropsFaintPaths(settings);
+  const bool shares = drops && settings.lightEnergyThreshold == LightEnergyThreshold::ShareOfLimit;
+  double threshold = drops ? limitOfPath(this->Setup) : 0.0;
+  if (shares)
   {
     const double budget = lightEnergyTolerance(this->Setup);
     const double all = most * (this->mostOfMirrors(byRegions) + others);
@@ -470,18 +472,16 @@ bool SecondaryReflection::collect(
   double ofMirrors = threshold;
   if (byRegions)
   {
-    // The paths share the tolerance equally, unless each path is compared with a limit.
-    const bool sharesPart = threshold > 0.0 && shares;
     const double part = MirrorPart * lightEnergyTolerance(this->Setup);
     const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
     const double left =
-      this->placeMirrors(beam, throughputOf(sharesPart ? ofSurface : threshold), needed);
+      this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold), needed);
     if (isSilent(left + sumOf(this->MirrorThroughputs)))
     {
       return false;
     }
     lost += most * left;
-    ofMirrors = sharesPart ? part / std::max(1.0, this->NumberWanted) : threshold;
+    ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
     if (beam.units && !this->MirrorThroughputs.empty())
     {
       const double strongest = this->addPaths(beam, sure, lost + most * ofShort, true);
