@@ -34,6 +34,13 @@ void* operator new(std::size_t size)
   throw std::bad_alloc();
 }
 
+// The sanitizers' form does not call the one above, but its memory would be freed below.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+  Bytes += size;
+  return std::malloc(size > 0 ? size : 1);
+}
+
 void operator delete(void* place) noexcept
 {
   std::free(place);
