@@ -106,6 +106,7 @@ def scribble(world, r):
     """An output is edited in place: what follows sees it, and the next execution makes what it makes without."""
     name = r.choice(("tree", "sensor"))
     algorithm = world.used.algorithms[name]
+    world.used.algorithms["echo"].Modified()  # so that the output is the piece that echoes are made from, not one for an image
     if world.used.update(ECHOES, world.moment).errors or not getattr(world.route, name, not world.route.table):
         return
     output = algorithm.GetOutput()
