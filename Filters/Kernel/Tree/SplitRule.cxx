@@ -4,6 +4,7 @@
 #include "PrincipalAxes.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 #include <limits>
 
@@ -144,16 +145,21 @@ AVIANLIDAR_MULTIVERSION std::size_t splitBySurfaceArea(
       number[axis][bin] = 0;
     }
   }
-  // One register of AVX holds both corners of a box.
-  using Both = float __attribute__((vector_size(sizeof(LaneBox)), may_alias, aligned(16)));
+  // One register of AVX holds both corners of a box. Boxes are aligned as one corner is, so that
+  // registers are copied from and to them.
+  using Both = float __attribute__((vector_size(sizeof(LaneBox))));
   for (std::size_t i = 0; i < count; ++i)
   {
     const BinMapping::Numbers bin = mapping.binsOf(from[i]);
-    const Both own = *reinterpret_cast<const Both*>(&from[i]);
+    Both own;
+    std::memcpy(&own, &from[i], sizeof(own));
     for (int axis = 0; axis < 3; ++axis)
     {
-      Both& sum = *reinterpret_cast<Both*>(&box[axis][bin[axis]]);
-      sum = sum > own ? sum : own;
+      LaneBox& sum = box[axis][bin[axis]];
+      Both both;
+      std::memcpy(&both, &sum, sizeof(both));
+      both = both > own ? both : own;
+      std::memcpy(&sum, &both, sizeof(both));
       ++number[axis][bin[axis]];
     }
   }
