@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The wide tree holds what the boxes hold: no box that a ray of the cone meets is left out,
 // wherever the scene stands.
+#include "AABB.h"
 #include "CollisionTreeBuilder.h"
 #include "Sensor.h"
 #include "WideTree.h"
