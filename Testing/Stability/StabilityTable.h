@@ -12,8 +12,8 @@ struct Row
 {
   std::string extreme; ///< what is extreme
   std::string range;   ///< range of the input that was tried
-  /// How beams were looked into: "rays" alone, "default" (polygons and cells), "both", or "-" where
-  /// no beam is.
+  /// How beams were looked into: "rays" alone, "default" (polygons and cells), "both", "paper" (the
+  /// preset), or "-" where no beam is.
   std::string view;
   std::string promise; ///< what `worst` measures, and against which oracle
   double bar;          ///< `worst` may be at most this
