@@ -80,12 +80,12 @@ public:
   /// energy and the processor time of 15,360 beams, first at the shipped airport, then at Hongqiao
   /// with structures:
   ///
-  /// - PRESET_PREVIEW: 100 stratified rays, no cells, 1 reflection (7.7 %, 0.07 s; 9.2 %, 0.08 s)
-  /// - PRESET_DRAFT: 25 rays, 0 connections, 2 reflections (0.41 %, 0.13 s; 0.97 %, 0.52 s)
-  /// - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.21 %, 0.24 s; 0.40 %, 0.94 s)
-  /// - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.85 s; 0.14 %, 4.4 s)
+  /// - PRESET_PREVIEW: 100 stratified rays, no cells, 1 reflection (7.7 %, 0.032 s; 9.2 %, 0.038 s)
+  /// - PRESET_DRAFT: 25 rays, 0 connections, 2 reflections (0.41 %, 0.11 s; 0.97 %, 0.29 s)
+  /// - PRESET_STANDARD: 200 rays, 2 connections, 2 reflections (0.2 %, 0.12 s; 0.4 %, 0.47 s)
+  /// - PRESET_REFERENCE: 3200 rays, 8 connections, 2 reflections (0.12 %, 0.51 s; 0.14 %, 2.3 s)
   /// - PRESET_PAPER: the method of the paper with 100 independent rays, no cells, 2 connections, 2
-  ///   reflections (16 %, 0.11 s; 16 %, 0.16 s). The preset also overrides BatchCollisionDetection
+  ///   reflections (16 %, 0.2 s; 16 %, 0.4 s). The preset also overrides BatchCollisionDetection
   ///   (beams), BeamConstraint (on), LightEnergyConstraint (on), LightEnergyThreshold (limit),
   ///   ReflectanceModel (model of the paper) and ReturnMode (a point for each range unit). Tree of
   ///   the paper: vtkAvianLidarCollisionTree::PRESET_PAPER.

@@ -202,8 +202,9 @@ def extent(scene, echoes, margin=0.03):
     return around(np.vstack([points[near], echoes.points]), margin)
 
 
-def from_above(axes, scene, echoes, limits, title, size=6):
-    """Draws echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus."""
+def from_above(axes, scene, echoes, limits, title, size=6, legend=True):
+    """Draws echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus. Returns
+    the dots, for a legend that several plans share."""
     plan(axes, scene)
     order = np.argsort(echoes["energy"])
     low, high = (1e6 * echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
@@ -214,7 +215,9 @@ def from_above(axes, scene, echoes, limits, title, size=6):
     shown = ((echoes.points[:, :2] >= (west, south)) & (echoes.points[:, :2] <= (east, north))).all(axis=1).sum()
     axes.set(xlim=(west, east), ylim=(south, north), aspect="equal", xlabel="east (m)", ylabel="north (m)")
     axes.set_title(f"{title}: {shown} of {len(order)} echoes", loc="left")
-    axes.figure.colorbar(dots, ax=axes, label="energy (µJ)", shrink=0.6)
+    if legend:
+        axes.figure.colorbar(dots, ax=axes, label="energy (µJ)", shrink=0.6)
+    return dots
 
 
 def range_images(name, scan, title):

@@ -17,10 +17,10 @@ from ._suffixes import READERS, WRITERS, listed
 from ._weather import WEATHER
 
 WRITTEN, READ = listed(WRITERS), listed(READERS)
-PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.07 s; 9.2 %%, 0.08 s",
-           "Draft": "0.41 %%, 0.13 s; 0.97 %%, 0.52 s", "Standard": "0.21 %%, 0.24 s; 0.40 %%, 0.94 s",
-           "Reference": "0.12 %%, 0.85 s; 0.14 %%, 4.4 s",
-           "Paper": "the paper's method, its noise of 100 rays: 16 %%, 0.11 s; 16 %%, 0.16 s"}
+PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.032 s; 9.2 %%, 0.038 s",
+           "Draft": "0.41 %%, 0.11 s; 0.97 %%, 0.29 s", "Standard": "0.2 %%, 0.12 s; 0.4 %%, 0.47 s",
+           "Reference": "0.12 %%, 0.51 s; 0.14 %%, 2.3 s",
+           "Paper": "the paper's method, its noise of 100 rays: 16 %%, 0.2 s; 16 %%, 0.4 s"}
 SENSOR = "a name that `avianlidar sensors` lists, or a .lidarsensor.json file"
 MANY = "may be given many times"
 RESUMES = "The same command continues a stopped run. `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work."

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollisionTreeBuilder.h"
 #include "FinishSetup.h"
+#include "Memory.h"
 #include "Suites.h"
 #include "Tracers.h"
 #include "VolumeTree.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 namespace benchmarks
 {
@@ -14,8 +17,34 @@ using namespace avianlidar;
 
 namespace
 {
-/// Tree of the paper: k-D, boxes, leaves of one triangle (Sec. 5.1, Algorithm 1).
-constexpr TreeOptions PaperTree{ SplitRule::Median, BoundingVolumeType::AABB, 1 };
+/// Tree of the paper and of preset Paper: k-D, boxes two a node, leaves of one triangle (Sec. 5.1,
+/// Algorithm 1).
+constexpr TreeOptions PaperTree{ SplitRule::Median, BoundingVolumeType::BinaryAABB, 1 };
+
+/// The same tree with boxes eight a node, as this project uses them.
+constexpr TreeOptions EightBoxes{ SplitRule::Median, BoundingVolumeType::AABB, 1 };
+
+/// A tree on which both methods are timed.
+struct TimedTree
+{
+  const char* name;
+  std::shared_ptr<const CollisionTree> tree;
+  double build; ///< s
+};
+
+std::vector<TimedTree> timedTrees(const Scene& scene)
+{
+  std::vector<TimedTree> trees;
+  for (const auto& [name, options] :
+    { std::pair("two", PaperTree), std::pair("eight", EightBoxes) })
+  {
+    std::shared_ptr<const CollisionTree> tree;
+    const double build =
+      processorSecondsOf([&, o = options]() { tree = buildVolumeTree(scene.mesh, o, {}, 1); });
+    trees.push_back({ name, tree, build });
+  }
+  return trees;
+}
 
 /// Settings that add nothing to the paper: independent random rays, all beams sampled alike, one
 /// point a range unit, one descent per beam, the light-energy constraint with the paper's
@@ -69,14 +98,14 @@ void forEachSceneOfFigures(const Options& options, const std::function<void(cons
 std::int64_t strideOf(const Options& options, const Scene& scene)
 {
   const bool small = scene.name == "corridor";
-  return options.smoke ? (small ? 16 : 64) : small ? 1 : options.brief ? 16 : 4;
+  return options.smoke ? (small ? 16 : 64) : small ? 1 : options.brief ? 16 : 8;
 }
 
 RoundLimits figureLimits(const Options& options)
 {
   RoundLimits limits = options.limits();
   limits.seconds = options.smoke ? 0.01 : options.brief ? 0.5 : 4.0;
-  limits.fewest = options.smoke ? 1 : options.suite == "figure10" ? 3 : 4;
+  limits.fewest = options.smoke ? 1 : 3;
   limits.shortestTurn = options.smoke ? 0.0 : 0.03;
   limits.processorTime = true; // one thread; others use the machine, too
   return limits;
@@ -222,16 +251,20 @@ void switchOff(EchoSettings& settings)
   settings.traceMode = TraceMode::SingleRays;
 }
 
-/// The proposed method, and its peers. A tree of one leaf is no tree: the rays of a beam, and every
-/// ray of a second reflection by itself, are tested against all triangles.
-std::vector<Method> methodsOf(const Scene& scene, const ScanBeams& beams)
+/// The proposed method on a tree, with its peers: those without a tree, and rays one by one.
+struct Figure10
+{
+  std::vector<Method> methods;
+  std::vector<std::size_t> proposed; ///< of each tree, place in `methods`
+};
+
+/// A tree of one leaf is no tree: the rays of a beam, and every ray of a second reflection by
+/// itself, are tested against all triangles.
+Figure10 methodsOf(const Scene& scene, const ScanBeams& beams, const std::vector<TimedTree>& trees)
 {
   constexpr double MostTests = 1e6; // of beams against facets, where second reflections are traced
   constexpr std::size_t FewestBeams = 12;
-  std::shared_ptr<const CollisionTree> tree;
-  const double build =
-    processorSecondsOf([&]() { tree = buildCollisionTree(scene.mesh, PaperTree, {}, 1); });
-  TreeOptions oneLeaf = PaperTree;
+  TreeOptions oneLeaf = EightBoxes;
   oneLeaf.maximumLeafSize = static_cast<int>(scene.mesh->size());
   const auto facets = buildCollisionTree(scene.mesh, oneLeaf, {}, 1);
   const auto fewer = [&](double factor)
@@ -239,61 +272,101 @@ std::vector<Method> methodsOf(const Scene& scene, const ScanBeams& beams)
     const double most = factor * MostTests / static_cast<double>(scene.mesh->size());
     return someOf(beams, std::max(FewestBeams, static_cast<std::size_t>(most)));
   };
-  std::vector<Method> methods = { { "proposed", makePaperSetup(scene, tree), beams, build } };
-  for (const bool phong : { true, false })
+  const auto peer = [&](const auto& with, bool phong, int reflections, TraceMode mode)
   {
-    const std::string model = phong ? "Phong" : "BRDF";
-    const auto peer = [&](const auto& with, int reflections, TraceMode mode)
-    {
-      return makePaperSetup(scene, with,
-        [&](EchoSettings& s)
-        {
-          switchOff(s);
-          s.reflectanceModel = phong ? ReflectanceModel::Phong : ReflectanceModel::Microfacet;
-          s.traceMode = mode;
-          s.numberOfReflections = reflections;
-        });
-    };
+    return makePaperSetup(scene, with,
+      [&](EchoSettings& s)
+      {
+        switchOff(s);
+        s.reflectanceModel = phong ? ReflectanceModel::Phong : ReflectanceModel::Microfacet;
+        s.traceMode = mode;
+        s.numberOfReflections = reflections;
+      });
+  };
+  constexpr std::pair<const char*, bool> Models[] = { { "Phong", true }, { "BRDF", false } };
+  Figure10 figure;
+  for (const auto& [model, phong] : Models)
+  {
     // Packets of a beam's rays against all triangles.
-    methods.push_back({ "facet loop, one reflection, " + model,
-      peer(facets, 1, TraceMode::Automatic), fewer(10.0) });
+    figure.methods.push_back({ std::string("facet loop, one reflection, ") + model,
+      peer(facets, phong, 1, TraceMode::Automatic), fewer(10.0) });
     if (scene.mesh->size() < 500000)
     {
-      methods.push_back(
-        { "facet loop, " + model, peer(facets, 2, TraceMode::Automatic), fewer(1.0) });
+      figure.methods.push_back({ std::string("facet loop, ") + model,
+        peer(facets, phong, 2, TraceMode::Automatic), fewer(1.0) });
     }
-    methods.push_back({ "per ray, " + model, peer(tree, 2, TraceMode::SingleRays), beams, build });
   }
-  return methods;
+  for (const TimedTree& t : trees)
+  {
+    figure.proposed.push_back(figure.methods.size());
+    figure.methods.push_back({ "proposed", makePaperSetup(scene, t.tree), beams, t.build });
+    for (const auto& [model, phong] : Models)
+    {
+      figure.methods.push_back({ std::string("per ray, ") + model,
+        peer(t.tree, phong, 2, TraceMode::SingleRays), beams, t.build });
+    }
+  }
+  return figure;
+}
+
+/// Whether facet loops with two reflections have the echoes of rays one by one.
+bool echoesOfFacetLoops(const std::vector<Method>& methods)
+{
+  bool same = true;
+  for (const Method& loop : methods)
+  {
+    const std::string start = "facet loop, ";
+    if (loop.name == start + "Phong" || loop.name == start + "BRDF")
+    {
+      const ScanResult expected = runScan(loop.setup, loop.beams, 2);
+      const std::string single = "per ray, " + loop.name.substr(start.size());
+      for (const Method& m : methods)
+      {
+        same = same && (m.name != single || sameEchoes(expected, runScan(m.setup, loop.beams, 2)));
+      }
+    }
+  }
+  return same;
 }
 }
 
 bool suiteFigure10(const Options& options)
 {
   bool good = true;
-  Table times(options, "figure10", "scene,triangles,beams,method,run_beams,build_s,scan_s,total_s");
+  Table times(options, "figure10",
+    "scene,triangles,boxes,beams,method,run_beams,build_s,scan_s,total_s,ratio,least,most");
   forEachSceneOfFigures(options,
     [&](const Scene& scene)
     {
       const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
-      const std::vector<Method> methods = methodsOf(scene, beams);
-      bool same = true;
-      // Facet loops have the echoes of the tree; where that takes seconds it is not checked.
-      for (std::size_t k = 3; k < methods.size() && scene.mesh->size() < 2000; k += 3)
-      {
-        const ScanBeams& run = methods[k - 1].beams;
-        same = same &&
-          sameEchoes(runScan(methods[k - 1].setup, run, 2), runScan(methods[k].setup, run, 2));
-      }
+      const std::vector<TimedTree> trees = timedTrees(scene);
+      const auto [methods, proposed] = methodsOf(scene, beams, trees);
+      // Where a facet loop takes seconds, its echoes are not compared.
+      const bool same = scene.mesh->size() >= 2000 || echoesOfFacetLoops(methods);
       good = good && same;
       const std::vector<Timing> timings = timesOf(methods, options);
-      for (std::size_t k = 0; k < methods.size(); ++k)
+      const auto write = [&](std::size_t k, std::size_t tree)
       {
         const Method& m = methods[k];
-        const double scan = timings[k].median * static_cast<double>(beams.size()) /
-          static_cast<double>(m.beams.size());
-        times.row(scene.name, scene.mesh->size(), beams.size(), m.name, m.beams.size(), m.build,
-          scan, m.build + scan);
+        const double scale =
+          static_cast<double>(beams.size()) / static_cast<double>(m.beams.size());
+        const double scan = scale * timings[k].median;
+        const Ratio ratio = ratioOf(timings[k], timings[proposed[tree]]);
+        times.row(scene.name, scene.mesh->size(), trees[tree].name, beams.size(), m.name,
+          m.beams.size(), m.build, scan, m.build + scan, scale * ratio.median, scale * ratio.least,
+          scale * ratio.most);
+      };
+      for (std::size_t tree = 0; tree < trees.size(); ++tree)
+      {
+        const std::size_t peers = proposed[1] - proposed[0];
+        for (std::size_t k = 0; k < peers; ++k)
+        {
+          write(proposed[tree] + k, tree);
+        }
+        for (std::size_t k = 0; k < proposed[0]; ++k)
+        {
+          write(k, tree);
+        }
       }
       say("Fig. 10, " + scene.name + (same ? "" : ": ECHOES DEPEND ON THE METHOD"));
     });
@@ -322,51 +395,79 @@ std::pair<double, double> energyOf(const ScanResult& result)
   return sum;
 }
 
-/// Fig. 11 on one scene: all combinations of the three switches, the light-energy constraint with
-/// the paper's threshold, and alone also with a share of the limit. Their echoes are compared
-/// first. Beside them original ray tracing that ends at the first reflection.
+/// A combination of Fig. 11.
+struct Switches
+{
+  std::string name;
+  bool beam = false;
+  bool batch = false;
+  std::optional<LightEnergyThreshold> energy = std::nullopt; ///< none: without the constraint
+  int reflections = 2;
+};
+
+/// All combinations of the three switches, with each threshold of the light-energy constraint;
+/// that constraint alone with a share of the limit; and original ray tracing that ends at the first
+/// reflection.
+std::vector<Switches> combinations()
+{
+  constexpr auto Limit = LightEnergyThreshold::Limit;
+  constexpr auto PerRay = LightEnergyThreshold::LimitPerRay;
+  return { { "original ray tracing" }, { "beam", true }, { "batch", false, true },
+    { "beam + batch", true, true }, { "energy", false, false, Limit },
+    { "beam + energy", true, false, Limit }, { "energy + batch", false, true, Limit },
+    { "beam + energy + batch", true, true, Limit }, { "energy/N", false, false, PerRay },
+    { "beam + energy/N", true, false, PerRay }, { "energy/N + batch", false, true, PerRay },
+    { "beam + energy/N + batch", true, true, PerRay },
+    { "share", false, false, LightEnergyThreshold::ShareOfLimit },
+    { "one reflection", false, false, {}, 1 } };
+}
+
+/// Fig. 11 on one scene. Echoes are compared first.
 bool ablation(const Scene& scene, const Options& options, Table& times, Table& rays)
 {
-  const auto tree = buildCollisionTree(scene.mesh, PaperTree);
   const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
-  // Bits of the number: beam, energy, batch. Then a share of the limit, and one reflection.
-  const char* const names[] = { "original ray tracing", "beam", "energy", "beam + energy", "batch",
-    "beam + batch", "energy + batch", "beam + energy + batch", "share", "one reflection" };
-  constexpr int share = 8;
-  constexpr int direct = 9;
+  const std::vector<Switches> kinds = combinations();
   std::vector<Method> methods;
-  std::vector<ScanResult> results;
-  for (int k = 0; k <= direct; ++k)
+  const std::vector<TimedTree> trees = timedTrees(scene);
+  for (const TimedTree& t : trees)
   {
-    const auto change = [k](EchoSettings& s)
+    for (const Switches& k : kinds)
     {
-      const int bits = k < share ? k : 0;
-      s.beamConstraint = (bits & 1) != 0;
-      s.lightEnergyConstraint = (bits & 2) != 0 || k == share;
-      s.lightEnergyThreshold =
-        k == share ? LightEnergyThreshold::ShareOfLimit : LightEnergyThreshold::Limit;
-      s.numberOfReflections = k == direct ? 1 : 2;
-      s.traceMode = (bits & 4) != 0 ? TraceMode::Beams : TraceMode::SingleRays;
-    };
-    methods.push_back({ names[k], makePaperSetup(scene, tree, change), beams });
-    results.push_back(runScan(methods[k].setup, beams, 2));
-    if (k < 4 || k == share)
-    {
-      const auto [energy, second] = energyOf(results[k]);
-      rays.row(scene.name, scene.mesh->size(), names[k],
-        secondRays(methods[k].setup, beams, results[k]), results[k].echoes.size(), energy, second);
+      const auto change = [&k](EchoSettings& s)
+      {
+        s.beamConstraint = k.beam;
+        s.lightEnergyConstraint = k.energy.has_value();
+        s.lightEnergyThreshold = k.energy.value_or(LightEnergyThreshold::Limit);
+        s.numberOfReflections = k.reflections;
+        s.traceMode = k.batch ? TraceMode::Beams : TraceMode::SingleRays;
+      };
+      methods.push_back({ k.name, makePaperSetup(scene, t.tree, change), beams });
     }
   }
+  // Beam constraint, batch and tree change no bit; what thresholds leave out is in the table.
   bool good = true;
-  for (int k = 0; k < share; ++k)
+  std::map<std::pair<int, int>, ScanResult> alike;
+  for (std::size_t k = 0; k < methods.size(); ++k)
   {
-    // Beam constraint and batch change no bit; what the energy constraint leaves out is in the
-    // table.
-    good = good && sameEchoes(results[k], results[k & 2]);
+    const Switches& kind = kinds[k % kinds.size()];
+    ScanResult result = runScan(methods[k].setup, beams, 2);
+    if (k < kinds.size() && !kind.batch && kind.reflections == 2)
+    {
+      const auto [energy, second] = energyOf(result);
+      rays.row(scene.name, scene.mesh->size(), kind.name,
+        secondRays(methods[k].setup, beams, result), result.echoes.size(), energy, second);
+    }
+    const int threshold = kind.energy ? static_cast<int>(*kind.energy) : -1;
+    const auto place = alike.try_emplace({ threshold, kind.reflections }, std::move(result));
+    good = good && (place.second || sameEchoes(result, place.first->second));
   }
-  for (const Timing& t : timesOf(methods, options))
+  const std::vector<Timing> timings = timesOf(methods, options);
+  for (std::size_t k = 0; k < methods.size(); ++k)
   {
-    times.row(scene.name, scene.mesh->size(), t.name, t.best);
+    const std::size_t tree = k / kinds.size();
+    const Ratio ratio = ratioOf(timings[tree * kinds.size()], timings[k]);
+    times.row(scene.name, scene.mesh->size(), trees[tree].name, timings[k].name, timings[k].best,
+      ratio.median, ratio.least, ratio.most);
   }
   say("Fig. 11, " + scene.name + (good ? "" : ": ECHOES DEPEND ON A SWITCH"));
   return good;
@@ -375,7 +476,7 @@ bool ablation(const Scene& scene, const Options& options, Table& times, Table& r
 /// What is lost by choices of epsilon on one scene, the constraint off being the measure.
 void measureEpsilon(const Scene& scene, const Options& options, Table& table)
 {
-  const auto tree = buildCollisionTree(scene.mesh, PaperTree);
+  const auto tree = buildVolumeTree(scene.mesh, PaperTree);
   const ScanBeams beams = makeBeams(scene, strideOf(options, scene));
   const EchoSettings usual;
   const double paths = usual.raysPerBeam * (2.0 + usual.numberOfConnections);
@@ -406,7 +507,7 @@ void measureEpsilon(const Scene& scene, const Options& options, Table& table)
 
 bool suiteFigure11(const Options& options)
 {
-  Table times(options, "figure11", "scene,triangles,switches,best_s");
+  Table times(options, "figure11", "scene,triangles,boxes,switches,best_s,ratio,least,most");
   Table rays(
     options, "rays11", "scene,triangles,switches,second_rays,echoes,energy_j,second_energy_j");
   bool good = true;
@@ -424,9 +525,22 @@ bool suiteEpsilon(const Options& options)
   return true;
 }
 
+namespace
+{
+/// The most memory that a scan takes beside scene and tree, MiB.
+double peakOf(const Method& m)
+{
+  resetPeak();
+  const std::size_t before = peakBytes();
+  runScan(m.setup, m.beams, 1);
+  return static_cast<double>(peakBytes() - before) / (1 << 20);
+}
+}
+
 bool suiteSection5(const Options& options)
 {
-  Table table(options, "section5", "scene,triangles,beams,method,build_s,scan_s");
+  Table table(options, "section5",
+    "scene,triangles,boxes,beams,method,build_s,scan_s,ratio,least,most,held_mib");
   const auto measure = [&](Scene scene, int channels)
   {
     std::string name = scene.name;
@@ -436,24 +550,30 @@ bool suiteSection5(const Options& options)
       name += ", " + std::to_string(channels) + " channels";
     }
     const ScanBeams beams = makeBeams(scene, options.smoke ? 64 : 1);
-    std::shared_ptr<const CollisionTree> paper;
     std::shared_ptr<const CollisionTree> ours;
-    const std::vector<Timing> builds = compete(
-      { { "paper", [&]() { paper = buildCollisionTree(scene.mesh, PaperTree, {}, 1); } },
-        { "ours", [&]() { ours = buildCollisionTree(scene.mesh, TreeOptions{}, {}, 1); } } },
-      figureLimits(options));
+    const double build =
+      processorSecondsOf([&]() { ours = buildCollisionTree(scene.mesh, TreeOptions{}, {}, 1); });
     ScanSetup usual = makeSetup(scene, ours);
     usual.settings.beamSamples = EchoSettings().beamSamples;
     finishSetup(usual);
-    const std::vector<Method> methods = { { "original", makePaperSetup(scene, paper, switchOff),
-                                            beams, builds[0].best },
-      { "proposed", makePaperSetup(scene, paper), beams, builds[0].best },
-      { "defaults of this project", usual, beams, builds[1].best } };
-    const std::vector<Timing> timings = timesOf(methods, options);
-    for (std::size_t k = 0; k < methods.size(); ++k)
+    const std::vector<TimedTree> trees = timedTrees(scene);
+    std::vector<Method> methods = { { "defaults of this project", usual, beams, build } };
+    for (const TimedTree& t : trees)
     {
-      table.row(
-        name, scene.mesh->size(), beams.size(), methods[k].name, methods[k].build, timings[k].best);
+      methods.push_back({ "original", makePaperSetup(scene, t.tree, switchOff), beams, t.build });
+      methods.push_back({ "proposed", makePaperSetup(scene, t.tree), beams, t.build });
+    }
+    const std::vector<Timing> timings = timesOf(methods, options);
+    for (std::size_t tree = 0; tree < trees.size(); ++tree)
+    {
+      const std::size_t original = 1 + 2 * tree;
+      for (const std::size_t k : { original, original + 1, std::size_t(0) })
+      {
+        const Ratio ratio = ratioOf(timings[original], timings[k]);
+        table.row(name, scene.mesh->size(), trees[tree].name, beams.size(), methods[k].name,
+          methods[k].build, timings[k].best, ratio.median, ratio.least, ratio.most,
+          peakOf(methods[k]));
+      }
     }
     say("Sec. 5, " + name);
   };

@@ -97,9 +97,20 @@ std::vector<Timing> compete(const std::vector<Contender>& contenders, const Roun
   for (std::size_t k = 0; k < contenders.size(); ++k)
   {
     timings.push_back({ contenders[k].name, medianOf(turns[k]),
-      *std::min_element(turns[k].begin(), turns[k].end()) });
+      *std::min_element(turns[k].begin(), turns[k].end()), turns[k] });
   }
   return timings;
+}
+
+Ratio ratioOf(const Timing& of, const Timing& over)
+{
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < of.turns.size(); ++i)
+  {
+    ratios.push_back(of.turns[i] / over.turns[i]);
+  }
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  return { medianOf(ratios), *least, *most };
 }
 
 bool inSubprocess(const std::function<void()>& work, unsigned seconds)

@@ -92,9 +92,20 @@ struct Contender
 struct Timing
 {
   std::string name;
-  double median = 0.0; ///< s
-  double best = 0.0;   ///< s
+  double median = 0.0;       ///< s
+  double best = 0.0;         ///< s
+  std::vector<double> turns; ///< s, of each round
 };
+
+/// Ratios of the times of two contenders in the same round.
+struct Ratio
+{
+  double median;
+  double least;
+  double most;
+};
+
+Ratio ratioOf(const Timing& of, const Timing& over);
 
 /// Everyone runs once to warm up, then in rounds, in random order, so that whatever else the
 /// machine does falls on all alike; ratios are those of the medians.

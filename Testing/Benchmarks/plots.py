@@ -7,6 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+import paper_figures  # noqa: E402
 from results import pivot, read  # noqa: E402
 
 MARKS = "os^vDPX*hp<>"
@@ -55,13 +56,19 @@ def figure9(rows, *panes):
 
 
 def figure10(rows, axes):
-    draw(axes, curves(spheres(rows), "triangles", lambda r: r["method"], "scan_s"), "scan, s",
+    draw(axes, curves(on_preset(rows), "triangles", lambda r: r["method"], "scan_s"), "scan, s",
          lambda name: "one reflection" in name, title="Fig. 10: methods, trees ready")
 
 
 def figure11(rows, axes):
-    draw(axes, curves(spheres(rows), "triangles", lambda r: r["switches"], "best_s"), "scan, s",
+    wanted = [r for r in on_preset(rows) if ("energy" in r["switches"]) == (paper_figures.PRESET in r["switches"])]
+    draw(axes, curves(wanted, "triangles", lambda r: r["switches"], "best_s"), "scan, s",
          lambda name: "batch" not in name, title="Fig. 11: which accelerations are on")
+
+
+def on_preset(rows):
+    """Spheres, on the tree of preset Paper."""
+    return [r for r in spheres(rows) if r["boxes"] == "two"]
 
 
 def spheres(rows):

@@ -135,6 +135,12 @@ TEST(CoincidentFaces, OwnersDependOnTheMeshAlone)
         buildCollisionTree(scene.mesh, { rule }, {}, threads)->planeOwners, usual->planeOwners);
     }
   }
+  // Leaves of any size: millions of triangles in one leaf would be compared in pairs for minutes.
+  const auto large = buildCollisionTree(
+    scene.mesh, { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::AABB, 1000000 }, {}, 2);
+  EXPECT_EQ(large->leaves, 1u);
+  EXPECT_EQ(large->planeOwners, usual->planeOwners);
+  EXPECT_EQ(large->planeDepth, usual->planeDepth);
 }
 
 TEST(CoincidentFaces, AScanNamesObjectsOfWhichOneIsSeen)

@@ -63,6 +63,40 @@ class Documentation(unittest.TestCase):
             self.assertEqual(page_tables.cells_of(table), page_tables.rows(name))
 
 
+class Presets(unittest.TestCase):
+    """One table has the errors and times of the presets of the echo filter. Helps and pages quote it."""
+
+    @classmethod
+    def setUpClass(cls):
+        head, *rows = page_tables.rows("presets")
+        cls.cells = {row[0]: dict(zip((name.strip("`") for name in head[1:]), row[1:])) for row in rows}
+        cls.text = {file: " ".join((SOURCE / file).read_text(encoding="utf-8").replace("///", " ").replace("%%", "%").split())
+                    for file in ("Filters/vtkAvianLidarScanFilter.h", "Plugin/Filters/AvianLidarEchoFilter.xml",
+                                 "Python/avianlidar/_command.py", "Documentation/guide/accuracy.md")}
+
+    def test_helps_quote_the_table(self):
+        for preset in ("Preview", "Draft", "Standard", "Reference", "Paper"):
+            quoted = "; ".join(self.cells[place][preset].rpartition(",")[0]
+                               for place in ("airport, Airport16", "Hongqiao with masts and jetways, Airport16"))
+            for file, text in self.text.items():
+                if not file.endswith(".md"):
+                    self.assertTrue(quoted in text, (preset, file, quoted))
+
+    def test_the_guide_has_the_spans_of_the_table(self):
+        page = self.text["Documentation/guide/accuracy.md"]
+        for preset in ("Preview", "Draft", "default", "Standard", "Reference", "Paper"):
+            name = "default (`Custom`)" if preset == "default" else f"`{preset}`"
+            # | name | rays | connections | 3 to 12 % | 0 to 0.9 % | 0.05 s |
+            spans = re.search(re.escape(f"| {name} |") + r"[^|]*\|[^|]*\|([^|]*)\|([^|]*)\|([^|]*)\|", page).groups()
+            outdoors = [[float(part.split()[0].lstrip("≤")) for part in cells[preset].split(", ")]
+                        for place, cells in self.cells.items() if not place.startswith("corridor")]
+            for span, part in ((spans[0], 0), (spans[1], 2)):
+                for said, true in zip(re.findall(r"[\d.]+", span), (min(c[part] for c in outdoors), max(c[part] for c in outdoors))):
+                    digits = len(said.partition(".")[2])
+                    self.assertLessEqual(abs(float(said) - true), 0.5001 * 10**-digits, (preset, span, true))
+            self.assertEqual(spans[2].strip(), self.cells["airport, Airport16"][preset].split(", ")[1], preset)
+
+
 class Paper(unittest.TestCase):
     """The page of the paper's claims has a row for every equation, figure, table and algorithm, verdicts and numbers that agree with
     the tables, and names tests that exist."""

@@ -85,6 +85,25 @@ class Corridor(unittest.TestCase):
         # It is the specular lobe that does it: there wood is even stronger than the wall would be by its diffuse part.
         self.assertGreater(self.median(middle), PULSE * 0.146)
 
+    def test_boundaries_of_materials_are_clear(self):
+        # Echoes two steps apart, so that the beam on the boundary may lie between them, at ranges of at most 4 m.
+        found = self.found
+        of = {(round(found["azimuth"][i]), round(100 * found["vertical_angle"][i])): i for i in np.flatnonzero(self.pure)}
+        ratios = {}
+        for (azimuth, elevation), i in of.items():
+            for there in (((azimuth + 400) % 36000, elevation), (azimuth, elevation + 400)):
+                k = of.get(there)
+                if k is not None and found["distance_m"][i] < 4 and abs(found["distance_m"][i] - found["distance_m"][k]) < 0.5:
+                    both = frozenset(int(found["material_id"][j]) for j in (i, k))
+                    energies = sorted(found["return_energy"][[i, k]])
+                    ratios.setdefault(both, []).append(energies[1] / energies[0])
+        for material in (WALL, GLASS, WOOD):
+            self.assertLess(np.median(ratios[frozenset([material])]), 1.06, material)
+        for one, other, least, pairs in ((WALL, GLASS, 4, 40), (WOOD, GLASS, 6.6, 15), (WALL, WOOD, 1.29, 20)):
+            mine = ratios[frozenset([one, other])]
+            self.assertGreater(len(mine), pairs)
+            self.assertGreater(min(mine), least, (one, other))
+
     def test_hydrant_cabinet_and_window_stand_out(self):
         wall = self.on("Near end", self.pure)
         for name in ("Hydrant cabinet", "Window of the door"):

@@ -188,6 +188,15 @@ std::shared_ptr<const CollisionTree> buildCollisionTree(std::shared_ptr<const Tr
   WideBuilder(binary, tree->wide);
   tree->order = std::move(binary.order);
   binary = {};
+  // The faces of a leaf are compared one by one, so that a tree with small leaves finds pairs.
+  constexpr int MostCompared = 64;
+  if (options.maximumLeafSize > MostCompared)
+  {
+    const auto small = buildCollisionTree(tree->mesh, {}, partOf(keepGoing, 0.55, 1.0), threads);
+    tree->planeOwners = small ? small->planeOwners : std::vector<std::uint32_t>();
+    tree->planeDepth = small ? small->planeDepth : 0.0;
+    return small ? tree : nullptr;
+  }
   return findPlaneOwners(*tree, team, partOf(keepGoing, 0.55, 1.0)) ? tree : nullptr;
 }
 }

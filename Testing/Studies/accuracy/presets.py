@@ -5,15 +5,17 @@ scenes that AVIANLIDAR_SCENES_DIR names. The helps of the presets quote it.
     Testing/Studies/run.py presets
 """
 import numpy as np
+from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree as Tree
 from avianlidar.vtkAvianLidar import vtkAvianLidarEchoFilter as Filter
 
 import paper_times
+import running
 import tools
 import trade_results
 import trade_runs
 from running import argument, built_scene, study, whole
 
-# The preset Paper sets ReturnMode, too, which the judge needs otherwise: its settings one by one.
+# The preset Paper sets ReturnMode, too, which the judge needs otherwise: its settings one by one. It has its own tree.
 PRESETS = {"Preview": {"Preset": Filter.PRESET_PREVIEW}, "Draft": {"Preset": Filter.PRESET_DRAFT}, "default": {},
            "Standard": {"Preset": Filter.PRESET_STANDARD}, "Reference": {"Preset": Filter.PRESET_REFERENCE},
            "Paper": paper_times.SCAN}
@@ -27,8 +29,11 @@ SCENES = (("airport", "airport", "airport16"), ("airport", "airport", "airport32
 BUILT_IN = "airport", "field", "corridor"
 
 
-def measured(subject, reference, settings, seeds):
+def measured(subject, reference, name, seeds):
     """Error of energy, time of one core, and missed and invented echoes as a share of the true ones."""
+    settings = PRESETS[name]
+    running.set_all(subject.tree, {"Preset": Tree.PRESET_PAPER if name == "Paper" else Tree.PRESET_CUSTOM})
+    running.update(subject.tree)
     runs = trade_runs.judged(reference, {**settings, "ReturnMode": Filter.RETURN_MODE_ALL}, range(seeds), subject)
     energy, wrong = trade_runs.energy_and_wrong(runs)
     seconds = np.median([run.cpu for _, run in runs])
@@ -46,7 +51,7 @@ def main(options):
         subject = trade_runs.subject_of(file, sensor)
         reference = trade_runs.Reference(subject, options.reference_rays)
         rows.append((f"{title}, {subject.sensor_name}",
-                     *(measured(subject, reference, settings, options.seeds) for settings in PRESETS.values())))
+                     *(measured(subject, reference, name, options.seeds) for name in PRESETS)))
     tools.leave(options.out, "presets",
                 ("scene, sensor", *(name if name == "default" else f"`{name}`" for name in PRESETS)), rows)
     return rows

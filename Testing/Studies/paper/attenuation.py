@@ -67,7 +67,7 @@ def measure():
                "echoes of the far end": int(on(near, "Far end").sum()),
                "a wall vanishes at, airport (m)": reach("airport", factor * AIRPORT) if factor else math.inf,
                "echoes of Terminal 1": int(on(far, "Terminal 1").sum()),
-               "their median hue (deg)": paper.hue_of("Terminal 1", far.GetOutput())}
+               "their median hue (deg)": paper.median_of(paper.hues_of("Terminal 1", far.GetOutput()))}
         clear = rows[0] if rows else row
         # Areas that are farther away are absent; both clouds capture the facade: at least half of what clear air shows.
         row[END_IS_ABSENT] = "yes" if row["echoes of the far end"] == 0 else "no"

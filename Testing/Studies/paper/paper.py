@@ -27,9 +27,13 @@ from running import argument, column, study, whole
 SENSORS = (("corridor", "corridor"), ("airport", "airport16"), ("airport", "airport32"))
 CONFIGURATIONS = {"paper": ({"Preset": Tree.PRESET_PAPER}, SCAN), "default": ({}, {})}
 
-# Of the pictures, x and y in m: the facade of Terminal 1, and its northern end, which faces the lidar.
-TERMINAL_1 = (445, 565), (-460, 0)
+# Of the pictures, x and y in m: main buildings and lidar (Fig. 16), a part of the facade of Terminal 1 (Fig. 17), and its
+# northern end, which faces the lidar.
+AIRPORT = (-700, 900), (-1300, 900)
+SMEARED = (444, 480), (-120, -20)
 FACADE = (440, 500), (-102, -32)
+
+BLUE = 210  # deg: hues from here to 240 are called blue
 
 
 def configured(subject, tree_settings):
@@ -58,10 +62,39 @@ def errors(reference, subject, settings, seeds):
             ("time of one core (s)", f"{np.median([run.cpu for _, run in runs]):.3f}")]
 
 
-def hue_of(name, echoes):
-    """The median of Eq. 13 over the points of an object."""
-    rows = tools.hue_of(name, running.made(vtkAvianLidarHSBColorMap(), InputData=echoes))
-    return rows[0][1] if rows else "-"
+def hues_of(name, echoes):
+    """Eq. 13 over the points of an object, degrees; none where the scene does not have it."""
+    known = tools.strings(echoes, "object_names")
+    coloured = running.made(vtkAvianLidarHSBColorMap(), InputData=echoes)
+    return column(coloured, "hue")[column(coloured, "object_id") == known.index(name)] if name in known else np.empty(0)
+
+
+def smear(name, echoes):
+    """Row of how far the points of one beam on an object lie apart in range."""
+    known = tools.strings(echoes, "object_names")
+    mine = column(echoes, "object_id") == (known.index(name) if name in known else -1)
+    beams, ranges = column(echoes, "beam_id")[mine], column(echoes, "distance_m")[mine]
+    spans = [np.ptp(ranges[beams == beam]) for beam in np.unique(beams)]
+    return [(f"range between the first and the last point of a beam on {name}, median and 90 % (m)",
+             "{:.1f}, {:.1f}".format(*np.percentile(spans, (50, 90))) if spans else "-")]
+
+
+def median_of(hues):
+    return f"{np.median(hues):.0f}" if len(hues) else "-"
+
+
+def hue_rows(subject, lidar, settings):
+    """Rows of the colours of Terminal 1, also with a pulse and range units of 1 ns instead of 5 ns."""
+    own = {name: getattr(subject.sensor, "Get" + name)() for name in ("PulseWidth", "SamplingInterval")}
+    running.set_all(subject.sensor, dict.fromkeys(own, 1e-9))
+    finer = scan(subject, settings, 0, 0)
+    running.set_all(subject.sensor, own)
+    rows = []
+    for one, words in ((lidar, ""), (finer, " in range units of 1 ns")):
+        hues = hues_of("Terminal 1", one.GetOutput())
+        rows += [(f"median hue of Terminal 1{words} (deg)", median_of(hues)),
+                 (f"- {BLUE} or more{words}", f"{100 * np.mean(hues >= BLUE):.0f} %" if len(hues) else "-")]
+    return rows
 
 
 def counts(subject, lidar, returns):
@@ -72,7 +105,7 @@ def counts(subject, lidar, returns):
             ("- with echoes", int(perceived.sum())), ("rays traced, as reported", int(report["rays_traced"].sum())),
             ("triangles tested per beam with echoes", f"{report['candidates'][perceived].mean():.1f}"),
             ("points", lidar.GetOutput().GetNumberOfPoints()),
-            ("median hue of Terminal 1 (deg)", hue_of("Terminal 1", lidar.GetOutput())), ("returns", returns)]
+            ("returns", returns), *smear("Terminal 1", lidar.GetOutput())]
 
 
 @study(argument("--seeds", type=whole(1, 100), default=3, help="scans to judge, default 3"),
@@ -90,7 +123,7 @@ def main(options):
             lidar = scan(mine, settings, 0, 0)
             scans[f"{subject.sensor_name}, {words}"] = mine, lidar
             columns[f"{subject.sensor_name}, {words}"] = [
-                *counts(mine, lidar, returns.GetOutput().GetNumberOfPoints()),
+                *counts(mine, lidar, returns.GetOutput().GetNumberOfPoints()), *hue_rows(mine, lidar, settings),
                 ("returns of the reference", len(reference.echoes["beam_id"])),
                 *errors(reference, mine, settings, options.seeds)]
             if name == "airport":
@@ -103,7 +136,11 @@ def main(options):
         with tools.figure(options.out / "facade.png", 1, 2, figsize=(16, 8)) as axes:
             for axis, (scene, echoes, title) in zip(axes, shown):
                 tools.from_above(axis, scene, echoes, FACADE, f"Terminal 1, {title}", 40)
-        with tools.figure(options.out / "terminal-1.png", 1, 4, figsize=(18, 10)) as axes:
-            for axis, (scene, echoes, title) in zip(axes, shown):
-                tools.from_above(axis, scene, echoes, TERMINAL_1, title)
+        with tools.figure(options.out / "terminal-1.png", 1, 3, figsize=(13, 7), width_ratios=(1.9, 1, 1)) as axes:
+            by_paper = [one for one in shown if one[2].endswith("paper")]
+            tools.from_above(axes[0], *by_paper[0][:2], AIRPORT, by_paper[0][2], legend=False)
+            for axis, (scene, echoes, title) in zip(axes[1:], by_paper):
+                dots = tools.from_above(axis, scene, echoes, SMEARED, title, 24, legend=False)
+                axis.set_title(title, loc="left")
+            axes[-1].figure.colorbar(dots, ax=axes, label="energy (µJ)", shrink=0.6)
     return scans
