@@ -71,7 +71,8 @@ private:
   void CompareIds(const vtkAvianLidarRanks& ranks) const;
   const void* checkedWith = nullptr;    ///< ranks among which no id occurs twice; null: not checked
   vtkAvianLidarContent::State ReadFrom; ///< state of the input read last; empty after an error
-  std::uint64_t Content = 0;            ///< hash of sensor, revolution and beams
+  std::uint64_t Content = 0;            ///< hash of the beams without their origins
+  std::uint64_t Origins = 0;            ///< hash of the origins
 };
 
 #endif
