@@ -367,6 +367,13 @@ std::uint64_t vtkAvianLidarBeams::Hash() const
 }
 
 //------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarBeams::HashOfAll() const
+{
+  const std::uint64_t parts[] = { this->Hash(), this->Content, this->Origins };
+  return avianlidar::hashOf(parts, sizeof(parts), 0);
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarBeams::CheckRanks(const vtkAvianLidarRanks& ranks)
 {
   const std::vector<std::uint64_t>& ids = this->beams.ids;

@@ -55,6 +55,9 @@ struct vtkAvianLidarBeams
   /// Hash of sensor, revolution and beams.
   std::uint64_t Hash() const;
 
+  /// Hash of sensor, revolution and everything that is read for each beam.
+  std::uint64_t HashOfAll() const;
+
   /// Unit vector along which the echoes of a beam are placed: the direction that the sensor
   /// reports.
   const avianlidar::Vec3& ReportedDirection(std::size_t beam) const
