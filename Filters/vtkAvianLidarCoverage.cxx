@@ -4,6 +4,7 @@
 #include "Air.h"
 #include "AvailableMemory.h"
 #include "CoverageSurvey.h"
+#include "Hash.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -26,6 +27,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -64,6 +66,10 @@ struct vtkAvianLidarCoverage::vtkTargets
   vtkAvianLidarPlaces Places;
   avianlidar::CoverageSurvey Survey{ SharedLaws() };
   avianlidar::SurveyRules Rules;
+  avianlidar::ScanResult Still; ///< last scan of the surfaces
+  vtkNew<vtkPolyData> Clutter;  ///< echoes of `Still`
+  std::uint64_t StillOf = 0;    ///< hash of the inputs of `Still`; 0: no scan
+  std::shared_ptr<const avianlidar::CollisionTree> StillTree; ///< tree of `Still`
   double TracedPlaces = 0.0;
   bool Warned = false; ///< whether scans differed in the last execution
 
@@ -75,6 +81,20 @@ struct vtkAvianLidarCoverage::vtkTargets
 
   /// Settings that decide the bits of the results, except the settings of the superclass.
   static vtkAvianLidarRanks::Settings SettingsOf(const vtkAvianLidarCoverage& self, bool hasPlaces);
+
+  /// Hash of everything that decides the scan of the surfaces: birds and places do not.
+  static std::uint64_t StillHash(const vtkAvianLidarCoverage& self)
+  {
+    const vtkInternals& in = *self.Internals;
+    std::vector<double> numbers = { self.Clutter ? 1.0 : 0.0 };
+    for (const vtkInternals::Property& property : vtkInternals::Properties())
+    {
+      numbers.push_back(property.ValueOf(self));
+    }
+    const std::uint64_t parts[] = { in.Beams.HashOfAll(), in.Scene,
+      avianlidar::hashOf(numbers.data(), numbers.size() * sizeof(double), 0) };
+    return avianlidar::hashOf(parts, sizeof(parts), 1);
+  }
 
   avianlidar::SurveyPlaces SurveyPlaces() const
   {
@@ -434,20 +454,30 @@ void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
   in.Setup.largestReflectance = in.Summary.largestReflectance;
   in.Setup.largestGain = in.Summary.largestGain;
   avianlidar::planModel(in.Setup);
-  avianlidar::ScanResult still;
-  const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
-  vtkAvianLidarAbort::Require(!this->Clutter ||
-    avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit,
-      vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, ScanShare), still));
-  in.TracedRays = static_cast<double>(still.raysTraced);
-  in.TracedBeams = static_cast<double>(still.beamsTraced);
+  const std::uint64_t wanted = vtkTargets::StillHash(*this);
+  if (targets.StillOf != wanted || targets.StillTree != in.Setup.tree)
+  {
+    targets.StillOf = 0;
+    targets.StillTree = in.Setup.tree;
+    targets.Still = {};
+    const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
+    vtkAvianLidarAbort::Require(!this->Clutter ||
+      avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit,
+        vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, ScanShare), targets.Still));
+    in.TracedRays = static_cast<double>(targets.Still.raysTraced);
+    in.TracedBeams = static_cast<double>(targets.Still.beamsTraced);
+    targets.Clutter->Initialize();
+    vtkAvianLidarFillClutter(targets.Still, in.Beams, targets.Clutter);
+    targets.StillOf = wanted;
+  }
   vtkAvianLidarAbort::Require(
-    targets.Survey.look(in.Setup, in.Beams.beams, still, targets.SurveyPlaces(), in.Geometry,
-      in.Threads, vtkAvianLidarAbort::KeepGoing(this, ScanShare, ViewShare)));
+    targets.Survey.look(in.Setup, in.Beams.beams, targets.Still, targets.SurveyPlaces(),
+      in.Geometry, in.Threads, vtkAvianLidarAbort::KeepGoing(this, ScanShare, ViewShare)));
   targets.TracedPlaces = static_cast<double>(targets.Survey.traced());
   if (ranks.Piece() == 0)
   {
-    vtkAvianLidarFillClutter(still, in.Beams, clutter);
+    clutter->CopyStructure(targets.Clutter);
+    clutter->GetPointData()->PassData(targets.Clutter->GetPointData());
   }
   ranks.Meet(); // before the long work
 }

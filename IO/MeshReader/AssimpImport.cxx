@@ -74,9 +74,10 @@ std::string ReadAll(const std::string& file, std::vector<char>& bytes)
   {
     return std::strerror(errno);
   }
-  constexpr std::size_t chunk = 1u << 22;
   std::error_code ignored;
   const std::uintmax_t packed = std::filesystem::file_size(file, ignored);
+  // Filling a large chunk with zeros takes longer than reading a small file.
+  const std::size_t chunk = std::clamp<std::uintmax_t>(packed + 1, 1u << 12, 1u << 22);
   const bool isPacked = gzdirect(handle.get()) == 0;
   int got = 0;
   do
@@ -91,7 +92,7 @@ std::string ReadAll(const std::string& file, std::vector<char>& bytes)
       return error.what();
     }
     bytes.resize(size + chunk);
-    got = gzread(handle.get(), bytes.data() + size, chunk);
+    got = gzread(handle.get(), bytes.data() + size, static_cast<unsigned int>(chunk));
     bytes.resize(size + static_cast<std::size_t>(std::max(got, 0)));
   } while (got > 0);
   int error = Z_OK;

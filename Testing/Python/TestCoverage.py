@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkVersion
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkRectilinearGrid, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPassThrough
 
 import avianlidar as al
@@ -312,6 +312,29 @@ class Work(unittest.TestCase):
         self.assertEqual(without.clutter_map.number_of_points, 0)
         self.assertFalse(np.any(without["status"] == vtkAvianLidarCoverage.STATUS_IN_CLUTTER))
         self.assertEqual(without.number_of_traced_rays, 0)
+
+    def test_clutter_follows_each_change_of_the_scan(self):
+        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-30.0, 30.0))
+        turned = vtkPolyData()
+        turned.DeepCopy(sensor.beams.data)
+        azimuth = turned.GetPointData().GetArray("azimuth")
+        azimuth.SetComponent(0, 0, azimuth.GetComponent(0, 0) + 1.0)
+        near = al.Sensor("Search905", azimuth_range=(-30.0, 30.0), position=(0.0, 100.0, 1.0))
+        settings, kept = dict(TARGET), al.Coverage(scene, sensor, places=[(0, 200, 1)], **TARGET)
+        for of, change in ((sensor, {}), (sensor, {"effective_area": 0.5}), (sensor, {"visibility": 500.0}), (near, {}),
+                           (turned, {}), (turned, {"rays_per_beam": 7}), (sensor, {"clutter": False}), (sensor, {"clutter": True})):
+            settings.update(change)
+            kept.sensor = of
+            found, again = (cover.clutter_map for cover in (kept.set(**settings),
+                                                            al.Coverage(scene, of, places=[(0, 200, 1)], **settings)))
+            with self.subTest(change=change):
+                self.assertEqual(set(found), set(again))
+                np.testing.assert_array_equal(found.points, again.points)
+                for name in found:
+                    np.testing.assert_array_equal(found[name], again[name])
+        kept.places = [(0, 100, 1), (0, 200, 1)]
+        self.assertEqual(len(kept["status"]), 2)
+        self.assertEqual((kept.number_of_traced_rays, kept.clutter_map.number_of_points), (0, found.number_of_points))
 
     def test_nothing_to_look_at_is_no_error(self):
         scene = al.Scene(NOTHING, material="Wall")

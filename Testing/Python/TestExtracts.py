@@ -529,7 +529,8 @@ class LeftOut(unittest.TestCase):
 
     def test_all_runways_come_first(self):
         for tags in KNOWN["kinds"]["runway"]["tags"]:
-            self.assertRegex(" ".join(f"{name} {value}" for name, value in tags.items()), _osm.FIRST)
+            said = " ".join(f"{name} {value}" for name, value in tags.items())
+            self.assertTrue(any(word in said for word in _osm.FIRST), said)
 
     def test_what_lies_apart_makes_no_difference(self):
         """The scene is the same as if the rules had looked at everything, in XML and GeoJSON, with bounds and

@@ -87,9 +87,9 @@ void forEachCell(std::size_t side, const Vec3& axis, double halfBeamwidth, F f)
     {
       for (std::size_t i = range[0]; i <= range[1]; ++i)
       {
-        const Vec3 middle = unitVector(fromCube(face, (static_cast<double>(i) + 0.5) * size - 1.0,
-          (static_cast<double>(j) + 0.5) * size - 1.0));
-        if (glm::dot(middle, axis) >= least)
+        const Vec3 middle = fromCube(face, (static_cast<double>(i) + 0.5) * size - 1.0,
+          (static_cast<double>(j) + 0.5) * size - 1.0);
+        if (glm::dot(middle, axis) >= least * glm::length(middle))
         {
           f((static_cast<std::size_t>(face) * side + j) * side + i);
         }

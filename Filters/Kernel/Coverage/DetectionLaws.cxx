@@ -22,12 +22,12 @@ std::shared_ptr<const DetectionLaw> DetectionLaws::get(const Sensor& sensor,
     std::rotate(found, found + 1, this->Laws.end());
     return this->Laws.back().law;
   }
+  std::size_t bytes = 0;
+  const auto last = std::find_if(this->Laws.rbegin(), this->Laws.rend(),
+    [&bytes](const Kept& kept) { return (bytes += kept.law->bytes()) > MostBytes; });
+  this->Laws.erase(this->Laws.begin(), last.base()); // before the new law needs memory
   auto law = std::make_shared<const DetectionLaw>(sensor, *views, lowest, highest, mostBeams);
   this->Laws.push_back({ std::move(numbers), views, std::move(law) });
-  std::size_t bytes = 0;
-  const auto last = std::find_if(this->Laws.rbegin() + 1, this->Laws.rend(),
-    [&bytes](const Kept& kept) { return (bytes += kept.law->bytes()) > MostBytes; });
-  this->Laws.erase(this->Laws.begin(), last.base());
   return this->Laws.back().law;
 }
 }

@@ -260,11 +260,10 @@ std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
   return avianlidar::hashOf(values.data(), values.size() * sizeof(double), 0);
 }
 
-/// Hash of everything that is read for each beam.
+/// Hash of everything that is read for each beam, except the origin.
 std::uint64_t HashOf(vtkPolyData* input)
 {
-  vtkPoints* points = input->GetPoints();
-  std::uint64_t hash = vtkAvianLidarContent::HashOf(points ? points->GetData() : nullptr, 0);
+  std::uint64_t hash = 0;
   for (const auto& array : { Arrays::Direction, Arrays::ReportedDirection, Arrays::BeamId,
          Arrays::LaserId, Arrays::Azimuth, Arrays::VerticalAngle, Arrays::Timestamp })
   {
@@ -303,15 +302,29 @@ void vtkAvianLidarBeams::ReadAll(vtkPolyData* input)
   const bool isEmpty = input->GetNumberOfPoints() == 0;
   const vtkAvianLidarContent::State state = vtkAvianLidarContent::StateOf(input);
   const bool untouched = state == this->ReadFrom;
+  vtkPoints* points = input->GetPoints();
+  const std::uint64_t origins = untouched
+    ? this->Origins
+    : vtkAvianLidarContent::HashOf(points ? points->GetData() : nullptr, 0);
   const std::uint64_t content = untouched ? this->Content : HashOf(input);
-  const bool known = !this->ReadFrom.empty() && content == this->Content;
+  const bool known = !this->ReadFrom.empty() && content == this->Content &&
+    static_cast<std::size_t>(input->GetNumberOfPoints()) == this->beams.size();
   this->ReadFrom.clear(); // empty after an error
   if (!known || isEmpty)
   {
     *this = vtkAvianLidarBeams{};
     this->ReadBeams(input);
+  }
+  else if (origins != this->Origins) // a sensor that only moves is read faster
+  {
+    this->beams.origins.clear();
+    ReadOrigins(input, this->beams);
+  }
+  if (!known || isEmpty || origins != this->Origins)
+  {
     this->beams.checksum = avianlidar::checksumOf(this->beams);
     this->Content = content;
+    this->Origins = origins;
   }
   try
   {
@@ -350,6 +363,13 @@ void vtkAvianLidarBeams::RequireTimes(const std::string& what) const
 std::uint64_t vtkAvianLidarBeams::Hash() const
 {
   const std::uint64_t parts[] = { this->beams.checksum, HashOf(this->sensor, this->revolution) };
+  return avianlidar::hashOf(parts, sizeof(parts), 0);
+}
+
+//------------------------------------------------------------------------------
+std::uint64_t vtkAvianLidarBeams::HashOfAll() const
+{
+  const std::uint64_t parts[] = { this->Hash(), this->Content, this->Origins };
   return avianlidar::hashOf(parts, sizeof(parts), 0);
 }
 

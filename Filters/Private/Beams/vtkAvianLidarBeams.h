@@ -55,6 +55,9 @@ struct vtkAvianLidarBeams
   /// Hash of sensor, revolution and beams.
   std::uint64_t Hash() const;
 
+  /// Hash of sensor, revolution and everything that is read for each beam.
+  std::uint64_t HashOfAll() const;
+
   /// Unit vector along which the echoes of a beam are placed: the direction that the sensor
   /// reports.
   const avianlidar::Vec3& ReportedDirection(std::size_t beam) const
@@ -71,7 +74,8 @@ private:
   void CompareIds(const vtkAvianLidarRanks& ranks) const;
   const void* checkedWith = nullptr;    ///< ranks among which no id occurs twice; null: not checked
   vtkAvianLidarContent::State ReadFrom; ///< state of the input read last; empty after an error
-  std::uint64_t Content = 0;            ///< hash of sensor, revolution and beams
+  std::uint64_t Content = 0;            ///< hash of the beams without their origins
+  std::uint64_t Origins = 0;            ///< hash of the origins
 };
 
 #endif

@@ -67,15 +67,15 @@ def features_of(path: pathlib.Path) -> List[Dict[str, Any]]:
     return features
 
 
-def _corners(coordinates: Any, origin: Sequence[float], least: int) -> np.ndarray:
-    """East and north (n x 2, m) of corners in GeoJSON. @param least least number of corners"""
+def _corners(coordinates: Any, least: int) -> np.ndarray:
+    """Longitudes and latitudes (n x 2, deg) of corners in GeoJSON. @param least least number of corners"""
     try:
         degrees = np.array([point[:2] for point in coordinates])
     except (TypeError, ValueError, LookupError):
         degrees = np.empty(0)
     if degrees.dtype.kind not in "iuf" or degrees.ndim != 2 or degrees.shape[1] != 2 or len(degrees) < least:
         raise ValueError(f"the coordinates are not {least} or more pairs of longitude and latitude")
-    return to_enu(degrees, origin)
+    return degrees
 
 
 def _lines(shape: Dict[str, Any], origin: Sequence[float]) -> List[np.ndarray]:
@@ -84,7 +84,7 @@ def _lines(shape: Dict[str, Any], origin: Sequence[float]) -> List[np.ndarray]:
     lines = shape.get("coordinates") if is_many else [shape.get("coordinates")]
     if not isinstance(lines, list) or not lines:
         raise ValueError("the coordinates of a MultiLineString are not a list of lines")
-    ends = [_corners(line, origin, 2)[[0, -1]] for line in lines]
+    ends = [to_enu(_corners(line, 2), origin)[[0, -1]] for line in lines]
     points = np.concatenate(ends)
     first = points[np.argmax(np.hypot(*(points - points[0]).T))]
     last = points[np.argmax(np.hypot(*(points - first).T))]
@@ -154,9 +154,8 @@ def _doubtful(runways: Sequence[Runway], known: Dict[str, Any]) -> List[str]:
     return found
 
 
-def _ring(coordinates: Any, origin: Sequence[float]) -> np.ndarray:
-    """A ring of a polygon in GeoJSON, n x 2, m, open."""
-    ring = _corners(coordinates, origin, 3)
+def _open(ring: np.ndarray) -> np.ndarray:
+    """A ring, n x 2, without its first corner at its end."""
     if np.array_equal(ring[0], ring[-1]):
         ring = ring[:-1]
     if len(ring) < 3:
@@ -168,7 +167,7 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
     """The polygons in a GeoJSON file: for each polygon its ring (n x 2, m, open), or a list of the outer ring and the
     holes. @param origin of the scene: latitude, longitude (deg), height (m) @param attribute only features with this
     attribute are read"""
-    found: List[Any] = []
+    outlines: List[Tuple[int, List[np.ndarray]]] = []  # number of the feature, rings in degrees
     for number, feature in enumerate(features_of(pathlib.Path(file))):
         shape = feature["geometry"]
         if shape.get("type") in ("Polygon", "MultiPolygon") and (not attribute or feature["properties"].get(attribute)):
@@ -176,9 +175,19 @@ def read_outlines(file, origin: Sequence[float], attribute: str = "") -> List[An
                 polygons = [shape.get("coordinates")] if shape["type"] == "Polygon" else shape.get("coordinates")
                 if not isinstance(polygons, list):
                     raise ValueError("the coordinates of a MultiPolygon are not a list")
-                for rings in polygons:
-                    outline = [_ring(ring, origin) for ring in (rings if isinstance(rings, list) else [None])]
-                    found += [outline if len(outline) > 1 else outline[0]] if outline else []
+                outlines += [(number, [_corners(ring, 3) for ring in (rings if isinstance(rings, list) else [None])])
+                             for rings in polygons]
+    every = [ring for _, rings in outlines for ring in rings]
+    try:  # a conversion takes as long as that of a thousand corners
+        metres = iter(np.split(to_enu(np.concatenate([np.empty((0, 2)), *every]), origin),
+                               np.cumsum([len(ring) for ring in every[:-1]], dtype=int)))
+    except Error:
+        metres = None
+    found: List[Any] = []
+    for number, rings in outlines:
+        with naming(f"{file}: features[{number}]"):
+            outline = [_open(next(metres) if metres else to_enu(ring, origin)) for ring in rings]
+            found += [outline if len(outline) > 1 else outline[0]] if outline else []
     return found
 
 

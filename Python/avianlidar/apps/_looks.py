@@ -13,8 +13,9 @@ from typing import Any, Callable, List, Mapping, Optional, Sequence
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .._cloud import field_values, rows_of
+from .._cloud import as_numpy, field_values, rows_of, with_points
 from .._coverage import Coverage
 from .._disk import write_whole
 from .._files import read_regular
@@ -80,9 +81,14 @@ def look(scene, sensor, sites, places, species: Sequence[str], folder=None, rank
             if area_factor != 1.0:
                 areas = [area_factor * float(np.ravel(field_values(cover.set(species=name).data)["effective_area"])[0])
                          for name in species]
+            sensor.position = (0.0, 0.0, 0.0)
+            beams = vtkPolyData()  # which move from site to site; the sensor would make all beams again
+            beams.ShallowCopy(sensor.beams.data)
+            origins = as_numpy(beams.GetPoints().GetData())
+            cover.algorithm.SetInputDataObject(0, beams)
             with Updates(cover.algorithm) as again:
                 def look_from(i: int) -> List[np.ndarray]:
-                    sensor.position = tuple(sites[i])
+                    beams.SetPoints(with_points(origins + sites[i]).GetPoints())
                     rows = []
                     for (name, area), air in itertools.product(zip(species, areas), airs):
                         cover.set(species=name, effective_area=area, **air)

@@ -8,6 +8,8 @@ from typing import Any, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
+ROUNDING = 1e-12  # difference of shares that counts as none
+
 
 @dataclasses.dataclass(frozen=True)
 class Network:
@@ -109,24 +111,27 @@ def exhaustive(found: np.ndarray, weights: np.ndarray, count: int, spots: Option
     n = len(found)
     spots = np.arange(n) if spots is None else spots
     missed = 1.0 - found.reshape(n, -1).astype(float)
-    least = np.inf
-    sites: Tuple[int, ...] = ()
-    for others in itertools.combinations(range(n), max(count - 2, 0)):
-        first = others[0] + 1 if others else 0
-        left = missed[first:] * (_missed(found, weights, others).ravel())
-        if count == 1:
-            table = left.sum(axis=1)[:, None]
-        else:
-            table = left @ missed[first:].T
-            table[np.tril_indices(len(table))] = np.inf
-            table[spots[first:, None] == spots[first:]] = np.inf
-            taken = np.isin(spots[first:], spots[list(others)])
-            table[taken] = table[:, taken] = np.inf
-        if table.size and table.min() < least:
-            least = table.min()
-            pair = np.unravel_index(np.argmin(table), table.shape)[:min(count, 2)]
-            sites = (*others, *(first + int(i) for i in pair))
-    return Network(sites, value_of(found, weights, sites))
+    left = missed * weights.ravel()
+    by_one, by_two = left.sum(axis=1), left @ missed.T if count > 1 else None
+    all_sites = np.array([*itertools.combinations(range(n), count)])
+    all_sites = all_sites[(np.diff(np.sort(spots[all_sites], axis=1), axis=1) > 0).all(axis=1)]
+    if count == 1:
+        least = by_one
+    elif count == 2:
+        least = by_two[tuple(all_sites.T)]
+    else:
+        # A site adds no more to two sites than to one of them, so three sites miss at least this.
+        i, j, k = all_sites.T
+        least = np.max([by_two[a, b] + by_two[a, c] - by_one[a] for a, b, c in ((i, j, k), (j, i, k), (k, i, j))],
+                       axis=0)
+    best = Network((), 0.0)
+    for number in np.argsort(least, kind="stable"):
+        if best.sites and weights.sum() - least[number] <= best.value + ROUNDING:
+            break
+        sites = tuple(all_sites[number].tolist())
+        value = value_of(found, weights, sites)
+        best = Network(sites, value) if value > best.value or not best.sites else best
+    return best
 
 
 def search(found: np.ndarray, weights: np.ndarray, count: int = 3, largest: int = 60,

@@ -17,7 +17,7 @@ import numpy as np
 from osgeo import gdal, ogr, osr
 
 from .._pipeline import Error
-from ._extract import NO_DEGREES, Extract, are_degrees
+from ._extract import NO_DEGREES, Extract
 from ._features import DECIMAL, Feature, tags_of
 from ._gdal import accuracy_words, degrees, expect_file, features_of_json, moved, open_file, plain, quiet
 from ._json import naming
@@ -33,7 +33,7 @@ NODE = re.compile(rb"""<node id=["'](\d{1,18})["'](?: [\w:]+=(?:"[^"<>]*"|'[^'<>
 OBJECTS = (b"<node", NODE), *((b"<" + name, re.compile(b"<" + name + rb""" id=["'](\d{1,18})["']"""))
                               for name in (b"way", b"relation"))
 # What decides where the scene lies, or reaches the scene from afar
-FIRST = re.compile("aeroway|aerodrome|airport|coastline|runway", re.IGNORECASE)
+FIRST = ("aeroway", "aerodrome", "airport", "coastline", "runway")
 CRS = re.compile(rb'"crs"\s*:\s*(\{[^{}]*(?:\{[^{}]*\}[^{}]*)?\})')
 
 
@@ -215,8 +215,9 @@ def _features_of(data) -> Iterator[Tuple[Any, Any]]:
 
 def _comes_first(feature, names: List[str]) -> bool:
     """Whether a feature is read before it is known where the scene lies."""
-    return any(feature.IsFieldSetAndNotNull(number) and FIRST.search(f"{name} {feature.GetFieldAsString(number)}")
-               for number, name in enumerate(names))
+    said = " ".join([f"{name} {feature.GetFieldAsString(number)}" for number, name in enumerate(names)
+                     if feature.IsFieldSetAndNotNull(number)]).lower()
+    return any(word in said for word in FIRST)
 
 
 def _lies_apart(feature, west: float, east: float, south: float, north: float) -> bool:
@@ -225,8 +226,8 @@ def _lies_apart(feature, west: float, east: float, south: float, north: float) -
     if shape is None or shape.IsEmpty():
         return False
     low_x, high_x, low_y, high_y = shape.GetEnvelope()
-    return bool(are_degrees(np.array([(low_x, low_y), (high_x, high_y)]))
-                and (high_x < west or low_x > east or high_y < south or low_y > north))
+    are_degrees = -360.0 <= low_x and high_x <= 360.0 and -90.0 <= low_y and high_y <= 90.0
+    return are_degrees and (high_x < west or low_x > east or high_y < south or low_y > north)
 
 
 def read_extract(file: pathlib.Path, known: Dict[str, Any], bounds: Optional[Sequence[float]] = None) -> Extract:

@@ -106,7 +106,7 @@ class Report:
 
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
         """Pictures of a sensor at a place. @param name part of the names of files"""
-        names = plan.coverage.status_names
+        names = plan.map_at(plan.heights[0]).status_names
         maps, reasons, sections, size = [], [], [], pictures.map_size(plan.extent, 3.3)
         for height in plan.heights:
             cover, where = plan.map_at(height), f"{plan.title}, {height:g} m above {plan.above}"
