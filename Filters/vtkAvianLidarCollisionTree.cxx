@@ -209,7 +209,7 @@ int vtkAvianLidarCollisionTree::RequestData(
       vtkPolyData* display = vtkPolyData::GetData(outputVector, 1);
       this->MergeSurfaces(ranks, input);
       this->MakeTree(ranks, input);
-      this->MakeOutputs(ranks, output, display);
+      this->MakeOutputs(ranks, input, output, display);
     });
 }
 
@@ -263,12 +263,12 @@ void vtkAvianLidarCollisionTree::MakeTree(const vtkAvianLidarRanks& ranks, vtkDa
 
 //------------------------------------------------------------------------------
 void vtkAvianLidarCollisionTree::MakeOutputs(
-  const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display)
+  const vtkAvianLidarRanks& ranks, vtkDataObject* input, vtkPolyData* output, vtkPolyData* display)
 {
   vtkInternals& in = *this->Internals;
   if (ranks.Rank() == 0)
   {
-    output->ShallowCopy(in.Surfaces->ToPolyData(in.Exchange.Fields));
+    output->ShallowCopy(in.Surfaces->ToPolyData(in.Exchange.Fields, input));
   }
   else
   {

@@ -162,7 +162,8 @@ private:
   // ranks.
   void MergeSurfaces(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
   void MakeTree(const vtkAvianLidarRanks& ranks, vtkDataObject* input);
-  void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkPolyData* output, vtkPolyData* display);
+  void MakeOutputs(const vtkAvianLidarRanks& ranks, vtkDataObject* input, vtkPolyData* output,
+    vtkPolyData* display);
 
   void CheckOptions() const;
 

@@ -9,6 +9,7 @@
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarRanks.h"
+#include "vtkAvianLidarSlices.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkCellData.h"
@@ -55,6 +56,42 @@ void AddCellArrays(
     { return materials[mesh.materials[i]].coefficients; });
 }
 
+template <class ArrayT, class Get, class Set>
+void Divide(const std::vector<vtkPolyData*>& blocks, const Get& get, const Set& set)
+{
+  std::vector<ArrayT*> arrays;
+  for (vtkPolyData* block : blocks)
+  {
+    arrays.push_back(static_cast<ArrayT*>(get(block)));
+  }
+  const auto slices = vtkAvianLidarSlices::Divide(arrays);
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+  {
+    set(blocks[i], slices[i]);
+  }
+}
+
+// Moves each array of the blocks into one piece of memory, which a collision tree can share.
+void ShareMemory(const std::vector<vtkPolyData*>& blocks)
+{
+  const auto pointsOf = [](vtkPolyData* block) { return block->GetPoints()->GetData(); };
+  Divide<vtkDoubleArray>(blocks, pointsOf,
+    [](vtkPolyData* block, vtkDataArray* slice) { block->GetPoints()->SetData(slice); });
+  const auto add = [](vtkPolyData* block, vtkDataArray* slice)
+  { block->GetCellData()->AddArray(slice); };
+  for (const Arrays::Name& name : { Arrays::ObjectId, Arrays::MaterialId })
+  {
+    Divide<vtkIntArray>(
+      blocks, [&](vtkPolyData* block) { return block->GetCellData()->GetArray(name.name); }, add);
+  }
+  for (const avianlidar::MaterialCoefficient& coefficient : avianlidar::MaterialCoefficients)
+  {
+    Divide<vtkDoubleArray>(
+      blocks, [&](vtkPolyData* block) { return block->GetCellData()->GetArray(coefficient.name); },
+      add);
+  }
+}
+
 void AddFieldData(const BuiltScene& built, vtkFieldData* fields)
 {
   const Scene& scene = built.description;
@@ -91,6 +128,7 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
 {
   vtkAbstractArray* materialNames =
     output->GetFieldData()->GetAbstractArray(Arrays::MaterialNames.name);
+  std::vector<vtkPolyData*> surfaces;
   for (std::size_t i = 0; i < built.parts.size(); ++i)
   {
     Part& part = built.parts[i];
@@ -103,6 +141,7 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
       if (part.medium.empty())
       {
         AddCellArrays(part.mesh, static_cast<int>(i), built.description.materials, block);
+        surfaces.push_back(block);
       }
       else
       {
@@ -120,6 +159,7 @@ void AddBlocks(BuiltScene& built, bool empty, vtkMultiBlockDataSet* output)
       vtkCompositeDataSet::NAME(), vtkAvianLidarText(part.name).c_str());
     part.mesh = Mesh();
   }
+  ShareMemory(surfaces);
 }
 }
 

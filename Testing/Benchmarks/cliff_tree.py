@@ -2,10 +2,11 @@
 """Part of cliffs.py: memory of a scene with its collision tree, and the time that building takes.
 
 Bytes are those that malloc() hands out while a scene file is read and its tree is built, per triangle. A new process
-measures each scene. The time of a build is its processor time with one thread over that of Embree's builder of medium
-quality, if the program avianlidarBenchmarks was built (AVIANLIDAR_BENCHMARKS names it; default:
-build/paraview/bin/avianlidarBenchmarks). The time of the tree's whole filter is over that of building a
-vtkStaticCellLocator of the same triangles."""
+measures each scene. It has read the file once before, so that memory that libraries keep for the process, such as
+PROJ's for its database, is not counted as memory of triangles. The time of a build is its processor time with one
+thread over that of Embree's builder of medium quality, if the program avianlidarBenchmarks was built
+(AVIANLIDAR_BENCHMARKS names it; default: build/paraview/bin/avianlidarBenchmarks). The time of the tree's whole filter
+is over that of building a vtkStaticCellLocator of the same triangles."""
 import csv
 import ctypes
 import os
@@ -56,6 +57,7 @@ def tree_of(surfaces):
 
 def measure(file):
     """Prints the bytes per triangle of the surfaces as read, and of what the tree's filter adds."""
+    reader_of(file)
     start = held()
     reader = reader_of(file)
     surfaces = held()

@@ -12,10 +12,12 @@ import unittest
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_TETRA, vtkUnstructuredGrid
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
 from boxfiles import CORNERS, QUADS, TRIANGLES, ac3d, collada, gltf, ifc, obj, ply, poly_data, stl, three_ds, y_up
+from avianlidar import vtkAvianLidar
 from avianlidar.apps._features import length_of
 from echotools import group
 import scenetools as st
@@ -592,6 +594,35 @@ class SceneObjects(unittest.TestCase):
                 np.testing.assert_array_equal(st.corners(block), st.corners(own))
                 for array in ("material_id", "kd", "ks", "kp"):
                     np.testing.assert_array_equal(st.cells(block, array), st.cells(own, array))
+
+    def test_the_collision_tree_shares_memory_with_the_reader(self):
+        def arrays(surfaces):
+            cells = surfaces.GetCellData()
+            return [vtk_to_numpy(array) for array in (surfaces.GetPoints().GetData(), *map(cells.GetArray, range(cells.GetNumberOfArrays())))]
+
+        scene = self.read({"file": "box.obj", "name": "A"}, {"name": "Fog", "medium": {"kind": "fog", "visibility": 300, "shape": "everywhere"}},
+                          {"file": "box.stl", "name": "B", "position": [5, 0, 0], "material": "Metal"}, silent=False)
+        tree = vtkAvianLidar.vtkAvianLidarCollisionTree()
+        blocks = scene.reader.GetOutput()
+        tree.SetInputData(blocks)
+        tree.Update()
+        one, two, whole = blocks.GetBlock(0), blocks.GetBlock(2), arrays(tree.GetOutput())
+        for first, last, all_ in zip(arrays(one), arrays(two), whole):
+            np.testing.assert_array_equal(np.concatenate([first, last]), all_)
+        self.assertTrue(all(np.shares_memory(block, all_) for part in (one, two) for block, all_ in zip(arrays(part), whole)))
+        copy = blocks.NewInstance()
+        copy.DeepCopy(blocks)
+        kept = [array.copy() for array in whole]
+        copy.GetBlock(0).GetCellData().GetArray("kd").Fill(0.75)
+        tree.SetInputData(copy)
+        tree.Update()
+        edited = arrays(tree.GetOutput())
+        self.assertFalse(any(map(np.shares_memory, edited, whole)))
+        self.assertEqual([np.array_equal(a, b) for a, b in zip(edited, kept)], [True] * 3 + [False] + [True] * (len(kept) - 4))
+        self.assertEqual(set(edited[3][:len(arrays(one)[3])]), {0.75})
+        del scene, blocks, one, two, copy
+        for after, before in zip(whole, kept):
+            np.testing.assert_array_equal(after, before)
 
     def test_many_unmapped_names(self):
         self.save("many.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"usemtl m{i}\nf 1 2 3\n" for i in range(13)))

@@ -63,19 +63,25 @@ std::vector<LongKey> keysOf(const std::vector<Vec3>& middles, const std::vector<
   std::vector<LongKey> keys(middles.size());
   for (std::uint32_t t = 0; t < keys.size(); ++t)
   {
-    std::uint64_t place = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double size = upper[axis] - lower[axis];
-      const double share = size > 0.0 ? (middles[t][axis] - lower[axis]) / size : 0.0;
-      place |= spread(static_cast<std::uint64_t>(std::min(Steps * share, Steps - 1.0))) << axis;
-    }
+    const std::uint64_t place = placeOnCurve(middles[t], lower, upper);
     // Negative ids become the lower numbers.
     const std::uint32_t object = static_cast<std::uint32_t>(objectIds[t]) ^ 0x80000000u;
     keys[t] = { place << 33 | t, static_cast<std::uint64_t>(object) << 32 | place >> 31 };
   }
   return keys;
 }
+}
+
+std::uint64_t placeOnCurve(const Vec3& point, const Vec3& lower, const Vec3& upper)
+{
+  std::uint64_t place = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double size = upper[axis] - lower[axis];
+    const double share = size > 0.0 ? (point[axis] - lower[axis]) / size : 0.0;
+    place |= spread(static_cast<std::uint64_t>(std::min(Steps * share, Steps - 1.0))) << axis;
+  }
+  return place;
 }
 
 std::vector<std::uint32_t> triangleOrder(

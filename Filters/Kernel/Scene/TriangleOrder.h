@@ -27,6 +27,9 @@
 
 namespace avianlidar
 {
+/// Place, of 63 bits, of a point in a box along the Morton curve through the box.
+std::uint64_t placeOnCurve(const Vec3& point, const Vec3& lower, const Vec3& upper);
+
 /// Numbers of the triangles, sorted; empty if the triangles are sorted already.
 /// @param objectIds, materialIds ids of each triangle
 std::vector<std::uint32_t> triangleOrder(

@@ -364,11 +364,7 @@ private:
   {
     for (int i = 0; i < WideNode::Width && node.first[i] != NoChild; ++i)
     {
-      if (node.count[i] > 1)
-      {
-        this->compareLeaves({ &node, i }, { &node, i });
-      }
-      this->compareNear({ &node, i }, node, ~1u << i);
+      this->compareNear({ &node, i }, node, (node.count[i] > 0 ? ~0u : ~1u) << i);
     }
   }
 
@@ -377,19 +373,34 @@ private:
   void compareNear(const Child& one, const WideNode& node, std::uint32_t some)
   {
     some &= childrenNear(node, *one.node, one.lane, this->Slack);
-    for (; some != 0; some &= some - 1)
+    while (some != 0)
     {
-      this->compareBelow(one, { &node, __builtin_ctz(some) });
+      const Child two{ &node, __builtin_ctz(some) };
+      some &= some - 1;
+      if (one.count() == 0 || two.count() == 0)
+      {
+        this->compareBelow(one, two);
+        continue;
+      }
+      // Leaves that fill one vector are compared at once, with what lies between them.
+      std::uint32_t end = two.first() + two.count();
+      for (; some != 0; some &= some - 1)
+      {
+        const Child next{ &node, __builtin_ctz(some) };
+        const std::uint32_t width = next.first() + next.count() - two.first();
+        if (next.count() == 0 || width > FaceWidth)
+        {
+          break;
+        }
+        end = two.first() + width;
+      }
+      this->compareLeaves(one, two.first(), end);
     }
   }
 
+  /// Compare the triangles of two children, one of which is a node.
   void compareBelow(Child one, Child two)
   {
-    if (one.count() > 0 && two.count() > 0)
-    {
-      this->compareLeaves(one, two);
-      return;
-    }
     if (two.count() > 0 || (one.count() == 0 && one.size() > two.size()))
     {
       std::swap(one, two);
@@ -397,14 +408,13 @@ private:
     this->compareNear(one, this->Tree.wide.nodes[two.first()], ~0u);
   }
 
-  /// Compare the triangles of two leaves, or of one leaf.
-  void compareLeaves(const Child& one, const Child& two)
+  /// Compare the triangles of a leaf with those at places [begin, end), each pair once.
+  void compareLeaves(const Child& leaf, std::uint32_t begin, std::uint32_t end)
   {
-    const std::uint32_t endOne = one.first() + one.count();
-    const std::uint32_t endTwo = two.first() + two.count();
-    for (std::uint32_t i = one.first(); i < endOne; i += FaceWidth)
+    const std::uint32_t endOne = leaf.first() + leaf.count();
+    for (std::uint32_t i = leaf.first(); i < endOne; i += FaceWidth)
     {
-      for (std::uint32_t j = two.first(); j < endTwo; j += FaceWidth)
+      for (std::uint32_t j = begin; j < end; j += FaceWidth)
       {
         std::uint64_t near =
           facesNear(&this->Faces[i], std::min<std::size_t>(FaceWidth, endOne - i), &this->Faces[j],
@@ -414,7 +424,7 @@ private:
           const auto pair = static_cast<std::uint32_t>(__builtin_ctzll(near));
           const std::uint32_t placeOne = i + pair / FaceWidth;
           const std::uint32_t placeTwo = j + pair % FaceWidth;
-          if (placeTwo < endTwo && (one.first() != two.first() || placeOne < placeTwo))
+          if (placeTwo < end && (placeTwo > placeOne || placeTwo < leaf.first()))
           {
             this->compare(placeOne, placeTwo);
           }
@@ -463,11 +473,8 @@ private:
     const Corners t = cornersFrom(this->Mesh, triangle, this->Mesh.corner(owner, 0));
     const Vec3 n = areaOf(plane) / glm::length(areaOf(plane));
     const double least = leastAltitudeOf(plane);
-    const std::uint32_t both[] = { triangle, owner };
-    float faces[FaceNumbers * FaceWidth];
-    setFaces(this->Mesh, both, 2, Vec3(0.0), faces, FaceWidth);
-    const double own = faces[FaceWidth * Tolerance];
-    const double ofPlane = faces[FaceWidth * Tolerance + 1];
+    const double own = this->Tolerances[triangle];
+    const double ofPlane = this->Tolerances[owner];
     const auto isOnPlane = [&](const Vec3& corner)
     {
       const double reach = 1.0 + 4.0 * glm::length(corner) / least;
@@ -496,6 +503,11 @@ private:
       }
     }
     std::vector<std::uint32_t> result(found ? size : 0, NoTriangle);
+    this->Tolerances.resize(result.size());
+    for (std::uint32_t k = 0; k < result.size(); ++k)
+    {
+      this->Tolerances[this->Tree.order[k]] = this->face(Tolerance, k);
+    }
     for (std::uint32_t t = 0; t < result.size(); ++t)
     {
       const std::uint32_t owner = owners[this->Sets.rootOf(t)];
@@ -506,10 +518,11 @@ private:
 
   const CollisionTree& Tree;
   const TriangleMesh& Mesh;
-  const std::size_t Stride; ///< distance of the numbers of a face in `Faces`
-  std::vector<float> Faces; ///< faces in the tree's order
-  float Rounding = 0.0f;    ///< rounding of positions in single precision, m
-  float Slack = 0.0f;       ///< largest distance between the boxes of coincident triangles, m
+  const std::size_t Stride;      ///< distance of the numbers of a face in `Faces`
+  std::vector<float> Faces;      ///< faces in the tree's order
+  std::vector<float> Tolerances; ///< FaceNumber::Tolerance by triangle, if any faces coincide
+  float Rounding = 0.0f;         ///< rounding of positions in single precision, m
+  float Slack = 0.0f;            ///< largest distance between the boxes of coincident triangles, m
   Forest Sets;
 };
 }

@@ -68,8 +68,9 @@ struct vtkAvianLidarSurfaces
   std::uint64_t Hash() const;
 
   /// The merged scene as one vtkPolyData: points in double precision, triangles, ids and
-  /// coefficients, names, and `fields` if not null.
-  vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields) const;
+  /// coefficients, names, and `fields` if not null. @param input surfaces of this rank, with which
+  /// arrays are shared if they are slices (vtkAvianLidarSlices.h)
+  vtkSmartPointer<vtkPolyData> ToPolyData(vtkFieldData* fields, vtkDataObject* input) const;
 
   /// A warning that names objects whose faces coincide; empty if no faces coincide. @param pairs
   /// pairs of coincident triangles, the visible triangle first

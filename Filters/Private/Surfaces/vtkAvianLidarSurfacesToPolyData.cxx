@@ -2,6 +2,9 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarSlices.h"
+#include "vtkAvianLidarSurfaceLeaf.h"
 #include "vtkAvianLidarSurfaces.h"
 
 #include "vtkCellData.h"
@@ -9,46 +12,84 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
-#include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <string>
+#include <vector>
 
 namespace
 {
-vtkSmartPointer<vtkPoints> MakePoints(const avianlidar::TriangleMesh& mesh)
+namespace Arrays = vtkAvianLidarArrays;
+
+/// The slice of all leaves if it holds the given values, else a new array with these values.
+/// @param slices an array of each leaf @param placeOf,valueOf functions from 0 to `count` - 1 to
+/// the place of a value in the array, and to the value
+template <class ArrayT, class Place, class F>
+vtkSmartPointer<ArrayT> Share(const std::vector<vtkDataArray*>& slices, const Arrays::Name& name,
+  std::size_t count, int components, const Place& placeOf, const F& valueOf)
 {
-  auto points = vtkAvianLidarArrays::MakePoints(static_cast<vtkIdType>(mesh.points.size()));
-  auto* coordinates = static_cast<double*>(points->GetVoidPointer(0));
-  for (const avianlidar::Vec3& point : mesh.points)
+  const auto values = static_cast<vtkIdType>(count);
+  auto array = vtkAvianLidarSlices::Join<ArrayT>(slices);
+  bool isEqual = array && array->GetNumberOfValues() == values;
+  for (std::size_t i = 0; i < count && isEqual; ++i)
   {
-    coordinates = std::copy_n(&point.x, 3, coordinates);
+    isEqual = array->GetValue(placeOf(i)) == valueOf(i);
   }
-  return points;
+  if (!isEqual)
+  {
+    array = Arrays::Make<ArrayT>(name, values / components, components);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      array->SetValue(placeOf(i), valueOf(i));
+    }
+  }
+  return array;
 }
 }
 
 //------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(vtkFieldData* fields) const
+vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
+  vtkFieldData* fields, vtkDataObject* input) const
 {
-  namespace Arrays = vtkAvianLidarArrays;
+  constexpr std::size_t coefficients = std::size(avianlidar::MaterialCoefficients);
+  std::vector<vtkDataArray*> ofPoints;
+  std::vector<vtkDataArray*> ofCells[2 + coefficients];
+  std::string ignored;
+  for (const vtkAvianLidarSurfaceLeaf& leaf : vtkAvianLidarSurfaceLeaf::Collect(input, ignored))
+  {
+    if (leaf.data->GetNumberOfPolys() > 0 && !vtkAvianLidarMedia::IsMedium(leaf.data))
+    {
+      ofPoints.push_back(leaf.data->GetPoints()->GetData());
+      std::size_t k = 0;
+      for (vtkDataArray* array : vtkAvianLidarSurfaceArrays(leaf.data).Numbers())
+      {
+        ofCells[k++].push_back(array);
+      }
+    }
+  }
+  const auto pointOf = [](std::size_t i) { return static_cast<vtkIdType>(i); };
   // Cells are in the order of the input.
   const bool isSorted = !this->order || this->order->empty();
   const auto cellOf = [&](std::size_t i)
   { return static_cast<vtkIdType>(isSorted ? i : (*this->order)[i]); };
   auto poly = vtkSmartPointer<vtkPolyData>::New();
-  poly->SetPoints(MakePoints(*this->mesh));
+  const std::vector<avianlidar::Vec3>& from = this->mesh->points;
+  vtkNew<vtkPoints> points;
+  points->SetData(Share<vtkDoubleArray>(ofPoints, { "Points", "" }, 3 * from.size(), 3, pointOf,
+    [&](std::size_t i) { return from[i / 3][static_cast<int>(i % 3)]; }));
+  poly->SetPoints(points);
   poly->SetPolys(vtkAvianLidarMakeTriangles(this->mesh->triangles, cellOf));
-  const auto count = static_cast<vtkIdType>(this->materials.size());
-  auto objects = Arrays::Make<vtkIntArray>(Arrays::ObjectId, count);
-  auto kinds = Arrays::Make<vtkIntArray>(Arrays::MaterialId, count);
-  poly->GetCellData()->AddArray(objects);
-  poly->GetCellData()->AddArray(kinds);
-  vtkAvianLidarMaterials::Coefficients coefficients(poly->GetCellData(), count);
-  for (std::size_t i = 0; i < this->materials.size(); ++i)
+  const std::size_t count = this->materials.size();
+  vtkCellData* cells = poly->GetCellData();
+  cells->AddArray(Share<vtkIntArray>(ofCells[0], Arrays::ObjectId, count, 1, cellOf,
+    [&](std::size_t i) { return this->objectIds[i]; }));
+  cells->AddArray(Share<vtkIntArray>(ofCells[1], Arrays::MaterialId, count, 1, cellOf,
+    [&](std::size_t i) { return this->materialIds[i]; }));
+  for (std::size_t k = 0; k < coefficients; ++k)
   {
-    const vtkIdType cell = cellOf(i);
-    objects->SetValue(cell, this->objectIds[i]);
-    kinds->SetValue(cell, this->materialIds[i]);
-    coefficients.Set(cell, this->materials[i]);
+    const avianlidar::MaterialCoefficient& coefficient = avianlidar::MaterialCoefficients[k];
+    cells->AddArray(Share<vtkDoubleArray>(ofCells[2 + k], { coefficient.name, coefficient.unit },
+      count, 1, cellOf, [&](std::size_t i) { return this->materials[i].*coefficient.member; }));
   }
   if (fields)
   {

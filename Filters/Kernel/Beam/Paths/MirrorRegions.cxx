@@ -2,9 +2,11 @@
 #include "MirrorRegions.h"
 
 #include "BeamTracer.h"
+#include "KeySort.h"
 #include "Multiversion.h"
 #include "Random.h"
 #include "Throughput.h"
+#include "TriangleOrder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,33 +56,62 @@ PlaneLine sideOf(const PlaneRing& ring, int i, double sign)
   return { x, y, -(x * a.x + y * a.y) };
 }
 
+constexpr std::size_t BlockWidth = 8; ///< number of facets in a block
+
+/// Greatest height of a box above a plane. @param box lanes of centre and half size
+AVIANLIDAR_ALWAYS_INLINE double heightOf(
+  const double* plane, const double* const* box, std::size_t i)
+{
+  return ((plane[0] * box[0][i] + plane[1] * box[1][i]) + plane[2] * box[2][i]) +
+    ((std::fabs(plane[0]) * box[3][i] + std::fabs(plane[1]) * box[4][i]) +
+      (std::fabs(plane[2]) * box[5][i] + plane[3]));
+}
+
 /// Find the facets to which a surface may reflect rays: the box of the facet has a part before the
 /// plane of the surface and parts inside each of four sides, and the box of the surface has a part
-/// before the plane of the facet. @param lanes set by fillLanes() @param centre, half box of the
-/// surface @param planes coefficients of the surface's plane and of the sides @param facing set to
-/// 1 for facets that pass, to 0 for other facets
-AVIANLIDAR_MULTIVERSION void findFacing(const double* const* lanes, std::size_t count,
-  const Vec3& centre, const Vec3& half, const double (*planes)[4], double* facing)
+/// before the plane of the facet. @param lanes, blocks set by fillLanes() @param centre, half box
+/// of the surface @param planes coefficients of the surface's plane and of the sides @param facing
+/// for each block, set to the bits of the facets that pass
+AVIANLIDAR_MULTIVERSION void findFacing(const double* const* lanes, const double* const* blocks,
+  std::size_t count, const Vec3& centre, const Vec3& half, const double (*planes)[4],
+  std::uint32_t* facing)
 {
-  const double *ax = lanes[0], *ay = lanes[1], *az = lanes[2], *height = lanes[3];
-  const double *cx = lanes[4], *cy = lanes[5], *cz = lanes[6];
-  const double *hx = lanes[7], *hy = lanes[8], *hz = lanes[9];
-  const double ox = centre.x, oy = centre.y, oz = centre.z;
-  const double rx = half.x, ry = half.y, rz = half.z;
 #pragma omp simd
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t b = 0; b < count; ++b)
   {
-    const double own = ((ax[i] * ox + ay[i] * oy) + az[i] * oz) +
-      ((std::fabs(ax[i]) * rx + std::fabs(ay[i]) * ry) + (std::fabs(az[i]) * rz + height[i]));
-    bool faces = own > 1e-9 * (height[i] + oz);
+    bool meets = true;
     for (int k = 0; k < 5; ++k)
     {
-      const double* const p = planes[k];
-      const double its = ((p[0] * cx[i] + p[1] * cy[i]) + p[2] * cz[i]) +
-        ((std::fabs(p[0]) * hx[i] + std::fabs(p[1]) * hy[i]) + (std::fabs(p[2]) * hz[i] + p[3]));
-      faces = faces & (its > (k == 0 ? 1e-9 * (p[3] + cz[i]) : 0.0));
+      meets = meets & (heightOf(planes[k], blocks, b) > 0.0);
     }
-    facing[i] = faces ? 1.0 : 0.0;
+    facing[b] = meets ? 1u : 0u;
+  }
+  const double *ax = lanes[0], *ay = lanes[1], *az = lanes[2], *height = lanes[3];
+  const double ox = centre.x, oy = centre.y, oz = centre.z;
+  const double rx = half.x, ry = half.y, rz = half.z;
+  for (std::size_t b = 0; b < count; ++b)
+  {
+    if (facing[b] == 0)
+    {
+      continue;
+    }
+    std::uint32_t bits = 0;
+#pragma omp simd reduction(| : bits)
+    for (std::size_t lane = 0; lane < BlockWidth; ++lane)
+    {
+      const std::size_t i = b * BlockWidth + lane;
+      const double own = ((ax[i] * ox + ay[i] * oy) + az[i] * oz) +
+        ((std::fabs(ax[i]) * rx + std::fabs(ay[i]) * ry) + (std::fabs(az[i]) * rz + height[i]));
+      bool faces = own > 1e-9 * (height[i] + oz);
+      for (int k = 0; k < 5; ++k)
+      {
+        faces = faces &
+          (heightOf(planes[k], lanes + 4, i) >
+            (k == 0 ? 1e-9 * (planes[k][3] + lanes[6][i]) : 0.0));
+      }
+      bits |= (faces ? 1u : 0u) << lane;
+    }
+    facing[b] = bits;
   }
 }
 }
@@ -193,33 +224,60 @@ void MirrorRegions::addFacets()
 /// Set the lanes of findFacing(), and the facets and boxes of surfaces.
 void MirrorRegions::fillLanes()
 {
-  const std::size_t count = this->Facets.size();
-  this->Lanes.resize(10 * count);
-  this->Facing.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i)
+  const std::size_t blocks = (this->Facets.size() + BlockWidth - 1) / BlockWidth;
+  const std::size_t stride = blocks * BlockWidth;
+  this->Lanes.assign(10 * stride, 0.0);
+  std::fill_n(
+    this->Lanes.begin() + 3 * stride, stride, -1.0); // no facet: no surface lies before it
+  this->Blocks.resize(6 * blocks);
+  this->Facing.resize(blocks);
+  AABB all;
+  this->Boxes.clear();
+  for (std::uint32_t i = 0; i < this->Facets.size(); ++i)
   {
     const Facet& facet = this->Facets[i];
     Surface& s = this->Surfaces[facet.surface];
     s.first = s.end == 0 ? i : s.first;
     s.end = i + 1;
-    Vec3 low(1e300);
-    Vec3 high(-1e300);
+    AABB& box = this->Boxes.emplace_back();
     for (int k = 0; k < facet.ring.size; ++k)
     {
       const PlanePoint& p = facet.ring.corners[k];
-      const Vec3 point = Vec3(p.x, p.y, 1.0) / std::max(s.inverse.at(p), s.seen->leastInverse);
-      low = glm::min(low, point);
-      high = glm::max(high, point);
+      box.extend(Vec3(p.x, p.y, 1.0) / std::max(s.inverse.at(p), s.seen->leastInverse));
     }
-    s.low = glm::min(s.low, low);
-    s.high = glm::max(s.high, high);
-    const Vec3 centre = 0.5 * (low + high);
-    const Vec3 half = 0.5 * (high - low);
+    s.corners = merge(s.corners, box);
+    all = merge(all, box);
+  }
+  // Facets of a block lie close together.
+  this->Order.clear();
+  for (std::uint32_t i = 0; i < this->Facets.size(); ++i)
+  {
+    const std::uint64_t place = placeOnCurve(this->Boxes[i].center(), all.lower, all.upper);
+    this->Order.push_back(keyAbove(static_cast<std::uint32_t>(place >> 31), i));
+  }
+  sortKeys(this->Order);
+  AABB ofBlock;
+  for (std::size_t i = 0; i < this->Order.size(); ++i)
+  {
+    const std::uint32_t number = numberOf(this->Order[i]);
+    const Surface& s = this->Surfaces[this->Facets[number].surface];
+    const AABB& box = this->Boxes[number];
+    const Vec3 centre = 0.5 * (box.lower + box.upper);
+    const Vec3 half = 0.5 * (box.upper - box.lower);
     const double values[10] = { s.along.x, s.along.y, s.along.z, s.height, centre.x, centre.y,
       centre.z, half.x, half.y, half.z };
     for (std::size_t k = 0; k < 10; ++k)
     {
-      this->Lanes[k * count + i] = values[k];
+      this->Lanes[k * stride + i] = values[k];
+    }
+    ofBlock = i % BlockWidth == 0 ? box : merge(ofBlock, box);
+    for (int k = 0; k < 3 && (i % BlockWidth == BlockWidth - 1 || i + 1 == this->Order.size()); ++k)
+    {
+      const double middle = 0.5 * (ofBlock.lower[k] + ofBlock.upper[k]);
+      const double size = 0.5 * (ofBlock.upper[k] - ofBlock.lower[k]);
+      this->Blocks[k * blocks + i / BlockWidth] = middle;
+      this->Blocks[(k + 3) * blocks + i / BlockWidth] =
+        size + 1e-9 * (size + std::fabs(middle)); // exceeds rounding
     }
   }
 }
@@ -287,21 +345,28 @@ void MirrorRegions::findNear(const Surface& one)
       planes[k][i] = k == 0 ? plane[i] : s[i] - 2.0 * shift * plane[i];
     }
   }
-  const std::size_t count = this->Facets.size();
+  const std::size_t count = this->Facing.size();
   const double* lanes[10];
+  const double* blocks[6];
   for (std::size_t k = 0; k < 10; ++k)
   {
-    lanes[k] = this->Lanes.data() + k * count;
+    lanes[k] = this->Lanes.data() + k * count * BlockWidth;
+    blocks[k % 6] = this->Blocks.data() + k % 6 * count;
   }
-  findFacing(lanes, count, 0.5 * (one.low + one.high), 0.5 * (one.high - one.low), planes,
-    this->Facing.data());
-  for (std::uint32_t k = 0; k < count; ++k)
+  findFacing(lanes, blocks, count, 0.5 * (one.corners.lower + one.corners.upper),
+    0.5 * (one.corners.upper - one.corners.lower), planes, this->Facing.data());
+  for (std::size_t b = 0; b < count; ++b)
   {
-    if (this->Facing[k] > 0.0 && (k < one.first || k >= one.end))
+    for (std::uint32_t bits = this->Facing[b]; bits != 0; bits &= bits - 1)
     {
-      this->Near.push_back(k);
+      const std::uint32_t facet = numberOf(this->Order[b * BlockWidth + __builtin_ctz(bits)]);
+      if (facet < one.first || facet >= one.end)
+      {
+        this->Near.push_back(facet);
+      }
     }
   }
+  std::sort(this->Near.begin(), this->Near.end());
 }
 
 /// Find the regions of rays that go from a surface to facets [begin, end) of another surface.

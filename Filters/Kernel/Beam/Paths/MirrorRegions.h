@@ -27,6 +27,7 @@
 #ifndef avianlidar_MirrorRegions_h
 #define avianlidar_MirrorRegions_h
 
+#include "AABB.h"
 #include "BeamSamples.h"
 #include "BeamShape.h"
 #include "ScanSetup.h"
@@ -74,13 +75,13 @@ private:
   struct Surface
   {
     const PlaneSurface* seen;
-    Vec3 normal;                       ///< unit normal, towards the apex
-    Vec3 mirror;                       ///< `normal` by BeamFrame::toPlane()
-    double height;                     ///< distance of the plane from the apex, m
-    PlaneLine along;                   ///< scalar product of `normal` and the direction of a ray
-    PlaneLine inverse;                 ///< 1/z on the plane, 1/m
-    std::uint32_t first, end;          ///< numbers of the facets, [first, end)
-    Vec3 low{ 1e300 }, high{ -1e300 }; ///< box of the facets' corners, by BeamFrame::toPlane()
+    Vec3 normal;              ///< unit normal, towards the apex
+    Vec3 mirror;              ///< `normal` by BeamFrame::toPlane()
+    double height;            ///< distance of the plane from the apex, m
+    PlaneLine along;          ///< scalar product of `normal` and the direction of a ray
+    PlaneLine inverse;        ///< 1/z on the plane, 1/m
+    std::uint32_t first, end; ///< numbers of the facets, [first, end)
+    AABB corners;             ///< box of the facets' corners, by BeamFrame::toPlane()
     Box box;
     double share; ///< share of the pulse that arrives; for polygons an upper bound
   };
@@ -120,11 +121,14 @@ private:
   const SceneTriangles& Scene;
   const BeamShape Shape;
   std::vector<Surface> Surfaces;
-  std::vector<Facet> Facets;       ///< sorted by surface
-  std::vector<double> Lanes;       ///< rows, set by fillLanes(), of one value per facet
-  std::vector<double> Facing;      ///< by facet: result of findFacing() for `Start`
-  std::vector<std::uint32_t> Near; ///< facets to which `Start` may reflect rays
-  std::vector<Box> Mirrored;       ///< boxes of the mirrored facets of a surface
+  std::vector<Facet> Facets;         ///< sorted by surface
+  std::vector<AABB> Boxes;           ///< boxes of the facets' corners
+  std::vector<std::uint64_t> Order;  ///< keys of facets along a curve through space, sorted
+  std::vector<double> Lanes;         ///< rows, set by fillLanes(), of one value per facet
+  std::vector<double> Blocks;        ///< rows, set by fillLanes(), of boxes around facets
+  std::vector<std::uint32_t> Facing; ///< by block: result of findFacing() for `Start`
+  std::vector<std::uint32_t> Near;   ///< facets to which `Start` may reflect rays
+  std::vector<Box> Mirrored;         ///< boxes of the mirrored facets of a surface
   std::vector<Region> Regions;
 
   // The current beam.
