@@ -61,7 +61,8 @@ def figure10(rows, axes):
 
 
 def figure11(rows, axes):
-    wanted = [r for r in on_preset(rows) if ("energy" in r["switches"]) == (paper_figures.PRESET in r["switches"])]
+    others = {*paper_figures.READINGS, "share"} - {paper_figures.PRESET}
+    wanted = [r for r in on_preset(rows) if not others.intersection(r["switches"].split(" + "))]
     draw(axes, curves(wanted, "triangles", lambda r: r["switches"], "best_s"), "scan, s",
          lambda name: "batch" not in name, title="Fig. 11: which accelerations are on")
 
