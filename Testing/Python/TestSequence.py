@@ -319,11 +319,13 @@ class Command(unittest.TestCase):
         home = emptied("sequence", "settings")
         file = scenario_file(home, number_of_scans=1, scans_per_sequence=1, objects=[])
         code = _command.main(["sequence", str(file), "-o", str(home / "told"), "--sensor-set", "sway_amplitude=0", "--sensor-set",
-                              "encoder_jitter=0", "--scan-set", "rays_per_beam=40"])
+                              "encoder_jitter=0", "--sensor-set", "number_of_channels=3", "--sensor-set", "position=1,2,3",
+                              "--scan-set", "rays_per_beam=40", "--scan-set", "noise=false"])
         self.assertIn(code, (None, 0))
         whole = json.loads((home / "told" / "manifest.json").read_text())["scenario"]
-        self.assertEqual([whole["sensor"]["sway_amplitude"], whole["sensor"]["encoder_jitter"]], [0, 0])
-        self.assertEqual(whole["scan"], {**SCENARIO["scan"], "rays_per_beam": 40})
+        self.assertEqual([whole["sensor"][name] for name in ("sway_amplitude", "encoder_jitter", "number_of_channels", "position")],
+                         [0, 0, 3, [1, 2, 3]])
+        self.assertEqual(whole["scan"], {**SCENARIO["scan"], "rays_per_beam": 40, "noise": False})
 
     def test_the_launcher_finds_its_package(self):
         launcher = next(folder / "bin" / "avianlidar" for folder in pathlib.Path(al.__file__).resolve().parents

@@ -57,7 +57,8 @@ vtkSmartPointer<vtkPolyData> vtkAvianLidarSurfaces::ToPolyData(
   std::string ignored;
   for (const vtkAvianLidarSurfaceLeaf& leaf : vtkAvianLidarSurfaceLeaf::Collect(input, ignored))
   {
-    if (leaf.data->GetNumberOfPolys() > 0 && !vtkAvianLidarMedia::IsMedium(leaf.data))
+    if (leaf.data->GetNumberOfPolys() > 0 && leaf.data->GetPoints() &&
+      !vtkAvianLidarMedia::IsMedium(leaf.data))
     {
       ofPoints.push_back(leaf.data->GetPoints()->GetData());
       std::size_t k = 0;

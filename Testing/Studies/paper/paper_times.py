@@ -33,6 +33,7 @@ STEPS = {"original ray tracing": {**SINGLE, "BeamConstraint": False, "LightEnerg
          "batch collision detection": {"BeamConstraint": False, "LightEnergyConstraint": False},
          "beam constraint": {"LightEnergyConstraint": False},
          "light-energy constraint (proposed)": {}}
+ORIGINAL, *_, PROPOSED = STEPS
 PAPER = {"CorridorC16": "130/83 = 1.57", "Airport16": "1439/1122 = 1.28", "Airport32": "1831/1633 = 1.12"}
 
 
@@ -52,15 +53,34 @@ def times(subject, turns):
             for name, changed in STEPS.items():
                 runs[name].append(trade_runs.scan(subject, {**SCAN, **changed}, turn))
         cpu = {name: np.array([run.cpu for run in all_of_it]) for name, all_of_it in runs.items()}
-        proposed = cpu["light-energy constraint (proposed)"]
+        proposed = cpu[PROPOSED]
         is_first = not columns  # rays and the paper's ratio are the same for all trees
         rows = [(name, f"{np.median(seconds):.3f} s, " + f"{runs[name][0].rays:.0f} rays, " * is_first +
                  f"{np.median(seconds) / np.median(proposed):.2f}") for name, seconds in cpu.items()]
-        ratios = cpu["original ray tracing"] / proposed
+        ratios = cpu[ORIGINAL] / proposed
         columns[f"{subject.sensor_name}, {tree}"] = [
             *rows, ("original / proposed", f"{np.median(ratios):.2f} ({ratios.min():.2f} to {ratios.max():.2f})"),
             ("the paper's original / proposed", PAPER[subject.sensor_name] if is_first else "")]
     return columns
+
+
+WIDTHS = (5.6e-4, 5.6e-3, 2.8e-2)  # half-beamwidths, rad: a tenth of Table 2, Table 2, five times
+
+
+def widths(subject, turns):
+    """Rows by half-beamwidth: seconds of one core with the tree of preset Paper, and the ratio with its spread."""
+    set_all(subject.tree, {"Preset": Tree.PRESET_PAPER})
+    update(subject.tree)
+    rows = []
+    for width in WIDTHS:
+        set_all(subject.sensor, {"HalfBeamwidth": width})
+        update(subject.sensor)
+        cpu = np.array([[trade_runs.scan(subject, {**SCAN, **STEPS[name]}, turn).cpu for name in (ORIGINAL, PROPOSED)]
+                        for turn in range(turns)])
+        ratios = cpu[:, 0] / cpu[:, 1]
+        rows.append((f"{1e3 * width:g} mrad", *(f"{seconds:.3f} s" for seconds in np.median(cpu, axis=0)),
+                     f"{np.median(ratios):.2f} ({ratios.min():.2f} to {ratios.max():.2f})"))
+    return rows
 
 
 @study(argument("--turns", type=whole(1, 100), default=3, help="of timed scans, default 3"))
@@ -69,4 +89,6 @@ def main(options):
     for sensor in ("airport16", "airport32"):
         found.update(times(trade_runs.subject_of("airport", sensor), options.turns))
     tools.leave(options.out, "paper-times", *tools.columns(found))
+    tools.leave(options.out, "paper-widths", ("half-beamwidth", ORIGINAL, "proposed", "original / proposed"),
+                widths(trade_runs.subject_of("airport", "airport16"), options.turns))
     return found

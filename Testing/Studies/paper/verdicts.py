@@ -35,16 +35,17 @@ MEASURED = {
     "Fig. 10: so its advantage over single rays": ("paper10", "so its advantage | per ray"),
     "Sec. 5.1: in complex environments": ("paper10", "in complex scenes"),
     "Sec. 6, Sec. 7: with many surfaces": ("paper10", "with 100,000 triangles"),
-    "Fig. 11, Abstract, Contributions 1 and 2": ("paper11", "the beam constraint alone", "the light-energy constraint alone", "the batch alone"),
+    "Fig. 11, Abstract, Contributions 1 and 2": (
+        "paper11", "the beam constraint alone", "the light-energy constraint alone", "Qlow/N: the light-energy", "the batch alone"),
     "Fig. 11: with few triangles": ("paper11", "with few triangles batch"),
     "Fig. 11: with many triangles": ("paper11", "with many the beam constraint"),
     "Fig. 11: beam constraint and batch together": ("paper11", "beam + batch"),
-    "Fig. 11: light-energy constraint and batch together": ("paper11", "energy + batch"),
-    "Fig. 11: both constraints together": ("paper11", "beam + energy"),
-    "Fig. 11: the best pair": ("paper11", "the best pair"),
-    "Fig. 11: all three": ("paper11", "all three are the fastest"),
+    "Fig. 11: light-energy constraint and batch together": ("paper11", "energy + batch", "Qlow/N: energy + batch"),
+    "Fig. 11: both constraints together": ("paper11", "beam + energy", "Qlow/N: beam + energy"),
+    "Fig. 11: the best pair": ("paper11", "the best pair", "Qlow/N: the best pair"),
+    "Fig. 11: all three": ("paper11", "all three are the fastest", "Qlow/N: all three are the fastest"),
     "Sec. 6: without loss of resolution": ("paper11", "the three do not compromise"),
-    "Sec. 1, Sec. 3.4, Sec. 6: the constraints avoid": ("paper11", "the light-energy constraint alone")}
+    "Sec. 1, Sec. 3.4, Sec. 6: the constraints avoid": ("paper11", "the light-energy constraint alone", "Qlow/N: the light-energy")}
 
 # Numbers that a finding may take only from its tables: shares of cases, decimals, thousands, percentages and times.
 NUMBER = re.compile(r"\d+ of \d+|\d[\d,]*\.\d+|\d+(?:,\d{3})+|\d+(?= (?:%|ms|s)(?!\w))")
