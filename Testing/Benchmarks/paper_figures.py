@@ -132,6 +132,8 @@ def paper9(folder):
          SAME if 0.9 < build < 1.2 else f"{CONTRADICTED}, because sorting takes n log n"],
         ["so does the total", f"detection as n^{detection:.2f}, total as n^{total:.2f} with {rays:,.0f} rays; "
          f"where building takes longer than detection, as n^{ruled:.2f}", in_proportion(total, ruled)],
+        ["so does the total with SBV", f"k-D as n^{power(2, KD_SBV):.2f}, BVH as n^{power(2, BVH_SBV):.2f}",
+         in_proportion(min(power(2, KD_SBV), power(2, BVH_SBV)), 0.0)],
         *[[f"with SBV the {word} time is higher throughout than with AABB", f"SBV over AABB, {text(part, *sbv)}",
            verdict_of(won(part, sbv), "cases", because)]
           for part, (word, because) in enumerate((
