@@ -454,13 +454,13 @@ void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
   in.Setup.largestReflectance = in.Summary.largestReflectance;
   in.Setup.largestGain = in.Summary.largestGain;
   avianlidar::planModel(in.Setup);
+  const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
   const std::uint64_t wanted = vtkTargets::StillHash(*this);
   if (targets.StillOf != wanted || targets.StillTree != in.Setup.tree)
   {
     targets.StillOf = 0;
     targets.StillTree = in.Setup.tree;
     targets.Still = {};
-    const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
     vtkAvianLidarAbort::Require(!this->Clutter ||
       avianlidar::simulateScan(in.Setup, in.Beams.beams, in.Threads, in.Cache, limit,
         vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, ScanShare), targets.Still));
@@ -478,6 +478,13 @@ void vtkAvianLidarCoverage::View(const vtkAvianLidarRanks& ranks, vtkPolyData* c
   {
     clutter->CopyStructure(targets.Clutter);
     clutter->GetPointData()->PassData(targets.Clutter->GetPointData());
+  }
+  if (targets.Still.reports.size() * sizeof(avianlidar::BeamReport) +
+      targets.Still.echoes.size() * sizeof(avianlidar::Echo) >
+    limit)
+  {
+    targets.StillOf = 0;
+    targets.Still = {};
   }
   ranks.Meet(); // before the long work
 }

@@ -255,7 +255,7 @@ void switchOff(EchoSettings& settings)
 struct Figure10
 {
   std::vector<Method> methods;
-  std::vector<std::size_t> proposed; ///< of each tree, place in `methods`
+  std::vector<std::size_t> proposed; ///< place in `methods`, by tree
 };
 
 /// A tree of one leaf is no tree: the rays of a beam, and every ray of a second reflection by

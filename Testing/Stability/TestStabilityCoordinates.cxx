@@ -219,17 +219,11 @@ TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
     for (const int exponent : { -30, -20, -10, -1, 1, 10, 20 })
     {
       const double factor = std::ldexp(1.0, exponent);
-      Scene scaled = scene;
-      scaled.mesh = std::make_shared<TriangleMesh>(*scene.mesh);
-      for (Vec3& p : scaled.mesh->points)
-      {
-        p *= factor;
-      }
       Sensor sensor;
       sensor.samplingInterval *= factor;
       sensor.pulseWidth *= factor;
       sensor.rangeGate *= factor;
-      const ScanResult result = runScan(makeSetup(scaled, sensor, settings), beams);
+      const ScanResult result = runScan(makeSetup(scaled(scene, factor), sensor, settings), beams);
       differing += plain.echoes.size() != result.echoes.size();
       for (std::size_t i = 0; i < std::min(plain.echoes.size(), result.echoes.size()); ++i)
       {

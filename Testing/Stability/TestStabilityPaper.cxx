@@ -122,19 +122,14 @@ TEST(StabilityPaper, PowersOfTwoKeepBits)
     for (const int exponent : { -20, -10, -1, 1, 10, 20 })
     {
       const double factor = std::ldexp(1.0, exponent);
-      Scene scaled = scene;
-      scaled.mesh = std::make_shared<TriangleMesh>(*scene.mesh);
-      for (Vec3& p : scaled.mesh->points)
-      {
-        p *= factor;
-      }
       Sensor sensor;
       for (double* const length : { &sensor.samplingInterval, &sensor.pulseWidth, &sensor.rangeGate,
              &sensor.pulseEnergy, &sensor.lowerEnergyLimit, &sensor.upperEnergyLimit })
       {
         *length *= factor;
       }
-      const ScanResult result = runScan(makeSetup(scaled, sensor, settings, PaperTree), beams);
+      const ScanResult result =
+        runScan(makeSetup(scaled(scene, factor), sensor, settings, PaperTree), beams);
       differing += plain.echoes.size() != result.echoes.size();
       for (std::size_t i = 0; i < std::min(plain.echoes.size(), result.echoes.size()); ++i)
       {
