@@ -50,6 +50,7 @@ set(cloud_sources
   IO/Private/TextLines.cxx)
 set(scene_sources
   IO/Private/Extrusion.cxx
+  IO/Private/FootprintFeatures.cxx
   IO/Private/Footprints.cxx
   IO/Private/LengthText.cxx
   IO/Private/MeshImport.cxx

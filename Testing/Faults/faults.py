@@ -87,7 +87,7 @@ FAULTS = [Fault(*fault) for fault in (
     ("las_colour_index", "a swapped index", "Python-Test(LASWriter|Laz|PointCloudReader)$",
      "IO/Private/LasReading.cxx", "load<std::uint16_t>(at + place + 2 * c)", "load<std::uint16_t>(at + place + 4 - 2 * c)"),
     ("obstacle_feet", "a wrong unit", "Python-TestSceneObjects$",
-     "IO/Private/Footprints.cxx", '(attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0', 'attribute == "AGL" ? 0.3048 : 1.0'),
+     "IO/Private/FootprintFeatures.cxx", '(attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0', 'attribute == "AGL" ? 0.3048 : 1.0'),
     ("pcd_warning", "a lost warning", "Python-Test(PCD|InputFiles)$",
      "IO/Private/PcdFormat.cxx", "hasOneMoreRow(source, header, readRows(source, header, targets, keepGoing))",
      "readRows(source, header, targets, keepGoing) == 0"),
