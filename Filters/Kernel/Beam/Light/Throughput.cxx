@@ -10,10 +10,10 @@ namespace avianlidar
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest)
 {
   const double once = returnBound(setup, nearest);
-  // The weight of the reverse path is the density at P2 over the density at P1
-  // (SecondaryReflection.h).
+  // The weight of the reverse path is the density at P2 over the density at P1. A third path comes
+  // back by the mirror (SecondaryReflection.h).
   return setup.sensor.receiverAperture > 0.0
-    ? std::min(1.0, once * (1.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
+    ? std::min(1.0, once * (2.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
     : once;
 }
 

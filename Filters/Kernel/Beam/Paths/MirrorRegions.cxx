@@ -30,6 +30,16 @@ constexpr double GoldenRatio = 0.6180339887498949;
 /// Number of samples for each ray that would fall in a region.
 constexpr double SamplesPerRay = 2.0;
 
+/// The same for paths that may end anywhere, whose light comes from far surfaces, evenly; and the
+/// fewest pairs of samples of a surface.
+constexpr double SpreadPerRay = 0.25;
+constexpr double FewestSpread = 4.0;
+
+/// Number of the first sample of such paths.
+constexpr std::uint32_t FirstSpread = 0x80000000;
+
+constexpr std::uint32_t Anywhere = 0xffffffff;
+
 PlaneLine operator+(const PlaneLine& a, const PlaneLine& b)
 {
   return { a.x + b.x, a.y + b.y, a.z + b.z };
@@ -297,7 +307,7 @@ void MirrorRegions::setSurface(Surface& surface) const
   }
 }
 
-std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
+void MirrorRegions::begin(std::size_t surface)
 {
   if (this->Facets.empty())
   {
@@ -308,6 +318,28 @@ std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& 
   this->Pair = 0;
   this->Drawn = 0;
   this->Regions.clear();
+}
+
+std::size_t MirrorRegions::spread(std::size_t surface, std::vector<MirrorPath>& starts)
+{
+  this->begin(surface);
+  this->Sample = FirstSpread;
+  const Surface& one = this->Surfaces[surface];
+  for (std::uint32_t facet = one.first; facet < one.end; ++facet)
+  {
+    const PlaneRing& ring = this->Facets[facet].ring;
+    this->Regions.push_back({ facet, Anywhere, ring, ring.area() });
+  }
+  if (!this->Regions.empty())
+  {
+    this->placeIn(0, this->Regions.size(), starts);
+  }
+  return this->Sample - FirstSpread;
+}
+
+std::size_t MirrorRegions::search(std::size_t surface, std::vector<MirrorPath>& paths)
+{
+  this->begin(surface);
   const Surface& one = this->Surfaces[surface];
   this->findNear(one);
   for (auto k = this->Near.begin(); k != this->Near.end();)
@@ -465,9 +497,12 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   {
     area += this->Regions[k].area;
   }
-  const double samples =
-    SamplesPerRay * this->Setup.settings.raysPerBeam * area * this->ShareOfArea;
-  const double least = end - first > 1 ? static_cast<double>(FewRegions) : 1.0;
+  const bool anywhere = this->Regions[first].two == Anywhere;
+  const double samples = (anywhere ? SpreadPerRay : SamplesPerRay) *
+    this->Setup.settings.raysPerBeam * area * this->ShareOfArea;
+  const double least = anywhere ? FewestSpread
+    : end - first > 1           ? static_cast<double>(FewRegions)
+                                : 1.0;
   const auto pairs = static_cast<std::uint32_t>(std::max(least, std::round(0.5 * samples)));
   const std::uint32_t count = 2 * pairs;
   const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;
@@ -483,8 +518,8 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   double before = 0.0;
   double own = areaOfPart();
   // Random numbers depend on the pair of surfaces, so that different rounding does not change them.
-  const std::uint64_t pair =
-    std::uint64_t{ this->Start } << 32 | (this->Facets[this->Regions[first].two].surface + 1);
+  const std::uint64_t pair = std::uint64_t{ this->Start } << 32 |
+    (anywhere ? 0 : this->Facets[this->Regions[first].two].surface + 1);
   this->Drawn = pair == this->Pair ? this->Drawn : 0;
   this->Pair = pair;
   const std::uint64_t draws = pair * 0x9e3779b97f4a7c15u + this->Drawn;
@@ -514,7 +549,13 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
     MirrorPath path;
     path.start = this->Start;
     path.one = this->Sample + k;
-    if (this->Shape.holds(ray.x, ray.y) && this->findPath(this->Regions[region], ray, path))
+    const Region& here = this->Regions[region];
+    if (!this->Shape.holds(ray.x, ray.y))
+    {
+      continue;
+    }
+    this->findStart(this->Facets[here.one], ray, path);
+    if (anywhere || this->findEnd(this->Facets[here.two], ray, path))
     {
       path.weight = area / count * this->ShareOfArea * this->Shape.density(ray.x, ray.y) /
         (this->Shape.isRound() ? secant2 * std::sqrt(secant2) : 1.0);
@@ -525,17 +566,25 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   this->Drawn += count;
 }
 
-/// Follow a ray over its mirror. @return false if the ray does not arrive
-bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPath& path)
+/// Where a ray meets its mirror. `end` is the direction of the reflected ray.
+void MirrorRegions::findStart(const Facet& facet, const PlanePoint& p, MirrorPath& path) const
 {
-  const Surface& one = this->Surfaces[this->Facets[region.one].surface];
-  const Facet& facet = this->Facets[region.two];
-  const Surface& two = this->Surfaces[facet.surface];
+  const Surface& one = this->Surfaces[facet.surface];
   const Vec3 direction = unitVector(this->Frame.direction(p.x, p.y));
   path.cosine = std::min(1.0, -glm::dot(one.normal, direction));
   path.rangeOne = one.height / path.cosine;
-  const Vec3 from = path.rangeOne * direction;
-  const Vec3 out = mirrorDirection(direction, one.normal);
+  path.first = one.seen->triangleAt(p);
+  path.from = path.rangeOne * direction;
+  path.end = mirrorDirection(direction, one.normal);
+  path.visibility = Visibility::Unknown;
+}
+
+/// Follow a ray from its mirror. @return false if the ray does not arrive
+bool MirrorRegions::findEnd(const Facet& facet, const PlanePoint& p, MirrorPath& path) const
+{
+  const Surface& two = this->Surfaces[facet.surface];
+  const Vec3 from = path.from;
+  const Vec3 out = path.end;
   const double fall = -glm::dot(two.normal, out);
   const double step = (glm::dot(two.normal, from) + two.height) / fall;
   const Vec3 end = from + step * out;
@@ -560,13 +609,10 @@ bool MirrorRegions::findPath(const Region& region, const PlanePoint& p, MirrorPa
     }
   }
   path.back = this->Shape.density(place.x, place.y) / this->Shape.density(p.x, p.y);
-  path.first = one.seen->triangleAt(p);
   path.triangle = two.seen->triangleAt(place);
   path.length = path.rangeOne + step + path.range;
   path.second = reflectionGeometry(out, -end / path.range, two.normal);
-  path.from = from;
   path.end = end;
-  path.visibility = Visibility::Unknown;
   return true;
 }
 }

@@ -63,6 +63,10 @@ public:
   /// Append the paths that start on a surface. @return number of samples drawn for these paths
   std::size_t search(std::size_t surface, std::vector<MirrorPath>& paths);
 
+  /// Append starts of mirror paths, spread over a whole surface, wherever the paths end
+  /// (traceBeyond()). @return number of starts
+  std::size_t spread(std::size_t surface, std::vector<MirrorPath>& starts);
+
 private:
   /// A box in the beam's plane.
   struct Box
@@ -99,10 +103,10 @@ private:
     PlaneLine w; ///< 1/z of the second plane, mirrored on the first plane
     PlaneLine x, y, z;
   };
-  /// Rays that go from one facet to another facet.
+  /// Rays that go from one facet to another facet, or anywhere.
   struct Region
   {
-    std::uint32_t one, two; ///< numbers of the facets
+    std::uint32_t one, two; ///< numbers of the facets; `two` may be Anywhere
     PlaneRing ring;
     double area;
   };
@@ -115,7 +119,9 @@ private:
     const Surface& one, const Surface& two, const std::uint32_t* begin, const std::uint32_t* end);
   bool cutOut(const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const;
   void placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths);
-  bool findPath(const Region& region, const PlanePoint& p, MirrorPath& path);
+  void findStart(const Facet& facet, const PlanePoint& p, MirrorPath& path) const;
+  bool findEnd(const Facet& facet, const PlanePoint& p, MirrorPath& path) const;
+  void begin(std::size_t surface);
 
   const ScanSetup& Setup;
   const SceneTriangles& Scene;

@@ -17,6 +17,18 @@ namespace
 /// half, and connections less than the rest.
 constexpr double MirrorPart = 0.125;
 
+/// Number of paths over the two points of a mirror path.
+double waysOf(const ScanSetup& setup)
+{
+  return setup.sensor.receiverAperture > 0.0 ? 3.0 : 1.0;
+}
+
+/// Order of the mirror paths of MirrorRegions.h: first those with ends that the apex sees.
+bool isBefore(const MirrorPath& a, const MirrorPath& b)
+{
+  return a.seen == b.seen ? a.start < b.start : a.seen;
+}
+
 double sumOf(const std::vector<double>& values)
 {
   return std::accumulate(values.begin(), values.end(), 0.0);
@@ -74,13 +86,13 @@ double SecondaryReflection::bound(const BeamSamples& samples, const Throughput& 
 
 double SecondaryReflection::bound(double albedo, double nearest) const
 {
-  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
+  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0; // of connections
   const double returned = std::max(
     ways * returnBound(this->Setup, nearest), mirrorReturnBound(this->Setup, this->Shape, nearest));
   return albedo * std::min(1.0, returned * SurelyAbove);
 }
 
-SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
+SecondaryReflection::MirrorThroughput SecondaryReflection::mirrorThroughput(
   const SecondaryBeam& beam, const MirrorPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
@@ -105,17 +117,27 @@ SecondaryReflection::BothWays SecondaryReflection::mirrorThroughput(
       this->Setup.sensor.nearRangeShare(path.rangeOne)
     : beam.direct.reflected[path.one];
   const double scale = secondaryScale(this->Setup, first, second, path.cosine, direct);
-  const double there =
-    f1 * f2.total() * this->Setup.sensor.nearRangeShare(path.range) * scale * path.weight;
+  const double there = path.seen
+    ? f1 * f2.total() * this->Setup.sensor.nearRangeShare(path.range) * scale * path.weight
+    : 0.0;
   if (!(aperture > 0.0))
   {
-    return { there, 0.0 };
+    return { there, 0.0, 0.0 };
   }
   const double reverse = f1 * f2.diffuse * path.back *
     this->Setup.sensor.nearRangeShare(path.rangeOne) * scale * path.weight;
-  // If an aperture gathers nearly all light, the bound of one way limits the sum of both ways.
-  const double within = std::min(1.0, f1 * path.weight / std::max(there + reverse, 1e-300));
-  return { within * there, within * reverse };
+  // From the image of the second point, in the direction from which the light came. Without an
+  // aperture the paper's constraint holds: the apex sees the second point.
+  const double image = path.length - path.range;
+  const Material& matt = this->Setup.material(path.triangle);
+  const double again = f1 * f1 *
+    throughAperture(
+      reflectance(model, matt, monostaticGeometry(path.second.cosIncidence)), matt, aperture, image)
+      .diffuse *
+    this->Setup.sensor.nearRangeShare(image) * scale * path.weight;
+  // If an aperture gathers nearly all light, the bound of one way limits the sum of all ways.
+  const double within = std::min(1.0, f1 * path.weight / std::max(there + reverse + again, 1e-300));
+  return { within * there, within * reverse, within * again };
 }
 
 /// Share of a mirror path's light that the width of the mirror's lobe moves across the cone's rim,
@@ -251,6 +273,7 @@ double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least
     if (all < needed)
     {
       this->MirrorThroughputs.clear();
+      this->MirrorParts.clear();
       return all;
     }
     drawn += this->Regions.search(k, trace.mirrorPaths);
@@ -263,12 +286,60 @@ double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least
     found += this->measureMirrors(beam, this->MirrorThroughputs.size());
     rest += bound;
   }
-  const auto isBefore = [](const MirrorPath& a, const MirrorPath& b) { return a.start < b.start; };
   if (!std::is_sorted(trace.mirrorPaths.begin(), trace.mirrorPaths.end(), isBefore))
   {
     std::stable_sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(), isBefore);
     this->measureMirrors(beam, 0);
   }
+  return left;
+}
+
+/// Bound of the throughputs of the mirror paths that start on a surface and end where only the
+/// mirror sees the end: matt light, from the image of the end.
+double SecondaryReflection::boundBeyond(const SecondaryBeam& beam, std::size_t surface) const
+{
+  const double gathered =
+    this->Setup.sensor.receiverAperture / (Pi * beam.nearest * beam.nearest) * SurelyAbove;
+  return this->Wanted[surface]
+    ? this->Regions.bound(surface, std::min(1.0, this->Setup.largestReflectance * gathered))
+    : 0.0;
+}
+
+/// Sum of boundBeyond() over all surfaces.
+double SecondaryReflection::mostBeyond(const SecondaryBeam& beam) const
+{
+  double sum = 0.0;
+  for (std::size_t k = 0; this->Setup.sensor.receiverAperture > 0.0 && k < this->Wanted.size(); ++k)
+  {
+    sum += this->boundBeyond(beam, k);
+  }
+  return sum;
+}
+
+/// Follow the mirror paths of such surfaces whose bound is at least `least`.
+/// @return bound of the lost throughputs
+double SecondaryReflection::traceBeyondMirrors(const SecondaryBeam& beam, double least)
+{
+  SecondaryTrace& trace = beam.trace;
+  double left = 0.0;
+  for (std::uint32_t k = 0; k < this->Wanted.size(); ++k)
+  {
+    const double most = this->boundBeyond(beam, k);
+    const bool follows = most > 0.0 && most >= least;
+    left += follows ? 0.0 : most;
+    if (follows && trace.searched[k] < 2)
+    {
+      const std::size_t known = trace.mirrorPaths.size();
+      beam.throwIfStopped(SecondaryBeam::StepsBetweenChecks - 1);
+      this->Regions.spread(k, trace.mirrorPaths);
+      traceBeyond(beam, trace.mirrorPaths, known);
+      trace.searched[k] = 2;
+    }
+  }
+  const auto first = std::partition_point(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
+    [](const MirrorPath& path) { return path.seen; });
+  std::stable_sort(first, trace.mirrorPaths.end(), isBefore);
+  this->measureMirrors(beam, static_cast<std::size_t>(first - trace.mirrorPaths.begin()));
   return left;
 }
 
@@ -287,17 +358,23 @@ double SecondaryReflection::addPaths(
     beam.units->add({ ends + connections.length[i], most * this->ConnectionThroughputs[i] });
   }
   const std::size_t first = beam.units->pathLengths().size();
-  for (std::size_t p = 0; p < this->MirrorThroughputs.size() && mirrors; ++p)
+  for (std::size_t p = 0; p < this->MirrorParts.size() && mirrors; ++p)
   {
-    beam.units->add({ beam.trace.mirrorPaths[p].length, most * this->MirrorThroughputs[p] });
+    const MirrorPath& path = beam.trace.mirrorPaths[p];
+    const MirrorThroughput& part = this->MirrorParts[p];
+    beam.units->add({ path.length, most * (part.there + part.back) });
+    beam.units->add({ 2.0 * (path.length - path.range), most * part.again });
   }
   beam.units->accumulate();
-  for (std::size_t p = 0; p < this->MirrorThroughputs.size() && mirrors; ++p)
+  const auto isFaint = [&](std::size_t number)
+  { return beam.units->mostAround(first + number) + further < beam.faintBelow; };
+  for (std::size_t p = 0; p < this->MirrorParts.size() && mirrors; ++p)
   {
-    if (beam.units->mostAround(first + p) + further < beam.faintBelow)
-    {
-      this->MirrorThroughputs[p] = this->BackThroughputs[p] = 0.0;
-    }
+    MirrorThroughput& part = this->MirrorParts[p];
+    part.there = isFaint(2 * p) ? 0.0 : part.there;
+    part.back = isFaint(2 * p) ? 0.0 : part.back;
+    part.again = isFaint(2 * p + 1) ? 0.0 : part.again;
+    this->MirrorThroughputs[p] = part.total();
   }
   double strongest = 0.0;
   for (const RangeUnit& unit : beam.units->units())
@@ -311,19 +388,16 @@ double SecondaryReflection::addPaths(
 double SecondaryReflection::measureMirrors(const SecondaryBeam& beam, std::size_t from)
 {
   const std::vector<MirrorPath>& paths = beam.trace.mirrorPaths;
-  this->NumberWanted = from > 0 ? this->NumberWanted : 0.0;
   this->MirrorThroughputs.resize(from);
-  this->BackThroughputs.resize(from);
-  const double ways = this->Setup.sensor.receiverAperture > 0.0 ? 2.0 : 1.0;
+  this->MirrorParts.resize(from);
   double sum = 0.0;
   for (std::size_t p = from; p < paths.size(); ++p)
   {
     const bool wanted = beam.trace.searched.empty() || this->Wanted[paths[p].start];
-    this->NumberWanted += wanted ? ways : 0.0;
-    const BothWays both = wanted ? this->mirrorThroughput(beam, paths[p]) : BothWays{ 0.0, 0.0 };
-    sum += both.there + both.back;
-    this->MirrorThroughputs.push_back(both.there + both.back);
-    this->BackThroughputs.push_back(both.back);
+    this->MirrorParts.push_back(
+      wanted ? this->mirrorThroughput(beam, paths[p]) : MirrorThroughput{ 0.0, 0.0, 0.0 });
+    this->MirrorThroughputs.push_back(this->MirrorParts.back().total());
+    sum += this->MirrorThroughputs.back();
   }
   return sum;
 }
@@ -366,6 +440,13 @@ void SecondaryReflection::listPaths(
         beam.air->transmissionBetween(one, two) * beam.air->transmissionBetween(two, apex)
                     : 1.0;
   };
+  const auto thereAndBack = [&](const Vec3& one, const Vec3& two)
+  {
+    const double there = beam.air
+      ? beam.air->transmissionBetween(Vec3(0.0), one) * beam.air->transmissionBetween(one, two)
+      : 1.0;
+    return there * there;
+  };
   const auto pointOf = [&](std::uint32_t sample)
   { return beam.samples.range[sample] * beam.geometry.direction(sample); };
   const MirrorPath* before = nullptr;
@@ -378,15 +459,22 @@ void SecondaryReflection::listPaths(
       number = numberAfter(before, number, path);
       before = &path;
       const double left = leftOf(path.from, path.end);
-      const double back = this->BackThroughputs[p];
+      const MirrorThroughput& part = this->MirrorParts[p];
       const std::uint32_t one = bySample ? path.one : NoSample;
       const std::uint32_t two = bySample ? NoSample : number;
-      paths.push_back({ path.length, (this->MirrorThroughputs[p] - back) * left, path.triangle,
-        path.second.cosIncidence, one, two, this->unsureShare(path) });
-      if (back > 0.0)
+      const double unsure = this->unsureShare(path);
+      paths.push_back({ path.length, part.there * left, path.triangle, path.second.cosIncidence,
+        one, two, unsure });
+      if (part.back > 0.0)
       {
         paths.push_back(
-          { path.length, back * left, path.first, path.cosine, one, two, paths.back().unsure });
+          { path.length, part.back * left, path.first, path.cosine, one, two, unsure });
+      }
+      if (part.again > 0.0)
+      {
+        paths.push_back(
+          { 2.0 * (path.length - path.range), part.again * thereAndBack(path.from, path.end),
+            path.first, path.cosine, one, two, unsure });
       }
     }
   }
@@ -464,8 +552,8 @@ bool SecondaryReflection::collect(
       lost += all;
       return true;
     }
-    // With an aperture there are reverse paths, and as many short paths as connections.
-    threshold = budget / (pathsOfABeam(settings) * (gathers ? 2.0 : 1.0));
+    // With an aperture, as many short paths as connections.
+    threshold = budget / (pathsOfABeam(settings) * waysOf(this->Setup));
   }
   const auto throughputOf = [=](double energy)
   { return most > 0.0 ? energy / most : std::numeric_limits<double>::infinity(); };
@@ -476,21 +564,29 @@ bool SecondaryReflection::collect(
     const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
     const double left =
       this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold), needed);
-    if (isSilent(left + sumOf(this->MirrorThroughputs)))
+    const double beyond = this->mostBeyond(beam);
+    if (isSilent(left + sumOf(this->MirrorThroughputs) + beyond))
     {
       return false;
     }
     lost += most * left;
-    ofMirrors = shares ? part / std::max(1.0, this->NumberWanted) : threshold;
     if (beam.units && !this->MirrorThroughputs.empty())
     {
-      const double strongest = this->addPaths(beam, sure, lost + most * ofShort, true);
+      const double strongest = this->addPaths(beam, sure, lost + most * (ofShort + beyond), true);
       if (strongest < beam.faintBelow)
       {
         lost = strongest;
         return false;
       }
     }
+    if (gathers)
+    {
+      lost += most * this->traceBeyondMirrors(beam, throughputOf(shares ? ofSurface : threshold));
+    }
+    const auto wanted = std::count_if(beam.trace.mirrorPaths.begin(), beam.trace.mirrorPaths.end(),
+      [&](const MirrorPath& path) { return this->Wanted[path.start] != 0; });
+    ofMirrors =
+      shares ? part / std::max(1.0, waysOf(this->Setup) * static_cast<double>(wanted)) : threshold;
     traceMirrorPaths(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
   }
   else

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryReflection.h
- * @brief Paths with two reflections inside the beam, and the light-energy constraint on them.
+ * @brief Paths with two reflections inside the beam (with an aperture, mirror paths back and forth,
+ * too), and the light-energy constraint on them.
  *
  * By the beam constraint the second reflection point P2 lies inside the receiving beam. Two kinds
  * of paths start at a primary hit P1:
@@ -29,7 +30,9 @@
  *
  * 1. The matt light that a mirror path returns at P2 also comes back by the reverse path, which
  * ends on the mirror. The reverse path is weighted by the beam's density at P2 divided by the
- * density at P1. If both surfaces are mirrors, the widths of their lobes add up.
+ * density at P1. Matt light that arrives at P2 by the mirror also comes back by the mirror, after
+ * three reflections, from the image of P2 behind the mirror. If both surfaces are mirrors, the
+ * widths of their lobes add up.
  * 2. Both reflections of a connection are matt. The throughput of a connection contains the form
  * factor F = cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most
  * MostFormFactor = 1.
@@ -100,20 +103,25 @@ public:
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  /// Throughputs of a mirror path and, with an aperture, of the reverse path.
-  struct BothWays
+  /// Throughputs of a mirror path and, with an aperture, of the paths over its points that come
+  /// back by the mirror: lit directly, and lit by the mirror.
+  struct MirrorThroughput
   {
-    double there, back;
+    double there, back, again;
+    double total() const { return this->there + this->back + this->again; }
   };
   void prepare(const SecondaryBeam& beam, bool byRegions);
   double placeMirrors(const SecondaryBeam& beam, double least, double needed);
+  double boundBeyond(const SecondaryBeam& beam, std::size_t surface) const;
+  double mostBeyond(const SecondaryBeam& beam) const;
+  double traceBeyondMirrors(const SecondaryBeam& beam, double least);
   double addPaths(const SecondaryBeam& beam, double most, double further, bool mirrors);
   double measureMirrors(const SecondaryBeam& beam, std::size_t from);
   double mostOfMirrors(bool byRegions) const;
   void measure(const SecondaryBeam& beam);
   double untracedBound(const SecondaryTrace& trace) const;
   void listPaths(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths) const;
-  BothWays mirrorThroughput(const SecondaryBeam& beam, const MirrorPath& path) const;
+  MirrorThroughput mirrorThroughput(const SecondaryBeam& beam, const MirrorPath& path) const;
   double unsureShare(const MirrorPath& path) const;
   double shortThroughput(const SecondaryBeam& beam, const ShortPath& path) const;
   double mostOfShortPaths(const SecondaryBeam& beam) const;
@@ -128,12 +136,11 @@ private:
   MaterialLanes Materials;              ///< material of each sample
   std::vector<double> SpecularBounds;   ///< bound of the mirror path's throughput, by sample
   double OverMirror = 1.0;              ///< mirrorReturnBound()
-  double NumberWanted = 0.0;            ///< number of mirror paths that may matter
   std::vector<char> Wanted;             ///< whether mirror paths may matter, by surface
   /// Surfaces in the order of their search, each after minus the bound of its throughput.
   std::vector<std::pair<double, std::uint32_t>> Order;
-  std::vector<double> MirrorThroughputs;     ///< unblocked throughput of mirror and reverse paths
-  std::vector<double> BackThroughputs;       ///< part of MirrorThroughputs by reverse paths
+  std::vector<MirrorThroughput> MirrorParts; ///< unblocked throughputs of mirror paths
+  std::vector<double> MirrorThroughputs;     ///< sums of MirrorParts
   std::vector<double> ConnectionThroughputs; ///< unblocked throughput of connections
   std::vector<double> Returned;              ///< energy of paths with two reflections, by sample, J
 };

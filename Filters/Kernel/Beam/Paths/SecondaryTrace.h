@@ -67,8 +67,9 @@ struct SecondaryConnections
 enum class MirrorEnd : std::uint8_t
 {
   NotTraced = 0,
-  Nowhere = 1,
-  Arrives = 2
+  Nowhere = 1, ///< not where the apex sees it in the cone
+  Arrives = 2,
+  Lost = 3 ///< not even where only the mirror sees it
 };
 
 /// A mirror path that arrives, with all values on which the path's energy depends, except
@@ -88,6 +89,7 @@ struct MirrorPath
   ReflectionGeometry second; ///< angles at the second point
   Vec3 from, end;            ///< the two points relative to the apex, m
   Visibility visibility;     ///< whether the path is blocked
+  bool seen = true;          ///< whether the apex sees the second point, in the cone
 };
 
 /// Number of a mirror path by MirrorRegions.h, after the path `before` (null: none) of the number
@@ -117,7 +119,8 @@ struct ShortPath
 struct SecondaryTrace
 {
   std::vector<MirrorEnd> mirror; ///< end of the mirror path of each hit; empty until first needed
-  /// Whether MirrorRegions.h has searched each surface; empty: mirror paths start from hits.
+  /// How far MirrorRegions.h has searched each surface: 0 not at all, 1 for ends that the apex
+  /// sees, 2 for all ends. Empty: mirror paths start from hits.
   std::vector<char> searched;
   std::vector<MirrorPath> mirrorPaths; ///< mirror paths, in the order of hits or surfaces
   SecondaryConnections connections;

@@ -33,6 +33,48 @@ double distanceInCone(
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
+/// Whether the apex sees the point at which a path ends, on a side that faces the apex, in the
+/// cone.
+bool seesEnd(const SecondaryBeam& beam, const Vec3& point, const Vec3& direction,
+  std::uint32_t triangle, const Vec3& normal)
+{
+  if (!beam.frame.contains(point) || glm::dot(normal, direction) >= 0.0)
+  {
+    return false;
+  }
+  const Hit seen = beam.tracer.traceFromApex(point);
+  const double range = safeLength(point);
+  return !seen.valid() || seen.triangle == triangle || seen.range >= range - surfaceMargin(range);
+}
+
+/// Follow a mirror path whose start and direction, `end`, are known.
+/// @return false if the path ends nowhere, or where the apex sees the end
+bool followBeyond(const SecondaryBeam& beam, MirrorPath& path)
+{
+  const Vec3 direction = path.end;
+  const Hit found = beam.tracer.traceFrom(path.from, direction, surfaceMargin(path.rangeOne),
+    path.first, std::numeric_limits<double>::infinity());
+  if (!found.valid())
+  {
+    return false;
+  }
+  const Vec3 normal = seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal;
+  path.end = path.from + found.range * direction;
+  if (seesEnd(beam, path.end, direction, found.triangle, normal))
+  {
+    return false;
+  }
+  path.seen = false;
+  path.back = 0.0;
+  path.triangle = found.triangle;
+  path.range = safeLength(path.end);
+  path.length = path.rangeOne + found.range + path.range;
+  path.second =
+    reflectionGeometry(direction, -direction, glm::dot(normal, direction) < 0.0 ? normal : -normal);
+  path.visibility = Visibility::Clear;
+  return true;
+}
+
 /// End of the path from a hit in a direction; invalid if the end is outside the cone or hidden.
 Hit pathEnd(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint32_t hit, const Vec3& direction)
@@ -49,32 +91,33 @@ Hit pathEnd(
   {
     return {};
   }
+  const Vec3 normal = seeTriangle(beam.scene, end.triangle, beam.frame.origin).normal;
   const Vec3 point = from.point + end.range * direction;
-  if (!beam.frame.contains(point))
-  {
-    return {};
-  }
-  const SeenTriangle triangle = seeTriangle(beam.scene, end.triangle, beam.frame.origin);
-  if (glm::dot(triangle.normal, direction) >= 0.0)
-  {
-    return {}; // the path meets the side that faces away from the lidar
-  }
-  const Hit seen = beam.tracer.traceFromApex(point);
-  const double range = safeLength(point);
-  const bool visible =
-    !seen.valid() || seen.triangle == end.triangle || seen.range >= range - surfaceMargin(range);
-  return visible ? end : Hit();
+  return seesEnd(beam, point, direction, end.triangle, normal) ? end : Hit();
 }
 
-void traceMirror(
-  const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape, std::uint32_t hit)
+/// @param inCone whether the path may end where the apex sees the end
+void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
+  std::uint32_t hit, bool inCone)
 {
   const HitPoint from(beam.samples, beam.geometry, hit);
   const Vec3 direction = mirrorDirection(beam.geometry.direction(hit), from.normal);
-  const Hit found = pathEnd(setup, beam, hit, direction);
+  const bool isNew = beam.trace.mirror[hit] == MirrorEnd::NotTraced;
+  const Hit found = isNew && inCone ? pathEnd(setup, beam, hit, direction) : Hit();
   if (!found.valid())
   {
-    beam.trace.mirror[hit] = MirrorEnd::Nowhere;
+    MirrorPath path{ 0, hit, beam.geometry.triangle(hit), NoTriangle, beam.samples.weight[hit], 0.0,
+      beam.samples.cosine[hit], from.range, 0.0, 0.0, {}, from.point, direction,
+      Visibility::Unknown };
+    const bool gathers = setup.sensor.receiverAperture > 0.0;
+    const bool arrives = gathers && followBeyond(beam, path);
+    beam.trace.mirror[hit] = arrives ? MirrorEnd::Arrives
+      : gathers                      ? MirrorEnd::Lost
+                                     : MirrorEnd::Nowhere;
+    if (arrives)
+    {
+      beam.trace.mirrorPaths.push_back(path);
+    }
     return;
   }
   beam.trace.mirror[hit] = MirrorEnd::Arrives;
@@ -156,10 +199,13 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least, MirrorPairs& pairs)
 {
   SecondaryTrace& trace = beam.trace;
+  const bool gathers = setup.sensor.receiverAperture > 0.0;
   const auto isWanted = [&](std::uint32_t hit)
   {
     const double most = throughputs[hit];
-    return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= least;
+    return (trace.mirror[hit] == MirrorEnd::NotTraced ||
+             (gathers && trace.mirror[hit] == MirrorEnd::Nowhere)) &&
+      most > 0.0 && most >= least;
   };
   std::uint32_t hit = 0;
   while (hit < beam.samples.size() && !isWanted(hit))
@@ -179,17 +225,34 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     {
       continue;
     }
-    if (constrained && !pairs.any(beam.geometry.surface[hit]))
+    const bool inCone = !constrained || pairs.any(beam.geometry.surface[hit]);
+    if (inCone || gathers)
     {
-      trace.mirror[hit] = MirrorEnd::Nowhere;
+      traceMirror(setup, beam, shape, hit, inCone);
     }
     else
     {
-      traceMirror(setup, beam, shape, hit);
+      trace.mirror[hit] = MirrorEnd::Nowhere;
     }
   }
   std::sort(trace.mirrorPaths.begin(), trace.mirrorPaths.end(),
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
+}
+
+void traceBeyond(const SecondaryBeam& beam, std::vector<MirrorPath>& paths, std::size_t first)
+{
+  std::size_t kept = first;
+  for (std::size_t p = first; p < paths.size(); ++p)
+  {
+    MirrorPath& path = paths[p];
+    // Only one of two triangles that coincide is seen.
+    if ((!beam.cells || beam.tracer.traceFromApex(path.from).triangle == path.first) &&
+      followBeyond(beam, path))
+    {
+      paths[kept++] = path;
+    }
+  }
+  paths.resize(kept);
 }
 
 void traceMirrorPaths(

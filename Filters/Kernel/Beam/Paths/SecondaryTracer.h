@@ -26,10 +26,15 @@
 namespace avianlidar
 {
 /// Trace the mirror paths that are not yet traced and may have a throughput of at least `least`.
+/// With an aperture, paths may end where only the mirror sees the second point.
 /// @param throughputs upper bounds of throughputs, by sample @param pairs pairs of the beam, set
 /// here; with the beam constraint, no path from surfaces without pairs is traced
 void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
+
+/// Follow mirror paths from the starts that MirrorRegions::spread() appended from number `first`
+/// on. Paths remain that end where only the mirror sees the second point.
+void traceBeyond(const SecondaryBeam& beam, std::vector<MirrorPath>& paths, std::size_t first);
 
 /// Find which mirror paths of MirrorRegions.h with a throughput of at least `least` are blocked. No
 /// path is tested twice. @param throughputs throughput of each path, as if not blocked
