@@ -33,7 +33,7 @@ class Setting(NamedTuple):
     connections: int
 
     def words(self) -> str:
-        paths = f"2 reflections, {self.connections} connections" if self.reflections > 1 else "1 reflection"
+        paths = f"{self.reflections} reflections, {self.connections} connections" if self.reflections > 1 else "1 reflection"
         return f"{self.rays} {('Cells', 'Rays')[self.samples]}{'' if self.sampling else ', MonteCarlo'}, {paths}"
 
     def properties(self) -> dict[str, Any]:
@@ -109,8 +109,8 @@ class Advice:
                                           ("beam_samples", "number_of_reflections", "verdict"))
         times, errors = 1e6 * self.table["seconds_per_beam"], 100 * np.maximum(self.table["energy_error"], 1e-5)
         for kind, paths, marker, colour, name in (
-                (0, 1, "s", "tab:orange", "Cells, 1 reflection"), (0, 2, "o", "tab:blue", "Cells, 2 reflections"),
-                (1, 1, "v", "tab:olive", "Rays, 1 reflection"), (1, 2, "^", "tab:gray", "Rays, 2 reflections")):
+                (0, 1, "s", "tab:orange", "Cells, 1 reflection"), (0, 3, "o", "tab:blue", "Cells, 3 reflections"),
+                (1, 1, "v", "tab:olive", "Rays, 1 reflection"), (1, 3, "^", "tab:gray", "Rays, 3 reflections")):
             for met in (False, True):
                 some = (samples == kind) & (reflections == paths) & ((verdicts == MET) == met)
                 axes.scatter(times[some], errors[some], marker=marker, s=30, edgecolors=colour,

@@ -40,12 +40,12 @@ from ._properties import get_property, property_names, set_properties, snake
 
 CELLS, RAYS, STRATIFIED = 0, 1, 1  # choices of vtkAvianLidarEchoFilter
 LADDER = [Setting(CELLS, rays, STRATIFIED, *paths) for rays in (8, 25, 100, 400, 1600)
-          for paths in ((1, 0), (2, 0), (2, 2), (2, 8)) if rays >= 100 or paths != (2, 8)]
+          for paths in ((1, 0), (3, 0), (3, 2), (3, 8)) if rays >= 100 or paths != (3, 8)]
 LADDER += [Setting(RAYS, rays, STRATIFIED, *paths) for rays in (8, 25, 100, 400, 1600, 6400)
-           for paths in ((1, 0), (2, 0), (2, 2))]
-DEFAULT, UNCONNECTED, DIRECT = (Setting(CELLS, 100, STRATIFIED, *paths) for paths in ((2, 2), (2, 0), (1, 0)))
-REFERENCE, FINER = (Setting(CELLS, rays, STRATIFIED, 2, 8) for rays in (6400, 25600))
-WITNESS = Setting(RAYS, 10000, STRATIFIED, 2, 2)
+           for paths in ((1, 0), (3, 0), (3, 2))]
+DEFAULT, UNCONNECTED, DIRECT = (Setting(CELLS, 100, STRATIFIED, *paths) for paths in ((3, 2), (3, 0), (1, 0)))
+REFERENCE, FINER = (Setting(CELLS, rays, STRATIFIED, 3, 8) for rays in (6400, 25600))
+WITNESS = Setting(RAYS, 10000, STRATIFIED, 3, 2)
 SEEDS, WITNESS_SEEDS, FINER_SEEDS = (1000003, 1000033), (1000037, 1000039), range(1000103, 1000111)
 CANDIDATES = 50  # scanned beams for each beam of the sample
 MOST_BEAMS = 4  # greatest sample, as a multiple of the chosen number of beams
@@ -245,7 +245,7 @@ class Measurement:
             return (weights[rows[:, BEAM].astype(int)] * values).sum()
 
         one, unconnected = (self.scan(beams, Setting(CELLS, REFERENCE.rays, STRATIFIED, reflections, 0), SEEDS[0])
-                            for reflections in (1, 2))
+                            for reflections in (1, 3))
         energy = max(total(first, first[:, TOTAL]), 1e-300)
         self.secondary = total(first, first[:, TOTAL] * first[:, SECONDARY]) / energy
         self.largest = first[:, SECONDARY].max(initial=0)

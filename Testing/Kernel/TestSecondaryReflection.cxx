@@ -209,7 +209,7 @@ TEST(SecondaryReflection, ThroughAnApertureLightComesBackBothWays)
     settings.numberOfReflections = 1;
     ScanSetup setup = makeSetup(c.scene, sensor, settings);
     const double truth = receivedFrom(runScan(setup, oneBeam())) + c.energy + c.again;
-    setup.settings.numberOfReflections = 2;
+    setup.settings.numberOfReflections = 3;
     finishSetup(setup);
     constexpr int seeds = 40;
     int held = 0;
@@ -250,6 +250,7 @@ TEST(SecondaryReflection, LightOfTheWayBackIsLabelledByTheMirror)
   // reflections, and all after three, which is 0.85 times that half.
   const Scene scene = corner({ 0.0, 0.85, 1e6 }, { 0.5, 0.0, 1.0 });
   EchoSettings settings = secondarySettings(100, 2);
+  settings.numberOfReflections = 3;
   settings.beamSamples = BeamSampleSource::Cells;
   const ScanResult result = runScan(makeSetup(scene, gatheringSensor(), settings), oneBeam());
   ASSERT_EQ(result.echoes.size(), 1u);

@@ -55,7 +55,7 @@ class Advice(unittest.TestCase):
 
     def test_a_corner_needs_two(self):
         advice = al.Scan(al.Scene(CORNER, material="Metal"), SENSOR).advise(**{**EASY, "energy": 0.01})
-        self.assertEqual(advice.settings["number_of_reflections"], 2)
+        self.assertEqual(advice.settings["number_of_reflections"], 3)
         one = (advice.table["number_of_reflections"] == 1) & (advice.table["beam_samples"] == 0)
         self.assertTrue((advice.table["energy_error"][one] > 0.01).all())
 
@@ -118,7 +118,7 @@ class Advice(unittest.TestCase):
         for seed in range(8):
             scan = al.Scan(scene, sensor, noise=False, seed=seed)
             advice = scan.advise(energy=0.05, range=0.2, missed=0.08, beams=200)
-            row = next(row for row in range(1, 37) if advice.words(row) == "25 Cells, 2 reflections, 2 connections")
+            row = next(row for row in range(1, 37) if advice.words(row) == "25 Cells, 3 reflections, 2 connections")
             scan.set(seed=1000 + seed, **advice.setting(row).properties())
             tried.append((errors_of(scan.echoes, truth, limit, ghosts=False)[0], advice.table["energy_error_most"][row]))
         errors, most = np.array(tried).T

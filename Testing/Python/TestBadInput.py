@@ -152,7 +152,7 @@ class Properties(Faults):
            ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"), ("EchoFilter", "NumberOfConnections"),
            ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
     # The first value beyond the border of a choice or a number; above sliders, those that the class has.
-    BORDERS = {"EchoFilter": {**of_panel("EchoFilter"), "RaysPerBeam": (0, 1000001), "NumberOfReflections": (0, 3), "LightEnergyFraction": (-1e-9, 1.1e8)},
+    BORDERS = {"EchoFilter": {**of_panel("EchoFilter"), "RaysPerBeam": (0, 1000001), "NumberOfReflections": (0, 4), "LightEnergyFraction": (-1e-9, 1.1e8)},
                "BeamSource": {"SwayAmplitude": (-1e-9, 10.1), "SwayFrequency": (0.0, 1e7), "EncoderJitter": (-1e-9, 10.1)},
                "CollisionTree": {"Preset": (2,), "SplitRule": (4,), "BoundingVolume": (-1, 4), "MaximumLeafSize": (0,)},
                "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,), "GateProbability": (1.0,),

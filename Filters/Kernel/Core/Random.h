@@ -41,7 +41,8 @@ enum class RandomPurpose : std::uint32_t
   RangeNoise = 16,    ///< noise of a return's range, by the return's strongest range unit
   Drops = 17,         ///< drops, by range unit
   Leaves = 18,        ///< leaves at which parts of a beam end
-  ShortPaths = 19     ///< directions of paths from a hit to a near hit
+  ShortPaths = 19,    ///< directions of paths from a hit to a near hit
+  Lobes = 20          ///< directions of light from a mirror of finite lobe
 };
 
 /// Two independent uniform doubles of 53 bits in the open interval (0, 1). @param seed any int

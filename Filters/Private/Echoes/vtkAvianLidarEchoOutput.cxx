@@ -173,8 +173,8 @@ std::string FurtherReflections(const ScanSetup& setup)
   const std::string paths = "not modelled: paths over " +
     std::string(setup.settings.numberOfReflections > 1 ? "three" : "two") +
     " and more reflections" +
-    (setup.settings.numberOfReflections > 1 && setup.sensor.receiverAperture > 0.0
-        ? ", but for those back by the same mirror"
+    (setup.settings.numberOfReflections > 2 && setup.sensor.receiverAperture > 0.0
+        ? ", but for three over one mirror"
         : "");
   // The bound holds all light that surfaces send back. An aperture gathers a small, unknown share
   // of the light, so the bound is useless with an aperture. A bound above the limit is useless,

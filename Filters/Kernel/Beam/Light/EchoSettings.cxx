@@ -42,7 +42,7 @@ void setFidelity(EchoSettings& s, int rays, int connections)
 {
   s.raysPerBeam = rays;
   s.sampling = Sampling::Stratified;
-  s.numberOfReflections = 2;
+  s.numberOfReflections = 3;
   s.numberOfConnections = connections;
 }
 }
@@ -85,7 +85,7 @@ const std::vector<EchoSetting>& echoSettings()
     row<&S::reflectanceModel>(
       "ReflectanceModel", "reflectance_model", E::Echoes, 0.0, 3.0, "0 to 3"),
     row<&S::numberOfReflections>(
-      "NumberOfReflections", "number_of_reflections", E::Echoes, 1.0, 2.0, "1 or 2"),
+      "NumberOfReflections", "number_of_reflections", E::Echoes, 1.0, 3.0, "1, 2 or 3"),
     toggle<&S::beamConstraint>("BeamConstraint", "beam_constraint"),
     toggle<&S::lightEnergyConstraint>("LightEnergyConstraint", "light_energy_constraint"),
     row<&S::lightEnergyFraction>("LightEnergyFraction", "light_energy_fraction", E::Echoes, 0.0,
@@ -179,6 +179,7 @@ std::string applyPreset(EchoPreset preset, EchoSettings& settings)
       return {};
     case EchoPreset::Paper:
       setFidelity(settings, 100, 2);                 // Table 2
+      settings.numberOfReflections = 2;              // Sec. 3.4
       settings.beamSamples = BeamSampleSource::Rays; // Sec. 2.1
       settings.sampling = Sampling::MonteCarlo;      // Sec. 2.1
       settings.traceMode = TraceMode::Beams;         // Sec. 3.2 and 3.3

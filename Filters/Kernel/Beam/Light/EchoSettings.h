@@ -103,7 +103,9 @@ struct EchoSettings
   std::int32_t seed = 0;
   double attenuationCoefficient = 3.5e-5; ///< attenuation coefficient mu, 1/m, 0 to 1e30
   ReflectanceModel reflectanceModel = ReflectanceModel::LambertBlinnPhong;
-  int numberOfReflections = 2; ///< largest number of reflections of a path, 1 or 2
+  /// Largest number of reflections of a path, 1 to 3. The third is by the mirror of the first, and
+  /// needs an aperture.
+  int numberOfReflections = 3;
   bool beamConstraint = true;
   bool lightEnergyConstraint = true;
   /// epsilon of the light-energy constraint: share of Qlow that a range unit may lose, 0 to 1e8.

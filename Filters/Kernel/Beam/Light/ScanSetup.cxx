@@ -93,9 +93,11 @@ ModelNeeds needsOf(const ScanSetup& setup)
   ModelNeeds needs;
   needs.perceivableRange = perceivableRange(setup);
   needs.secondaryBound = setup.sensor.pulseEnergy * setup.largestReflectance * once * SurelyAbove;
-  // On longer paths, `numberOfReflections` surfaces reflect the light before the last surface.
+  // On longer paths, `numberOfReflections` surfaces reflect the light before the last surface. Of
+  // the paths with three reflections, only those over one mirror are modelled.
   needs.furtherBound = setup.sensor.pulseEnergy *
-    std::pow(setup.largestReflectance, settings.numberOfReflections) * once * SurelyAbove;
+    std::pow(setup.largestReflectance, std::min(settings.numberOfReflections, 2)) * once *
+    SurelyAbove;
   // Direct echoes may lose the other half of the tolerance.
   const double least = limitOfPath(setup) + 0.5 * lightEnergyTolerance(setup);
   needs.secondaryReflections =

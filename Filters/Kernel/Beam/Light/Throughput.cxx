@@ -7,13 +7,21 @@
 
 namespace avianlidar
 {
+double mattReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest)
+{
+  // The reverse path and the path back by the mirror have weights of their own.
+  const double more = MostGrazing *
+    (shape.mostDensity() / shape.density(1.0, 0.0) +
+      (setup.settings.numberOfReflections > 2 ? 1.0 : 0.0));
+  const double gathered = setup.sensor.receiverAperture / (Pi * nearest * nearest);
+  return std::min(1.0, setup.largestReflectance * gathered * (1.0 + more) * SurelyAbove);
+}
+
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest)
 {
   const double once = returnBound(setup, nearest);
-  // The weight of the reverse path is the density at P2 over the density at P1. A third path comes
-  // back by the mirror (SecondaryReflection.h).
   return setup.sensor.receiverAperture > 0.0
-    ? std::min(1.0, once * (2.0 + shape.mostDensity() / shape.density(1.0, 0.0)))
+    ? std::min(1.0, once + mattReturnBound(setup, shape, nearest))
     : once;
 }
 

@@ -40,9 +40,18 @@ double directEnergies(const ScanSetup& setup, const BeamSamples& samples,
 /// nearest range. @param nearest range of the nearest surface, m
 double transmissionBound(double nearest, double attenuation);
 
-/// Upper bound of the light that returns by a mirror path and its reverse path together, as a share
-/// of the light that leaves the mirror. @param nearest lower bound of the ranges of the beam's
-/// surfaces, m
+/// Largest weight of a path that leaves or meets a mirror at a greater angle than the path whose
+/// direction was drawn. Only lobes that are wider than the angle to the mirror have larger weights.
+constexpr double MostGrazing = 8.0;
+
+/// Upper bound of the matt light that returns, with an aperture, by all paths over a mirror, as a
+/// share of the light that leaves the mirror. @param nearest lower bound of the ranges of the
+/// beam's surfaces, m
+double mattReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);
+
+/// Upper bound of the light that returns by a mirror path and the paths back by the mirror, as a
+/// share of the light that leaves the mirror. @param nearest lower bound of the ranges of the
+/// beam's surfaces, m
 double mirrorReturnBound(const ScanSetup& setup, const BeamShape& shape, double nearest);
 
 /// Upper bound of the throughput of a mirror path from a surface. @param returned

@@ -555,7 +555,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
       continue;
     }
     this->findStart(this->Facets[here.one], ray, path);
-    if (anywhere || this->findEnd(this->Facets[here.two], ray, path))
+    if (anywhere || this->findEnd(this->Facets[here.two], path))
     {
       path.weight = area / count * this->ShareOfArea * this->Shape.density(ray.x, ray.y) /
         (this->Shape.isRound() ? secant2 * std::sqrt(secant2) : 1.0);
@@ -580,7 +580,7 @@ void MirrorRegions::findStart(const Facet& facet, const PlanePoint& p, MirrorPat
 }
 
 /// Follow a ray from its mirror. @return false if the ray does not arrive
-bool MirrorRegions::findEnd(const Facet& facet, const PlanePoint& p, MirrorPath& path) const
+bool MirrorRegions::findEnd(const Facet& facet, MirrorPath& path) const
 {
   const Surface& two = this->Surfaces[facet.surface];
   const Vec3 from = path.from;
@@ -608,7 +608,6 @@ bool MirrorRegions::findEnd(const Facet& facet, const PlanePoint& p, MirrorPath&
       return false;
     }
   }
-  path.back = this->Shape.density(place.x, place.y) / this->Shape.density(p.x, p.y);
   path.triangle = two.seen->triangleAt(place);
   path.length = path.rangeOne + step + path.range;
   path.second = reflectionGeometry(out, -end / path.range, two.normal);

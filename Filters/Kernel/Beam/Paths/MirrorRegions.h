@@ -120,7 +120,7 @@ private:
   bool cutOut(const Facet& one, const Facet& two, const Image& image, PlaneRing& ring) const;
   void placeIn(std::size_t first, std::size_t end, std::vector<MirrorPath>& paths);
   void findStart(const Facet& facet, const PlanePoint& p, MirrorPath& path) const;
-  bool findEnd(const Facet& facet, const PlanePoint& p, MirrorPath& path) const;
+  bool findEnd(const Facet& facet, MirrorPath& path) const;
   void begin(std::size_t surface);
 
   const ScanSetup& Setup;

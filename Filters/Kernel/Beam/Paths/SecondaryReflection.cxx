@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SecondaryReflection.h"
 
+#include "Hash.h"
 #include "LaneMath.h"
 #include "SecondaryTracer.h"
 
@@ -17,10 +18,36 @@ namespace
 /// half, and connections less than the rest.
 constexpr double MirrorPart = 0.125;
 
-/// Number of paths over the two points of a mirror path.
+/// Largest number of paths that start with a mirror path.
 double waysOf(const ScanSetup& setup)
 {
-  return setup.sensor.receiverAperture > 0.0 ? 3.0 : 1.0;
+  return setup.sensor.receiverAperture > 0.0 ? 1.0 + setup.settings.numberOfReflections : 1.0;
+}
+
+/// Hash of what the ends of a beam's mirror paths depend on besides the beam; 0 without an
+/// aperture.
+std::uint64_t lobesOf(const ScanSetup& setup, const SecondaryBeam& beam)
+{
+  std::uint64_t hash = 0;
+  const auto add = [&](std::uint32_t triangle)
+  {
+    const double kp = triangle == NoTriangle ? 0.0 : setup.material(triangle).kp;
+    hash = hashOf(&kp, sizeof(kp), hash);
+  };
+  if (setup.sensor.receiverAperture > 0.0)
+  {
+    hash = static_cast<std::uint64_t>(setup.settings.numberOfReflections);
+    for (std::size_t i = 0; beam.surfaces && i < beam.surfaces->surfaces.size(); ++i)
+    {
+      add(beam.surfaces->surfaces[i].triangle);
+      add(beam.surfaces->surfaces[i].other);
+    }
+    for (std::size_t i = 0; !beam.surfaces && i < beam.samples.surfaces.size(); ++i)
+    {
+      add(beam.samples.surfaces[i].triangle);
+    }
+  }
+  return hash;
 }
 
 /// Order of the mirror paths of MirrorRegions.h: first those with ends that the apex sees.
@@ -49,6 +76,14 @@ void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
 {
   SecondaryTrace& trace = beam.trace;
   const std::uint32_t partners = connectionsOf(this->Setup.settings);
+  const std::uint64_t lobes = lobesOf(this->Setup, beam);
+  if (trace.lobes != lobes)
+  {
+    trace.mirror.clear();
+    trace.searched.clear();
+    trace.mirrorPaths.clear();
+    trace.lobes = lobes;
+  }
   if (trace.mirror.empty() && !byRegions)
   {
     trace.mirror.assign(beam.samples.size(), MirrorEnd::NotTraced);
@@ -96,48 +131,71 @@ SecondaryReflection::MirrorThroughput SecondaryReflection::mirrorThroughput(
   const SecondaryBeam& beam, const MirrorPath& path) const
 {
   const ReflectanceModel model = this->Setup.settings.reflectanceModel;
-  const double aperture = this->Setup.sensor.receiverAperture;
+  const Sensor& sensor = this->Setup.sensor;
+  const double aperture = sensor.receiverAperture;
   const Material& first = this->Setup.material(path.first);
-  Material second = this->Setup.material(path.triangle);
-  ReflectionGeometry back = path.second;
-  if (aperture > 0.0)
-  {
-    back.cosIncidence = back.cosOutgoing;
-    // The lobes of both mirrors spread the light that arrives.
-    const double reach = (path.length - path.rangeOne) / path.range;
-    second.kp = 1.0 / (1.0 / second.kp + reach * reach / first.kp);
-  }
   const double f1 = specularReflectance(model, first, mirrorGeometry(path.cosine));
-  const Reflectance f2 =
-    throughAperture(reflectance(model, second, back), second, aperture, path.range);
   const double direct = !beam.trace.searched.empty()
     ? throughAperture(
         reflectance(model, first, monostaticGeometry(path.cosine)), first, aperture, path.rangeOne)
         .total() *
-      this->Setup.sensor.nearRangeShare(path.rangeOne)
+      sensor.nearRangeShare(path.rangeOne)
     : beam.direct.reflected[path.one];
-  const double scale = secondaryScale(this->Setup, first, second, path.cosine, direct);
-  const double there = path.seen
-    ? f1 * f2.total() * this->Setup.sensor.nearRangeShare(path.range) * scale * path.weight
-    : 0.0;
-  if (!(aperture > 0.0))
+  const auto scaleAt = [&](std::uint32_t triangle) {
+    return secondaryScale(
+      this->Setup, first, this->Setup.material(triangle), path.cosine, direct);
+  };
+  MirrorThroughput part;
+  if (path.seen)
   {
-    return { there, 0.0, 0.0 };
+    Material second = this->Setup.material(path.triangle);
+    ReflectionGeometry back = path.second;
+    if (aperture > 0.0)
+    {
+      back.cosIncidence = back.cosOutgoing;
+      // The lobes of both mirrors spread the light that arrives.
+      const double reach = (path.length - path.rangeOne) / path.range;
+      second.kp = 1.0 / (1.0 / second.kp + reach * reach / first.kp);
+    }
+    const Reflectance f2 =
+      throughAperture(reflectance(model, second, back), second, aperture, path.range);
+    part.exact = f1 * (aperture > 0.0 ? f2.specular : f2.total()) *
+      sensor.nearRangeShare(path.range) * scaleAt(path.triangle) * path.weight;
   }
-  const double reverse = f1 * f2.diffuse * path.back *
-    this->Setup.sensor.nearRangeShare(path.rangeOne) * scale * path.weight;
-  // From the image of the second point, in the direction from which the light came. Without an
-  // aperture the paper's constraint holds: the apex sees the second point.
-  const double image = path.length - path.range;
-  const Material& matt = this->Setup.material(path.triangle);
-  const double again = f1 * f1 *
-    throughAperture(
-      reflectance(model, matt, monostaticGeometry(path.second.cosIncidence)), matt, aperture, image)
-      .diffuse *
-    this->Setup.sensor.nearRangeShare(image) * scale * path.weight;
+  const MattEnd& matt = path.matt;
+  const auto returned = [&](ReflectionGeometry geometry, double range)
+  {
+    geometry.cosIncidence = geometry.cosOutgoing;
+    const Material& material = this->Setup.material(matt.triangle);
+    return f1 * path.weight * scaleAt(matt.triangle) *
+      throughAperture(reflectance(model, material, geometry), material, aperture, range).diffuse;
+  };
+  if (aperture > 0.0 && path.visibility == Visibility::Unknown)
+  {
+    part.most = f1 * path.weight * this->OfMatt;
+  }
+  if (matt.seen)
+  {
+    const double light = returned(matt.second, matt.range);
+    part.there = light * sensor.nearRangeShare(matt.range);
+    part.back = light * matt.back * sensor.nearRangeShare(path.rangeOne);
+  }
+  if (matt.shown)
+  {
+    const Material& mirror = this->Setup.material(matt.mirror);
+    part.again = returned(matt.third, matt.image) * matt.again *
+      specularReflectance(model, mirror, mirrorGeometry(matt.cosine)) *
+      sensor.nearRangeShare(safeLength(matt.through));
+  }
   // If an aperture gathers nearly all light, the bound of one way limits the sum of all ways.
-  const double within = std::min(1.0, f1 * path.weight / std::max(there + reverse + again, 1e-300));
-  return { within * there, within * reverse, within * again };
+  const double all = part.exact + part.there + part.back + part.again;
+  if (aperture > 0.0 && all > f1 * path.weight)
+  {
+    const double within = f1 * path.weight / all;
+    part = { within * part.exact, within * part.there, within * part.back, within * part.again,
+      part.most };
+  }
+  return part;
 }
 
 /// Share of a mirror path's light that the width of the mirror's lobe moves across the cone's rim,
@@ -294,24 +352,20 @@ double SecondaryReflection::placeMirrors(const SecondaryBeam& beam, double least
   return left;
 }
 
-/// Bound of the throughputs of the mirror paths that start on a surface and end where only the
-/// mirror sees the end: matt light, from the image of the end.
-double SecondaryReflection::boundBeyond(const SecondaryBeam& beam, std::size_t surface) const
+/// Bound of the throughputs of matt light of the mirror paths that start on a surface and do not
+/// end where the apex sees the end.
+double SecondaryReflection::boundBeyond(std::size_t surface) const
 {
-  const double gathered =
-    this->Setup.sensor.receiverAperture / (Pi * beam.nearest * beam.nearest) * SurelyAbove;
-  return this->Wanted[surface]
-    ? this->Regions.bound(surface, std::min(1.0, this->Setup.largestReflectance * gathered))
-    : 0.0;
+  return this->Wanted[surface] ? this->Regions.bound(surface, this->OfMatt) : 0.0;
 }
 
 /// Sum of boundBeyond() over all surfaces.
-double SecondaryReflection::mostBeyond(const SecondaryBeam& beam) const
+double SecondaryReflection::mostBeyond() const
 {
   double sum = 0.0;
   for (std::size_t k = 0; this->Setup.sensor.receiverAperture > 0.0 && k < this->Wanted.size(); ++k)
   {
-    sum += this->boundBeyond(beam, k);
+    sum += this->boundBeyond(k);
   }
   return sum;
 }
@@ -324,7 +378,7 @@ double SecondaryReflection::traceBeyondMirrors(const SecondaryBeam& beam, double
   double left = 0.0;
   for (std::uint32_t k = 0; k < this->Wanted.size(); ++k)
   {
-    const double most = this->boundBeyond(beam, k);
+    const double most = this->boundBeyond(k);
     const bool follows = most > 0.0 && most >= least;
     left += follows ? 0.0 : most;
     if (follows && trace.searched[k] < 2)
@@ -332,7 +386,7 @@ double SecondaryReflection::traceBeyondMirrors(const SecondaryBeam& beam, double
       const std::size_t known = trace.mirrorPaths.size();
       beam.throwIfStopped(SecondaryBeam::StepsBetweenChecks - 1);
       this->Regions.spread(k, trace.mirrorPaths);
-      traceBeyond(beam, trace.mirrorPaths, known);
+      traceBeyond(this->Setup, beam, trace.mirrorPaths, known);
       trace.searched[k] = 2;
     }
   }
@@ -357,13 +411,18 @@ double SecondaryReflection::addPaths(
       beam.samples.range[connections.one[i]] + beam.samples.range[connections.two[i]];
     beam.units->add({ ends + connections.length[i], most * this->ConnectionThroughputs[i] });
   }
+  const bool gathers = this->Setup.sensor.receiverAperture > 0.0;
   const std::size_t first = beam.units->pathLengths().size();
   for (std::size_t p = 0; p < this->MirrorParts.size() && mirrors; ++p)
   {
     const MirrorPath& path = beam.trace.mirrorPaths[p];
     const MirrorThroughput& part = this->MirrorParts[p];
-    beam.units->add({ path.length, most * (part.there + part.back) });
-    beam.units->add({ 2.0 * (path.length - path.range), most * part.again });
+    beam.units->add({ path.length, most * part.exact });
+    if (gathers)
+    {
+      beam.units->add({ path.matt.length, most * (part.there + part.back) });
+      beam.units->add({ path.matt.lengthAgain, most * part.again });
+    }
   }
   beam.units->accumulate();
   const auto isFaint = [&](std::size_t number)
@@ -371,9 +430,10 @@ double SecondaryReflection::addPaths(
   for (std::size_t p = 0; p < this->MirrorParts.size() && mirrors; ++p)
   {
     MirrorThroughput& part = this->MirrorParts[p];
-    part.there = isFaint(2 * p) ? 0.0 : part.there;
-    part.back = isFaint(2 * p) ? 0.0 : part.back;
-    part.again = isFaint(2 * p + 1) ? 0.0 : part.again;
+    part.exact = isFaint(gathers ? 3 * p : p) ? 0.0 : part.exact;
+    part.there = gathers && isFaint(3 * p + 1) ? 0.0 : part.there;
+    part.back = gathers && isFaint(3 * p + 1) ? 0.0 : part.back;
+    part.again = gathers && isFaint(3 * p + 2) ? 0.0 : part.again;
     this->MirrorThroughputs[p] = part.total();
   }
   double strongest = 0.0;
@@ -395,9 +455,21 @@ double SecondaryReflection::measureMirrors(const SecondaryBeam& beam, std::size_
   {
     const bool wanted = beam.trace.searched.empty() || this->Wanted[paths[p].start];
     this->MirrorParts.push_back(
-      wanted ? this->mirrorThroughput(beam, paths[p]) : MirrorThroughput{ 0.0, 0.0, 0.0 });
+      wanted ? this->mirrorThroughput(beam, paths[p]) : MirrorThroughput());
     this->MirrorThroughputs.push_back(this->MirrorParts.back().total());
     sum += this->MirrorThroughputs.back();
+  }
+  return sum;
+}
+
+/// Sum of the bounds of the mirror paths by regions that are not traced.
+double SecondaryReflection::untracedMirrors(const SecondaryTrace& trace) const
+{
+  double sum = 0.0;
+  for (std::size_t p = 0; p < trace.mirrorPaths.size(); ++p)
+  {
+    sum +=
+      trace.mirrorPaths[p].visibility == Visibility::Unknown ? this->MirrorThroughputs[p] : 0.0;
   }
   return sum;
 }
@@ -405,15 +477,10 @@ double SecondaryReflection::measureMirrors(const SecondaryBeam& beam, std::size_
 /// Sum of the bounds of the paths that are not traced.
 double SecondaryReflection::untracedBound(const SecondaryTrace& trace) const
 {
-  double sum = 0.0;
+  double sum = this->untracedMirrors(trace);
   for (std::size_t hit = 0; hit < trace.mirror.size(); ++hit)
   {
     sum += trace.mirror[hit] == MirrorEnd::NotTraced ? this->SpecularBounds[hit] : 0.0;
-  }
-  for (std::size_t p = 0; p < trace.mirrorPaths.size(); ++p)
-  {
-    sum +=
-      trace.mirrorPaths[p].visibility == Visibility::Unknown ? this->MirrorThroughputs[p] : 0.0;
   }
   const std::vector<Visibility>& visibility = trace.connections.visibility;
   for (std::size_t i = 0; i < visibility.size(); ++i)
@@ -440,13 +507,6 @@ void SecondaryReflection::listPaths(
         beam.air->transmissionBetween(one, two) * beam.air->transmissionBetween(two, apex)
                     : 1.0;
   };
-  const auto thereAndBack = [&](const Vec3& one, const Vec3& two)
-  {
-    const double there = beam.air
-      ? beam.air->transmissionBetween(Vec3(0.0), one) * beam.air->transmissionBetween(one, two)
-      : 1.0;
-    return there * there;
-  };
   const auto pointOf = [&](std::uint32_t sample)
   { return beam.samples.range[sample] * beam.geometry.direction(sample); };
   const MirrorPath* before = nullptr;
@@ -458,23 +518,34 @@ void SecondaryReflection::listPaths(
     {
       number = numberAfter(before, number, path);
       before = &path;
-      const double left = leftOf(path.from, path.end);
       const MirrorThroughput& part = this->MirrorParts[p];
+      const MattEnd& matt = path.matt;
       const std::uint32_t one = bySample ? path.one : NoSample;
       const std::uint32_t two = bySample ? NoSample : number;
-      const double unsure = this->unsureShare(path);
-      paths.push_back({ path.length, part.there * left, path.triangle, path.second.cosIncidence,
-        one, two, unsure });
-      if (part.back > 0.0)
+      if (part.exact > 0.0)
+      {
+        paths.push_back({ path.length, part.exact * leftOf(path.from, path.end), path.triangle,
+          path.second.cosIncidence, one, two, this->unsureShare(path) });
+      }
+      const double left = matt.seen ? leftOf(path.from, matt.end) : 0.0;
+      if (part.there > 0.0)
       {
         paths.push_back(
-          { path.length, part.back * left, path.first, path.cosine, one, two, unsure });
+          { matt.length, part.there * left, matt.triangle, matt.second.cosIncidence, one, two });
+      }
+      if (part.back > 0.0)
+      {
+        paths.push_back({ matt.length, part.back * left, path.first, path.cosine, one, two });
       }
       if (part.again > 0.0)
       {
-        paths.push_back(
-          { 2.0 * (path.length - path.range), part.again * thereAndBack(path.from, path.end),
-            path.first, path.cosine, one, two, unsure });
+        paths.push_back({ matt.lengthAgain,
+          part.again * leftOf(path.from, matt.end) *
+            (beam.air ? beam.air->transmissionBetween(matt.end, matt.through) *
+                  beam.air->transmissionBetween(matt.through, Vec3(0.0)) /
+                  beam.air->transmissionBetween(matt.end, Vec3(0.0))
+                      : 1.0),
+          matt.mirror, matt.cosine, one, two });
       }
     }
   }
@@ -523,6 +594,7 @@ bool SecondaryReflection::collect(
     this->Regions.begin(beam.id, beam.frame, *beam.surfaces, beam.cells);
   }
   this->OverMirror = mirrorReturnBound(this->Setup, this->Shape, beam.nearest);
+  this->OfMatt = mattReturnBound(this->Setup, this->Shape, beam.nearest);
   this->prepare(beam, byRegions);
   this->measure(beam);
   // Largest energy of a path whose throughput is 1.
@@ -564,20 +636,24 @@ bool SecondaryReflection::collect(
     const double ofSurface = part / static_cast<double>(this->Regions.surfaces());
     const double left =
       this->placeMirrors(beam, throughputOf(shares ? ofSurface : threshold), needed);
-    const double beyond = this->mostBeyond(beam);
+    const double beyond = this->mostBeyond();
     if (isSilent(left + sumOf(this->MirrorThroughputs) + beyond))
     {
       return false;
     }
     lost += most * left;
-    if (beam.units && !this->MirrorThroughputs.empty())
+    // Adds the paths to the range units. False if no unit may have enough energy.
+    const auto mayMatter = [&](double further)
     {
-      const double strongest = this->addPaths(beam, sure, lost + most * (ofShort + beyond), true);
-      if (strongest < beam.faintBelow)
-      {
-        lost = strongest;
-        return false;
-      }
+      const double strongest = beam.units && !this->MirrorThroughputs.empty()
+        ? this->addPaths(beam, sure, lost + most * (ofShort + further), true)
+        : beam.faintBelow;
+      lost = strongest < beam.faintBelow ? strongest : lost;
+      return !(strongest < beam.faintBelow);
+    };
+    if (!gathers && !mayMatter(0.0))
+    {
+      return false;
     }
     if (gathers)
     {
@@ -587,7 +663,16 @@ bool SecondaryReflection::collect(
       [&](const MirrorPath& path) { return this->Wanted[path.start] != 0; });
     ofMirrors =
       shares ? part / std::max(1.0, waysOf(this->Setup) * static_cast<double>(wanted)) : threshold;
-    traceMirrorPaths(beam, this->MirrorThroughputs, throughputOf(ofMirrors));
+    traceMirrorPaths(this->Setup, beam, this->MirrorThroughputs, throughputOf(ofMirrors));
+    if (gathers)
+    {
+      // Now the ends are known.
+      this->measureMirrors(beam, 0);
+      if (!mayMatter(this->untracedMirrors(beam.trace)))
+      {
+        return false;
+      }
+    }
   }
   else
   {

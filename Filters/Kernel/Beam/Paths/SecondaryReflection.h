@@ -103,22 +103,28 @@ public:
   bool collect(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths, double& lost);
 
 private:
-  /// Throughputs of a mirror path and, with an aperture, of the paths over its points that come
-  /// back by the mirror: lit directly, and lit by the mirror.
+  /// Throughputs of a mirror path. With an aperture, only light from two mirrors follows the mirror
+  /// direction exactly. Matt light takes the drawn direction: it comes from the matt end, by the
+  /// mirror after direct light, and by the mirror after light from the mirror.
   struct MirrorThroughput
   {
-    double there, back, again;
-    double total() const { return this->there + this->back + this->again; }
+    double exact = 0.0, there = 0.0, back = 0.0, again = 0.0;
+    double most = 0.0; ///< bound of the matt light if the direction is not drawn
+    double total() const
+    {
+      return this->exact + this->there + this->back + this->again + this->most;
+    }
   };
   void prepare(const SecondaryBeam& beam, bool byRegions);
   double placeMirrors(const SecondaryBeam& beam, double least, double needed);
-  double boundBeyond(const SecondaryBeam& beam, std::size_t surface) const;
-  double mostBeyond(const SecondaryBeam& beam) const;
+  double boundBeyond(std::size_t surface) const;
+  double mostBeyond() const;
   double traceBeyondMirrors(const SecondaryBeam& beam, double least);
   double addPaths(const SecondaryBeam& beam, double most, double further, bool mirrors);
   double measureMirrors(const SecondaryBeam& beam, std::size_t from);
   double mostOfMirrors(bool byRegions) const;
   void measure(const SecondaryBeam& beam);
+  double untracedMirrors(const SecondaryTrace& trace) const;
   double untracedBound(const SecondaryTrace& trace) const;
   void listPaths(const SecondaryBeam& beam, std::vector<SecondaryPath>& paths) const;
   MirrorThroughput mirrorThroughput(const SecondaryBeam& beam, const MirrorPath& path) const;
@@ -136,6 +142,7 @@ private:
   MaterialLanes Materials;              ///< material of each sample
   std::vector<double> SpecularBounds;   ///< bound of the mirror path's throughput, by sample
   double OverMirror = 1.0;              ///< mirrorReturnBound()
+  double OfMatt = 1.0;                  ///< mattReturnBound()
   std::vector<char> Wanted;             ///< whether mirror paths may matter, by surface
   /// Surfaces in the order of their search, each after minus the bound of its throughput.
   std::vector<std::pair<double, std::uint32_t>> Order;

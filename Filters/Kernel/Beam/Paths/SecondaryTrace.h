@@ -67,9 +67,28 @@ struct SecondaryConnections
 enum class MirrorEnd : std::uint8_t
 {
   NotTraced = 0,
-  Nowhere = 1, ///< not where the apex sees it in the cone
-  Arrives = 2,
-  Lost = 3 ///< not even where only the mirror sees it
+  Nowhere = 1, ///< where neither the apex nor a mirror sees it in the cone
+  Arrives = 2
+};
+
+/// Where light from a mirror meets a matt surface, in a direction drawn from the mirror's lobe, and
+/// where the mirror shows this place.
+struct MattEnd
+{
+  bool seen = false;         ///< whether the apex sees the place, in the cone
+  bool shown = false;        ///< whether the apex sees the place in the mirror, in the cone
+  std::uint32_t triangle;    ///< triangle of the second reflection
+  std::uint32_t mirror;      ///< triangle of the third reflection
+  double back;               ///< weight of the reverse path / weight of the path
+  double again;              ///< weight of the path back by the mirror / weight of the path
+  double range;              ///< range of the place, m
+  double image;              ///< range of its image behind the mirror, m
+  double length;             ///< length of the whole path, m
+  double lengthAgain;        ///< length of the whole path back by the mirror, m
+  double cosine;             ///< cosine of incidence at the third point, seen from the apex
+  ReflectionGeometry second; ///< angles of the light to the apex
+  ReflectionGeometry third;  ///< angles of the light to the third point
+  Vec3 end, through;         ///< second and third point relative to the apex, m
 };
 
 /// A mirror path that arrives, with all values on which the path's energy depends, except
@@ -81,7 +100,6 @@ struct MirrorPath
   std::uint32_t first;       ///< triangle of the first reflection
   std::uint32_t triangle;    ///< triangle of the second reflection
   double weight;             ///< share of the pulse's energy
-  double back;               ///< weight of the reverse path / `weight`
   double cosine;             ///< cosine of incidence at the first point
   double rangeOne;           ///< range of the first point, m
   double length;             ///< length of the whole path, m
@@ -90,6 +108,7 @@ struct MirrorPath
   Vec3 from, end;            ///< the two points relative to the apex, m
   Visibility visibility;     ///< whether the path is blocked
   bool seen = true;          ///< whether the apex sees the second point, in the cone
+  MattEnd matt{};            ///< with an aperture, set for paths that are not blocked
 };
 
 /// Number of a mirror path by MirrorRegions.h, after the path `before` (null: none) of the number
@@ -122,6 +141,7 @@ struct SecondaryTrace
   /// How far MirrorRegions.h has searched each surface: 0 not at all, 1 for ends that the apex
   /// sees, 2 for all ends. Empty: mirror paths start from hits.
   std::vector<char> searched;
+  std::uint64_t lobes = 0; ///< hash of the lobes from which directions of `mirrorPaths` were drawn
   std::vector<MirrorPath> mirrorPaths; ///< mirror paths, in the order of hits or surfaces
   SecondaryConnections connections;
   std::uint32_t partners = 0;        ///< M of `connections`

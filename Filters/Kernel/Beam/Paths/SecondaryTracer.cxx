@@ -47,32 +47,143 @@ bool seesEnd(const SecondaryBeam& beam, const Vec3& point, const Vec3& direction
   return !seen.valid() || seen.triangle == triangle || seen.range >= range - surfaceMargin(range);
 }
 
-/// Follow a mirror path whose start and direction, `end`, are known.
-/// @return false if the path ends nowhere, or where the apex sees the end
-bool followBeyond(const SecondaryBeam& beam, MirrorPath& path)
+/// A direction near another direction, with the density of cos^kp of the angle between.
+struct LobeSample
 {
-  const Vec3 direction = path.end;
-  const Hit found = beam.tracer.traceFrom(path.from, direction, surfaceMargin(path.rangeOne),
-    path.first, std::numeric_limits<double>::infinity());
+  Vec3 direction;
+  double cosine;
+};
+
+/// Draw from the lobe cos^kp. @param narrower factor by which the angle is multiplied afterwards
+LobeSample drawFromLobe(
+  const std::array<double, 2>& u, double kp, const Vec3& axis, double narrower)
+{
+  const double cosine = std::pow(u[0], 1.0 / (kp + 1.0));
+  const double sine2 = -std::expm1(2.0 * std::log(u[0]) / (kp + 1.0));
+  const double angle = narrower * std::atan2(std::sqrt(sine2), cosine);
+  const Vec3 other = std::fabs(axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+  const Vec3 e1 = unitVector(glm::cross(axis, other));
+  const Vec3 e2 = glm::cross(axis, e1);
+  const double turn = 2.0 * Pi * u[1];
+  return { unitVector(std::cos(angle) * axis +
+             std::sin(angle) * (std::cos(turn) * e1 + std::sin(turn) * e2)),
+    cosine };
+}
+
+double densityAt(const SecondaryBeam& beam, const BeamShape& shape, const Vec3& point)
+{
+  const Vec3 q = beam.frame.toPlane(point);
+  return shape.density(q.x / q.z, q.y / q.z);
+}
+
+/// Find whether and where the mirror shows the end of a path. The direction from the apex is drawn
+/// about the image of the end. @param out direction in which the light arrives at the end
+void findImage(const ScanSetup& setup, const SecondaryBeam& beam, const std::array<double, 2>& u,
+  const Vec3& normal, const Vec3& out, const Vec3& endNormal, MirrorPath& path)
+{
+  MattEnd& matt = path.matt;
+  const double kp = setup.material(path.first).kp;
+  const double height = path.rangeOne * path.cosine;
+  const double above = glm::dot(normal, matt.end) + height;
+  if (!(above > 0.0))
+  {
+    return;
+  }
+  const Vec3 image = matt.end - 2.0 * above * normal;
+  matt.image = safeLength(image);
+  const double behind = matt.image * above / (height + above); // mirror to image
+  const LobeSample view = drawFromLobe(u, kp, image / matt.image, behind / matt.image);
+  matt.cosine = -glm::dot(view.direction, normal);
+  const double range = height / matt.cosine;
+  matt.through = range * view.direction;
+  if (!(matt.cosine > 0.0) || !beam.frame.contains(matt.through))
+  {
+    return;
+  }
+  const Hit seen = beam.tracer.traceFromApex(matt.through);
+  const Vec3 back = matt.through - matt.end;
+  const double step = safeLength(back);
+  if (!seen.valid() || !(std::fabs(seen.range - range) * matt.cosine <= 1e-6 * range) ||
+    beam.tracer.occluded(matt.through, matt.end, surfaceMargin(std::max(range, matt.range)),
+      seen.triangle, matt.triangle))
+  {
+    return;
+  }
+  // The drawn lobe takes the mirror's height above the end for the height at the image's centre.
+  const double lobe =
+    std::max(0.0, -glm::dot(mirrorDirection(view.direction, normal), back) / step);
+  const double toDrawn = std::exp(kp * std::log(std::max(lobe, 1e-300) / view.cosine));
+  matt.again = std::min(MostGrazing,
+    toDrawn * -glm::dot(back, normal) / (step * matt.cosine) * (behind * behind) / (step * step));
+  matt.shown = true;
+  matt.mirror = seen.triangle;
+  matt.lengthAgain = matt.length - matt.range + step + range;
+  matt.third = reflectionGeometry(out, back / step, endNormal);
+}
+
+/// Set the matt end of a mirror path whose start is known. @param number number of the path
+void findMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
+  std::uint64_t number, MirrorPath& path)
+{
+  MattEnd& matt = path.matt;
+  const auto draw = [&](std::uint64_t k)
+  { return uniformPair(setup.settings.seed, beam.id, 2 * number + k, RandomPurpose::Lobes); };
+  const Vec3 normal = seeTriangle(beam.scene, path.first, beam.frame.origin).normal;
+  const Vec3 mirrored = mirrorDirection(path.from / path.rangeOne, normal);
+  const Vec3 out = drawFromLobe(draw(0), setup.material(path.first).kp, mirrored, 1.0).direction;
+  const double rise = glm::dot(out, normal);
+  if (!(rise > 0.0))
+  {
+    return; // the surface itself stops the part of the lobe below its horizon
+  }
+  const Hit found = beam.tracer.traceFrom(path.from, out, surfaceMargin(path.rangeOne), path.first);
   if (!found.valid())
   {
-    return false;
+    return;
   }
-  const Vec3 normal = seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal;
-  path.end = path.from + found.range * direction;
-  if (seesEnd(beam, path.end, direction, found.triangle, normal))
+  const Vec3 endNormal = seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal;
+  matt.triangle = found.triangle;
+  matt.end = path.from + found.range * out;
+  matt.range = safeLength(matt.end);
+  matt.length = path.rangeOne + found.range + matt.range;
+  matt.seen = seesEnd(beam, matt.end, out, found.triangle, endNormal);
+  if (matt.seen)
+  {
+    matt.back = densityAt(beam, shape, matt.end) / densityAt(beam, shape, path.from) *
+      std::min(MostGrazing, rise / path.cosine);
+    matt.second = reflectionGeometry(out, -matt.end / matt.range, endNormal);
+  }
+  if (setup.settings.numberOfReflections > 2)
+  {
+    findImage(setup, beam, draw(1), normal, out,
+      glm::dot(endNormal, out) < 0.0 ? endNormal : -endNormal, path);
+  }
+}
+
+/// Number of a path of MirrorRegions.h.
+std::uint64_t numberOf(const MirrorPath& path)
+{
+  return std::uint64_t{ path.start } << 32 | path.one;
+}
+
+/// Follow a mirror path whose start and direction, `end`, are known.
+/// @return false if the path ends where the apex sees the end, or if no light arrives
+bool followBeyond(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
+  std::uint64_t number, MirrorPath& path)
+{
+  const Vec3 direction = path.end;
+  const Hit found =
+    beam.tracer.traceFrom(path.from, direction, surfaceMargin(path.rangeOne), path.first);
+  if (found.valid() &&
+    seesEnd(beam, path.from + found.range * direction, direction, found.triangle,
+      seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal))
   {
     return false;
   }
   path.seen = false;
-  path.back = 0.0;
-  path.triangle = found.triangle;
-  path.range = safeLength(path.end);
-  path.length = path.rangeOne + found.range + path.range;
-  path.second =
-    reflectionGeometry(direction, -direction, glm::dot(normal, direction) < 0.0 ? normal : -normal);
   path.visibility = Visibility::Clear;
-  return true;
+  findMattEnd(setup, beam, shape, number, path);
+  return path.matt.seen || path.matt.shown;
 }
 
 /// End of the path from a hit in a direction; invalid if the end is outside the cone or hidden.
@@ -102,20 +213,21 @@ void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
 {
   const HitPoint from(beam.samples, beam.geometry, hit);
   const Vec3 direction = mirrorDirection(beam.geometry.direction(hit), from.normal);
-  const bool isNew = beam.trace.mirror[hit] == MirrorEnd::NotTraced;
-  const Hit found = isNew && inCone ? pathEnd(setup, beam, hit, direction) : Hit();
+  const Hit found = inCone ? pathEnd(setup, beam, hit, direction) : Hit();
+  const bool gathers = setup.sensor.receiverAperture > 0.0;
   if (!found.valid())
   {
-    MirrorPath path{ 0, hit, beam.geometry.triangle(hit), NoTriangle, beam.samples.weight[hit], 0.0,
-      beam.samples.cosine[hit], from.range, 0.0, 0.0, {}, from.point, direction,
-      Visibility::Unknown };
-    const bool gathers = setup.sensor.receiverAperture > 0.0;
-    const bool arrives = gathers && followBeyond(beam, path);
-    beam.trace.mirror[hit] = arrives ? MirrorEnd::Arrives
-      : gathers                      ? MirrorEnd::Lost
-                                     : MirrorEnd::Nowhere;
-    if (arrives)
+    MirrorPath path{ 0, hit, beam.geometry.triangle(hit), NoTriangle, beam.samples.weight[hit],
+      beam.samples.cosine[hit], from.range, 0.0, 0.0, {}, from.point, direction, Visibility::Clear,
+      false };
+    beam.trace.mirror[hit] = MirrorEnd::Nowhere;
+    if (gathers)
     {
+      findMattEnd(setup, beam, shape, beam.samples.ray[hit], path);
+    }
+    if (path.matt.seen || path.matt.shown)
+    {
+      beam.trace.mirror[hit] = MirrorEnd::Arrives;
       beam.trace.mirrorPaths.push_back(path);
     }
     return;
@@ -126,16 +238,15 @@ void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
   // differ widely.
   const Vec3 point = from.point + found.range * direction;
   const double range = safeLength(point);
-  const auto densityAt = [&](const Vec3& p)
-  {
-    const Vec3 q = beam.frame.toPlane(p);
-    return shape.density(q.x / q.z, q.y / q.z);
-  };
-  beam.trace.mirrorPaths.push_back({ 0, hit, beam.geometry.triangle(hit), found.triangle,
-    beam.samples.weight[hit], densityAt(point) / densityAt(from.point), beam.samples.cosine[hit],
-    from.range, from.range + found.range + range, range,
+  MirrorPath path{ 0, hit, beam.geometry.triangle(hit), found.triangle, beam.samples.weight[hit],
+    beam.samples.cosine[hit], from.range, from.range + found.range + range, range,
     reflectionGeometry(direction, -point / range, end.normal), from.point, point,
-    Visibility::Clear });
+    Visibility::Clear };
+  if (gathers)
+  {
+    findMattEnd(setup, beam, shape, beam.samples.ray[hit], path);
+  }
+  beam.trace.mirrorPaths.push_back(path);
 }
 
 /// Draw a direction from a surface. The density of directions is proportional to the cosine, as for
@@ -203,9 +314,7 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const auto isWanted = [&](std::uint32_t hit)
   {
     const double most = throughputs[hit];
-    return (trace.mirror[hit] == MirrorEnd::NotTraced ||
-             (gathers && trace.mirror[hit] == MirrorEnd::Nowhere)) &&
-      most > 0.0 && most >= least;
+    return trace.mirror[hit] == MirrorEnd::NotTraced && most > 0.0 && most >= least;
   };
   std::uint32_t hit = 0;
   while (hit < beam.samples.size() && !isWanted(hit))
@@ -239,15 +348,17 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
     [](const MirrorPath& a, const MirrorPath& b) { return a.one < b.one; });
 }
 
-void traceBeyond(const SecondaryBeam& beam, std::vector<MirrorPath>& paths, std::size_t first)
+void traceBeyond(const ScanSetup& setup, const SecondaryBeam& beam, std::vector<MirrorPath>& paths,
+  std::size_t first)
 {
+  const BeamShape shape(setup.sensor);
   std::size_t kept = first;
   for (std::size_t p = first; p < paths.size(); ++p)
   {
     MirrorPath& path = paths[p];
     // Only one of two triangles that coincide is seen.
     if ((!beam.cells || beam.tracer.traceFromApex(path.from).triangle == path.first) &&
-      followBeyond(beam, path))
+      followBeyond(setup, beam, shape, numberOf(path), path))
     {
       paths[kept++] = path;
     }
@@ -255,9 +366,10 @@ void traceBeyond(const SecondaryBeam& beam, std::vector<MirrorPath>& paths, std:
   paths.resize(kept);
 }
 
-void traceMirrorPaths(
-  const SecondaryBeam& beam, const std::vector<double>& throughputs, double least)
+void traceMirrorPaths(const ScanSetup& setup, const SecondaryBeam& beam,
+  const std::vector<double>& throughputs, double least)
 {
+  const BeamShape shape(setup.sensor);
   std::vector<MirrorPath>& paths = beam.trace.mirrorPaths;
   for (std::size_t p = 0; p < paths.size(); ++p)
   {
@@ -276,6 +388,10 @@ void traceMirrorPaths(
       !beam.tracer.occluded(path.from, path.end, surfaceMargin(std::max(path.rangeOne, path.range)),
         path.first, path.triangle);
     path.visibility = clear ? Visibility::Clear : Visibility::Blocked;
+    if (clear && setup.sensor.receiverAperture > 0.0)
+    {
+      findMattEnd(setup, beam, shape, numberOf(path), path);
+    }
   }
 }
 

@@ -33,13 +33,16 @@ void traceMirrors(const ScanSetup& setup, const SecondaryBeam& beam,
   const std::vector<double>& throughputs, double least, MirrorPairs& pairs);
 
 /// Follow mirror paths from the starts that MirrorRegions::spread() appended from number `first`
-/// on. Paths remain that end where only the mirror sees the second point.
-void traceBeyond(const SecondaryBeam& beam, std::vector<MirrorPath>& paths, std::size_t first);
+/// on. Paths remain that do not end where the apex sees the end, but whose mirror's lobe has light
+/// that the apex sees, at its end or in the mirror.
+void traceBeyond(const ScanSetup& setup, const SecondaryBeam& beam, std::vector<MirrorPath>& paths,
+  std::size_t first);
 
-/// Find which mirror paths of MirrorRegions.h with a throughput of at least `least` are blocked. No
-/// path is tested twice. @param throughputs throughput of each path, as if not blocked
-void traceMirrorPaths(
-  const SecondaryBeam& beam, const std::vector<double>& throughputs, double least);
+/// Find which mirror paths of MirrorRegions.h with a throughput of at least `least` are blocked,
+/// and the matt ends of the others. No path is tested twice. @param throughputs throughput of each
+/// path, as if not blocked
+void traceMirrorPaths(const ScanSetup& setup, const SecondaryBeam& beam,
+  const std::vector<double>& throughputs, double least);
 
 /// Find the short paths of the samples, unless the trace already holds these paths.
 void traceShortPaths(const ScanSetup& setup, const SecondaryBeam& beam, ConnectionFinder& finder);
