@@ -148,6 +148,26 @@ Scene unlikeDistances()
   return scene;
 }
 
+/// A rough mirror that the beam meets at 1 degree, before a wall that stands on the mirror.
+Scene roughWater()
+{
+  Scene scene;
+  const double c = std::cos(Pi / 180.0);
+  const double s = std::sin(Pi / 180.0);
+  upright(scene, 171.9 - 170.0 * c, -170.0 * s, 171.9, 0.0, { 0.02, 0.6, 500.0 });
+  upright(scene, 171.9, 0.0, 171.9 - 20.0 * s, 20.0 * c, { 0.3, 0.0, 1.0 });
+  return scene;
+}
+
+/// Two plates at 60 degrees, 100 m away.
+Scene sharpCorner(const Material& one, const Material& two)
+{
+  Scene scene;
+  upright(scene, 100.0, 0.0, 100.0 - 5.0 * std::sqrt(3.0), -5.0, one);
+  upright(scene, 100.0, 0.0, 100.0 - 5.0 * std::sqrt(3.0), 5.0, two);
+  return scene;
+}
+
 /// Two mirrors that stand open towards the lidar, with a wall between them.
 Scene wallBetweenMirrors()
 {
@@ -174,8 +194,9 @@ TEST(SecondaryReflection, ThroughAnApertureLightComesBackBothWays)
   // returns the matt part and the lobe of f through the aperture. What goes wall, mirror, lidar is
   // the integral over the rays that the receiver looks along of the lobe of the mirror, the matt
   // part of the wall, and the density of the beam there. Standard errors are below 0.4 %. What goes
-  // mirror, wall, the same mirror is added for the mirrors' images: light on the wall in the image,
-  // and the image's matt part through the aperture.
+  // mirror, wall, the same mirror is added: at the grazed, rough and unlike mirrors both ways take
+  // the lobe, and each end is seen from 200 places of the mirror (errors below 0.4 %). For the
+  // other mirrors it is the light on the wall in the mirror's image.
   const Material matt{ 0.8, 0.0, 1.0 };
   const Material rough{ 0.8, 0.0, 1.0, 0.5 };
   const struct
@@ -189,10 +210,12 @@ TEST(SecondaryReflection, ThroughAnApertureLightComesBackBothWays)
     { "glass and wall", corner(Glass, { 0.5, 0.0, 1.0 }), 2.691e-11, 1.147e-11, false },
     { "glass and concrete", corner(Glass, { 0.3104, 0.0, 1.0 }), 1.671e-11, 7.119e-12, false },
     { "metal and wall", corner(Metal, { 0.146, 0.0, 1.0 }), 5.972e-12, 1.854e-12, false },
-    { "grazing", grazedMirror(), 6.156e-12, 1.097e-11, false },
-    { "grazing, Gaussian beam", grazedMirror(), 5.427e-12, 1.330e-11,
+    { "grazing", grazedMirror(), 6.156e-12, 9.767e-12, false },
+    { "grazing, Gaussian beam", grazedMirror(), 5.427e-12, 1.210e-11,
       true }, // 3.743e-12 and 1.681e-12
-    { "unlike distances", unlikeDistances(), 2.404e-13, 5.953e-12, false },
+    { "unlike distances", unlikeDistances(), 2.404e-13, 5.871e-12, false },
+    { "sharp corner", sharpCorner(Glass, { 0.5, 0.0, 1.0 }), 1.928e-11, 1.632e-11, false },
+    { "rough and grazing", roughWater(), 2.112e-12, 3.280e-13, false },
     { "wall between mirrors", wallBetweenMirrors(), 2.377e-11, 7.430e-12, false },
     { "two mirrors", corner(Glass, Metal), 7.945e-8, 0.0, false },
     { "matt", corner(matt, matt), 9.491e-12, 0.0, false },
@@ -225,7 +248,9 @@ TEST(SecondaryReflection, ThroughAnApertureLightComesBackBothWays)
       stated += result.echoes[0].energyStdError / seeds;
     }
     EXPECT_GE(held, 34);
-    EXPECT_LE(stated, 2.0 * std::sqrt((squares - sum * sum / seeds) / (seeds - 1)));
+    const double deviation = std::sqrt((squares - sum * sum / seeds) / (seeds - 1));
+    EXPECT_LE(stated, 2.0 * deviation);
+    EXPECT_LE(std::fabs(sum / seeds), 0.01 * truth + 4.0 * deviation / std::sqrt(seeds));
   }
 }
 

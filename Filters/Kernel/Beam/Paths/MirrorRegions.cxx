@@ -32,8 +32,8 @@ constexpr double SamplesPerRay = 2.0;
 
 /// The same for paths that may end anywhere, whose light comes from far surfaces, evenly; and the
 /// fewest pairs of samples of a surface.
-constexpr double SpreadPerRay = 0.25;
-constexpr double FewestSpread = 4.0;
+constexpr double SpreadPerRay = 1.0;
+constexpr double FewestSpread = 1.0;
 
 /// Number of the first sample of such paths.
 constexpr std::uint32_t FirstSpread = 0x80000000;

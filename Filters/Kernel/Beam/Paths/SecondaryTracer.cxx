@@ -167,23 +167,22 @@ std::uint64_t numberOf(const MirrorPath& path)
 }
 
 /// Follow a mirror path whose start and direction, `end`, are known.
-/// @return false if the path ends where the apex sees the end, or if no light arrives
+/// @return false if no light arrives, or if the direction ends where the apex sees the end
 bool followBeyond(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
   std::uint64_t number, MirrorPath& path)
 {
-  const Vec3 direction = path.end;
-  const Hit found =
-    beam.tracer.traceFrom(path.from, direction, surfaceMargin(path.rangeOne), path.first);
-  if (found.valid() &&
-    seesEnd(beam, path.from + found.range * direction, direction, found.triangle,
-      seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal))
-  {
-    return false;
-  }
   path.seen = false;
   path.visibility = Visibility::Clear;
   findMattEnd(setup, beam, shape, number, path);
-  return path.matt.seen || path.matt.shown;
+  if (!path.matt.seen && !path.matt.shown)
+  {
+    return false;
+  }
+  const Hit found =
+    beam.tracer.traceFrom(path.from, path.end, surfaceMargin(path.rangeOne), path.first);
+  return !found.valid() ||
+    !seesEnd(beam, path.from + found.range * path.end, path.end, found.triangle,
+      seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal);
 }
 
 /// End of the path from a hit in a direction; invalid if the end is outside the cone or hidden.
