@@ -315,6 +315,37 @@ TEST(ReceiverNoise, AddsToEchoesBeforeTheLimits)
   }
 }
 
+TEST(ReceiverNoise, AlarmsLieEvenlyInTheGate)
+{
+  // A unit of 1 m, of which 0.3 m lie inside the gate.
+  Sensor sensor = noisySensor(ReceiverModel::EnergyLimits);
+  sensor.samplingInterval = 2.0 / SpeedOfLight;
+  sensor.minimumRange = 9.7;
+  sensor.rangeGate = 10.0;
+  sensor.noisePhotonRate = 3.0 / sensor.samplingInterval;
+  sensor.lowerEnergyLimit = 4.0 * sensor.photonEnergy();
+  for (const ReturnMode mode : { ReturnMode::All, ReturnMode::RangeUnits })
+  {
+    const NoisePlan plan = planNoise(sensor, true);
+    BeamReceiver receiver(sensor, plan, 0, mode);
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::uint64_t beam = 0; beam < 4000; ++beam)
+    {
+      receiver.receive(beam, {}, sensor.backgroundRadiance);
+      for (const Return& one : receiver.returns())
+      {
+        ASSERT_GE(one.range, 9.7);
+        ASSERT_LE(one.range, 10.0);
+        sum += one.range;
+        count += 1.0;
+      }
+    }
+    ASSERT_GT(count, 400.0);
+    EXPECT_NEAR(sum / count, 9.85, 4.5 * 0.3 / std::sqrt(12.0 * count));
+  }
+}
+
 TEST(Receiver, RangesFarBelowAUnitKeepTheirDigits)
 {
   // Units of 150 km. Differences from the centre of one would be rounded to 1e-11 m, also below 0.

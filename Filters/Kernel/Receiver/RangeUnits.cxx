@@ -108,6 +108,7 @@ RangeUnitAccumulator::RangeUnitAccumulator(
   , RelativeWidth(pulseWidth / samplingInterval)
   , GateUnits(unitsInsideGate(samplingInterval, rangeGate))
   , LeastLength(2.0 * minimumRange)
+  , MostLength(2.0 * rangeGate)
 {
 }
 
@@ -118,15 +119,18 @@ void RangeUnitAccumulator::clear()
   this->Units.clear();
   this->EnergyBeforeGate = 0.0;
   this->EnergyBeyondGate = 0.0;
+  this->LateEnergy = 0.0;
   this->Requests = 0;
 }
 
-/// The energy of a path, or 0 if it arrives before the gate.
+/// The energy of a path, or 0 if its range lies outside the gate.
 double RangeUnitAccumulator::recorded(double length, double energy)
 {
   const bool isEarly = length < this->LeastLength;
+  const bool isLate = length > this->MostLength;
   this->EnergyBeforeGate += isEarly ? energy : 0.0;
-  return isEarly ? 0.0 : energy;
+  this->LateEnergy += isLate ? energy : 0.0;
+  return isEarly || isLate ? 0.0 : energy;
 }
 
 void RangeUnitAccumulator::add(const Contribution& contribution)
@@ -167,7 +171,7 @@ double RangeUnitAccumulator::mostAround(std::size_t number) const
 void RangeUnitAccumulator::accumulate()
 {
   this->Units.clear();
-  this->EnergyBeyondGate = 0.0;
+  this->EnergyBeyondGate = this->LateEnergy;
   this->Requests = 0;
   const std::size_t count = this->Lengths.size();
   // Portions are not used until shares are requested.

@@ -85,7 +85,7 @@ public:
   /// @param samplingInterval sampling interval tau_s, s, > 0 @param pulseWidth width tau_e, s, in
   /// [0, 1000 tau_s]
   /// @param rangeGate end of the gate, m, > 0, before which all recorded units begin
-  /// @param minimumRange beginning of the gate, m, before which contributions are dropped
+  /// @param minimumRange beginning of the gate, m. Contributions from outside the gate are dropped.
   RangeUnitAccumulator(
     double samplingInterval, double pulseWidth, double rangeGate, double minimumRange = 0.0);
 
@@ -135,7 +135,9 @@ private:
   double UnitPathLength; // length of path in a unit, c tau_s, m
   double RelativeWidth;  // width of the pulse, tau_e/tau_s
   std::int64_t GateUnits;
-  double LeastLength; // least length of a recorded path, m
+  double LeastLength;      // least length of a recorded path, m
+  double MostLength;       // greatest length of a recorded path, m
+  double LateEnergy = 0.0; // energy of longer paths, J
   double EnergyBeforeGate = 0.0;
   double EnergyBeyondGate = 0.0;
 

@@ -147,12 +147,6 @@ struct Sensor
 
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
-
-  /// Range from which no light reaches a range unit inside the gate, m.
-  double farthestReceived() const
-  {
-    return this->rangeGate + this->rangeUnitLength() + 0.5 * SpeedOfLight * this->pulseWidth;
-  }
 };
 
 /// Beams whose input must contain a value of the sensor. For other beams the default replaces an

@@ -150,7 +150,7 @@ bool BeamLighting::reflectAgain(std::size_t beam, BeamTrace& trace, double most)
   const double lostBefore = this->Lost;
   // No path is shorter than twice the range of either end.
   if (dropsFaintPaths(this->Setup.settings) && !this->LightsAll &&
-    this->nearestRange() > this->Setup.sensor.farthestReceived())
+    this->nearestRange() > this->Setup.sensor.rangeGate)
   {
     return true;
   }

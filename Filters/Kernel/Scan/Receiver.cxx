@@ -33,6 +33,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Radiance(sensor.backgroundRadiance)
   , Errors(sensor, noise.ofRanges)
   , UnitLength(sensor.rangeUnitLength())
+  , Gate{ sensor.minimumRange, sensor.rangeGate }
   , Lower(sensor.lowerEnergyLimit)
   , Upper(sensor.upperEnergyLimit)
   , Plan(noise)
@@ -288,7 +289,16 @@ double BeamReceiver::openAt(std::int64_t unit) const
 
 double BeamReceiver::centreOf(std::int64_t unit) const
 {
-  return (static_cast<double>(unit) + 0.5) * this->UnitLength;
+  return this->placeIn(unit, 0.5);
+}
+
+/// Range, m, of a place in the part of a unit that lies inside the gate. @param place 0 to 1
+double BeamReceiver::placeIn(std::int64_t unit, double place) const
+{
+  const double begin = static_cast<double>(unit) * this->UnitLength;
+  const double low = std::max(begin, this->Gate[0]);
+  const double high = std::min(begin + this->UnitLength, this->Gate[1]);
+  return low < high ? low + place * (high - low) : begin + place * this->UnitLength;
 }
 
 double BeamReceiver::rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const
@@ -326,15 +336,13 @@ double BeamReceiver::rangeOfNoise(const Return& run) const
 {
   double weight = 0.0;
   double moment = 0.0;
-  const std::int64_t first = this->Units[run.firstUnit].index;
   for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
   {
     const ReceivedUnit& unit = this->Units[u];
     weight += unit.energy;
-    moment +=
-      unit.energy * (static_cast<double>(unit.index - first) + this->Noise.place(unit.index));
+    moment += unit.energy * this->placeIn(unit.index, this->Noise.place(unit.index));
   }
-  return (static_cast<double>(first) + moment / weight) * this->UnitLength;
+  return moment / weight;
 }
 
 void BeamReceiver::formReturns()

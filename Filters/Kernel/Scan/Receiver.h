@@ -138,12 +138,14 @@ private:
   void select();
   double rangeOfNoise(const Return& run) const;
   double openAt(std::int64_t unit) const;
+  double placeIn(std::int64_t unit, double place) const;
   double centreOf(std::int64_t unit) const;
 
   Sensor Instrument; ///< sensor with the sky as background
   double Radiance;
   RangeErrors Errors;
   double UnitLength;
+  double Gate[2]; // least and greatest recorded range, m
   double Lower;
   double Upper;
   NoisePlan Plan;

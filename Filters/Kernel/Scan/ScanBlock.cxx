@@ -10,7 +10,7 @@ ScanBlock::ScanBlock(
   , Beams(beams)
   , Block(block)
   , Gate(setup.sensor.seesDaylight() ? std::numeric_limits<double>::infinity()
-                                     : setup.sensor.farthestReceived())
+                                     : setup.sensor.rangeGate)
   , Views(setup, scene, block.tracer())
 {
 }

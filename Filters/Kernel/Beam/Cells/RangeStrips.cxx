@@ -255,7 +255,7 @@ double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) c
 RangeStrips::RangeStrips(const ScanSetup& setup)
   : Setup(setup)
   , UnitLength(setup.sensor.rangeUnitLength())
-  , Gate(setup.sensor.farthestReceived())
+  , Gate(setup.sensor.rangeGate)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
   , Shape(setup.sensor)
   , HasColumns(haveVolumes(setup.media))

@@ -94,7 +94,7 @@ PolygonRule::PolygonRule(const ScanSetup& setup)
   , Shape(setup.sensor)
   , UnitLength(setup.sensor.rangeUnitLength())
   , PulseLength(0.5 * SpeedOfLight * setup.sensor.pulseWidth)
-  , LastBorder(setup.sensor.farthestReceived())
+  , LastBorder(setup.sensor.rangeGate)
 {
   const double half = 0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval;
   this->Offsets[0] = fraction(half);
