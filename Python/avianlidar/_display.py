@@ -139,7 +139,8 @@ def sensor_rows(sensor) -> dict[str, Any]:
             f"({point['source']})")
     for name, entry in said.get("data_sheet", {}).items() if not sheet else ():
         if name.startswith("detection_"):
-            rows[name.replace("_", " ")] = f"{entry['value']:g} {entry['unit']} ({entry['source']})".replace(" 1 (", " (")
+            unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
+            rows[name.replace("_", " ")] = f"{entry['value']:g}{unit} ({entry['source']})"
     if "bar" in sheet:
         rows["error of the fit"] = f"up to {100 * sheet['bar']:.0f} % of a range, for a point left out"
     if factors:

@@ -150,7 +150,8 @@ class Sensor(PropertyOwner):
                      if name not in own and not given.keys() & {name, *others} and
                      getattr(self, name) == getattr(default, name))
 
-    def set_limits_from_data_sheet(self, range: float, reflectance: float, attenuation: float | None = None) -> "Sensor":
+    def set_limits_from_data_sheet(self, range: float, reflectance: float,
+                                   attenuation: float | None = None) -> "Sensor":
         """Sets the limits of `EnergyLimits` so that a surface that fills the beam is detected up to `range` (m) at this
         reflectance. `attenuation` of the air (1/m); default: clear air.
 

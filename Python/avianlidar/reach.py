@@ -147,7 +147,7 @@ def air_of(sensor: Sensor, words: Sequence[str] | None = None) -> dict[str, Any]
 
 def interval(sensor: Sensor) -> tuple[float, float] | None:
     """What the ranges of real units are of the ranges by a sensor's file, the least and the greatest factor, for
-    surfaces that fill the beam: `range_interval` of the file, else the error of the fit. None if the file has neither."""
+    surfaces that fill the beam: `range_interval` of the file, else the error of the fit; None if both are missing."""
     said = sensor.description
     bar = said.get("sheet", {}).get("bar")
     low, high = said.get("range_interval", {}).get("value", (1.0 - (bar or 0.0), 1.0 + (bar or 0.0)))
@@ -155,8 +155,8 @@ def interval(sensor: Sensor) -> tuple[float, float] | None:
 
 
 def in_interval(sensor: Sensor, species: str, **settings: Any) -> tuple[float, float] | None:
-    """The ranges to which the least and the most sensitive unit of a sensor's interval detect half of the birds, m. Such
-    a unit receives the square of its factor times the light. @param settings as for within_beams"""
+    """The ranges to which the least and the most sensitive unit of a sensor's interval detect half of the birds, m.
+    Such a unit receives the square of its factor times the light. @param settings as for within_beams"""
     factors = interval(sensor)
     if factors is None:
         return None

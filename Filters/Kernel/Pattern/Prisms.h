@@ -23,9 +23,8 @@
  * draw.
  * Differs: from Brazeal et al., Sensors 21, 4722 (2021), in that all prisms stand exactly on the
  * axis and have exact angles.
- * Valid: all beams start at the sensor's position, and not where they leave the last prism (some
- * millimetres beside the axis). Prisms stand in air of the refractive index 1. The phase is rounded
- * to 1e-16 of the turns since time 0.
+ * Valid: all beams start at the sensor's position, some millimetres beside the last prism. Prisms
+ * stand in air of the index 1. Phases are rounded to 1e-16 of the turns since time 0.
  * Test: TestPrisms.cxx.
  */
 #ifndef avianlidar_Prisms_h
@@ -38,8 +37,7 @@
 
 namespace avianlidar
 {
-/// Values of the prisms, in the order in which light passes the prisms. Each vector has one value
-/// per prism. The vector of phases may be empty.
+/// Prisms in the order in which light passes them. Each vector has one value per prism.
 struct PrismTrain
 {
   std::vector<double> wedgeAngles;       ///< angles between the two faces, deg, -60 to 60
@@ -49,8 +47,7 @@ struct PrismTrain
   double axisElevation = 0.0;            ///< elevation of the axis, deg, -90 to 90
   /// Rotation rate of axis and prisms about the vertical, Hz; above 0: clockwise from above.
   double axisRotationRate = 0.0;
-  /// Rotation rate of the lasers about the axis, Hz; above 0: clockwise. If lasers stand still
-  /// below a mirror that turns with the axis, this rate is minus the rate of the axis.
+  /// Rotation rate of lasers about the axis, Hz; below a turning mirror, minus the axis' rate.
   double laserRotationRate = 0.0;
 
   bool none() const { return this->wedgeAngles.empty(); }
@@ -62,8 +59,7 @@ struct PrismTrain
 std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters);
 
 /// Direction of light behind the prisms, in the sensor's frame. Throws std::runtime_error if no
-/// light passes. Start and time are separate, because their sum would round the time to fewer
-/// digits.
+/// light passes. Start and time are separate, because their sum would round the time.
 /// @param start start of the scan, s since time 0 @param time time since the start, s @param enters
 /// direction of the laser at time 0, unit vector in the frame of the axis
 Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enters);

@@ -209,7 +209,8 @@ class Report:
         table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p),
                   "one_scan_std_error": float(e), "several_scans": float(k)} for name, one in of.items()
                  for r, p, e, k in zip(one.ranges, one.one_scan, one.error, one.several_scans)]
-        return {"of": of, "rows": rows, "table": table, "uncertainty": reach.uncertainty(plan.name, plan.sensor), "picture": self._draw(
+        unsure = reach.uncertainty(plan.name, plan.sensor)
+        return {"of": of, "rows": rows, "table": table, "uncertainty": unsure, "picture": self._draw(
             folder / f"{plan.name}-range.png", (4.6, 3.4), "Curves",
             f"{plan.name}: share of birds in its band that are detected, by range, in free air; bars: standard error",
             lambda axes: pictures.draw_reach(axes, of, several))}

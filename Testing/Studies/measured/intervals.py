@@ -70,12 +70,13 @@ def intervals(data):
         spread = max(factors + others) / min(factors + others)
         bar = seen.sensor.description.get("sheet", {}).get("bar", 0.0)
         rule = min(1 - bar, *factors) / WIDER, max(1 + bar, *factors) * WIDER
-        rows.append((f"`{preset}`", f"{low:g} to {high:g}", "{:.2f} to {:.2f}".format(*rule), chosen, f"{sum(inside)} of {len(inside)}", kept or "none",
-                     f"{sum(test)} of {len(test)}" if kept else "-",
-                     f"{100 * (sum(inside) + sum(test)) / (len(inside) + len(test)):.0f} %",
-                     f"{min(factors + others):.2f} to {max(factors + others):.2f}", f"{high / low / spread:.2f}"))
-    return ("preset", "interval", "by the rule", "chosen from", "bins inside", "kept out", "bins inside", "all inside", "measured",
-            "width over spread"), rows
+        if abs(low - rule[0]) > 0.006 or abs(high - rule[1]) > 0.006:
+            print(f"{preset}: the rule gives {rule[0]:.2f} to {rule[1]:.2f}, its file {low:g} to {high:g}")
+        share = 100 * (sum(inside) + sum(test)) / (len(inside) + len(test))
+        rows.append((f"`{preset}`", f"{low:g} to {high:g}",
+                     f"{min(factors + others):.2f} to {max(factors + others):.2f}", f"{high / low / spread:.2f}",
+                     f"{chosen}: {sum(inside)} of {len(inside)}", f"{kept}: {sum(test)} of {len(test)}" if kept else "none", f"{share:.0f} %"))
+    return ("preset", "interval", "measured", "width over spread", "bins inside", "kept out", "share"), rows
 
 
 def seabirds():
