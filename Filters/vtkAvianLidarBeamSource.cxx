@@ -168,6 +168,7 @@ void vtkAvianLidarBeamSource::SetTablesOfPreset(const char* name)
   }
   this->PrismAxisElevation = preset->PrismAxisElevation;
   this->PrismAxisRotationRate = preset->PrismAxisRotationRate;
+  this->PrismLaserRotationRate = preset->PrismLaserRotationRate;
   this->Assumed = preset->Assumed;
   this->Description = preset->Description;
   this->Modified();
@@ -420,6 +421,7 @@ avianlidar::ScanPattern vtkAvianLidarBeamSource::vtkInternals::PatternOf(const S
   pattern.prisms.phases = self.PrismPhases;
   pattern.prisms.axisElevation = self.PrismAxisElevation;
   pattern.prisms.axisRotationRate = self.PrismAxisRotationRate;
+  pattern.prisms.laserRotationRate = self.PrismLaserRotationRate;
   pattern.azimuthStart = self.AzimuthRange[0];
   pattern.azimuthEnd = self.AzimuthRange[1];
   pattern.azimuthStep = self.AzimuthStep;

@@ -405,6 +405,7 @@ protected:
   std::vector<double> PrismPhases;
   double PrismAxisElevation = 0.0;
   double PrismAxisRotationRate = 0.0;
+  double PrismLaserRotationRate = 0.0;
   std::string Description;
   /// Properties that a file marks as assumed, by names in snake case, and their values.
   std::vector<std::pair<std::string, std::vector<double>>> Assumed;

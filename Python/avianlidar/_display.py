@@ -3,6 +3,7 @@
 import base64
 import html
 import io
+import itertools
 import re
 from collections.abc import Callable
 from typing import Any
@@ -13,6 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from ._advice import to_act_on
 from ._cloud import field_values, triangles_of
 from ._numbers import figures
+from ._properties import PATTERN
 from ._sight import extent
 
 MOST = 20000  # number of triangles or beams in a picture, at most
@@ -103,14 +105,19 @@ def draw_from_above(scene, axes) -> None:
 def sensor_rows(sensor) -> dict[str, Any]:
     """The rows of a sensor's table."""
     beams = sensor.beams
-    rows = {"beams": beams.number_of_points}
+    missing, open_pattern = sensor.not_given, set(sensor.not_given) & {*PATTERN, "rotation_rate"}
+    rows = {"beams": f"{beams.number_of_points} (pattern not given: default)" if open_pattern else
+            beams.number_of_points}
     if beams.number_of_points:
         rows["channels"] = len(np.unique(beams["laser_id"]))
         rows["elevations"] = "{:.4g} to {:.4g} deg".format(beams["vertical_angle"].min(), beams["vertical_angle"].max())
+        if {"minimum_elevation", "elevation_step"} & open_pattern:
+            rows["elevations"] += " (not given: default)"
     assumed = beams.fields.get("assumed", ())
 
     def value(name: str, unit: str, scale: float = 1.0) -> str:
-        return f"{figures(scale * getattr(sensor, name))} {unit}" + (" (assumed)" if name in assumed else "")
+        return f"{figures(scale * getattr(sensor, name))} {unit}" + (
+            " (assumed)" if name in assumed else " (not given: default)" if name in missing else "")
 
     rows.update({"position": "({:.10g}, {:.10g}, {:.10g}) m".format(*sensor.position),
                  "wavelength": value("wavelength", "nm"), "range gate": value("range_gate", "m"),
@@ -122,6 +129,22 @@ def sensor_rows(sensor) -> dict[str, Any]:
     shape = ["rectangle" if sensor.algorithm.GetBeamOutline() else "",
              f"turned by {sensor.beam_rotation:g} deg" if sensor.beam_rotation else "",
              f"Gaussian, cut at {sensor.gaussian_truncation:g} radii of 1/e2" if gaussian else ""]
+    sheet, factors = said.get("sheet", {}), said.get("range_interval")
+    points: list[dict[str, Any]] = sheet.get("points", [])
+    errors = [f"; the fit errs by {100 * off:+.0f} %" for off in sheet.get("residuals", ())]
+    for number, (point, error) in enumerate(zip(points, itertools.chain(errors, itertools.repeat(""))), 1):
+        rows[f"point {number} of the sheet"] = (
+            f"{point['range']:g} m at {100 * point['reflectance']:g} %, {point.get('light', 0):g} klx, detected in "
+            f"{100 * point.get('probability', 0.5):g} %{'' if 'probability' in point else ' (assumed)'}{error} "
+            f"({point['source']})")
+    for name, entry in said.get("data_sheet", {}).items() if not sheet else ():
+        if name.startswith("detection_"):
+            unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
+            rows[name.replace("_", " ")] = f"{entry['value']:g}{unit} ({entry['source']})"
+    if "bar" in sheet:
+        rows["error of the fit"] = f"up to {100 * sheet['bar']:.0f} % of a range, for a point left out"
+    if factors:
+        rows["interval of ranges"] = f"{factors['value'][0]:g} to {factors['value'][1]:g} times ({factors['source']})"
     rows.update(beam=", ".join(filter(None, shape)), assumed=", ".join(assumed), what=said.get("comment"),
                 source=said.get("source"))
     return {key: value for key, value in rows.items() if value not in ("", None)}

@@ -11,6 +11,14 @@ from ._pipeline import text_of
 
 _once: Any = functools.cache  # mypy does not accept a class as a hashable argument of functools.cache
 
+# Numbers of the pattern, with the numbers by which a sensor file may give them instead
+PATTERN = {"number_of_channels": ("channel_elevations",),
+           "minimum_elevation": ("channel_elevations", "prism_wedge_angles"),
+           "elevation_step": ("channel_elevations", "prism_wedge_angles"), "azimuth_step": ("prism_wedge_angles",)}
+# Other numbers that every answer depends on
+DECISIVE = {"rotation_rate": (), "firing_interval": ("channel_firing_times",), "wavelength": ("frequency",),
+            "half_beamwidth": (), "pulse_energy": (), "pulse_width": (), "sampling_interval": (), "range_gate": ()}
+
 
 def snake(name: str) -> str:
     """`RaysPerBeam` -> `rays_per_beam`, `UTMZone` -> `utm_zone`."""

@@ -10,7 +10,7 @@ from . import _display
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, add_array, with_points
 from ._pipeline import file_name, is_current, update
-from ._properties import PropertyOwner, choices, choose, wraps
+from ._properties import DECISIVE, PATTERN, PropertyOwner, choices, choose, wraps
 
 
 @wraps(_wrapped.vtkAvianLidarBeamSource)
@@ -136,6 +136,31 @@ class Sensor(PropertyOwner):
         {'value': 903.0, 'unit': 'nm', 'source': 'user manual'}
         """
         return json.loads(self.algorithm.GetDescription())
+
+    @property
+    def not_given(self) -> tuple[str, ...]:
+        """Decisive properties that the sensor's file does not give and that have their defaults.
+
+        >>> Sensor("VLP16").not_given
+        ()
+        """
+        given, default = self.description.get("values", {}), Sensor()
+        own = set(PATTERN) | {"rotation_rate", "firing_interval"} if self._beams else set()
+        return tuple(name for name, others in {**PATTERN, **DECISIVE}.items()
+                     if name not in own and not given.keys() & {name, *others} and
+                     getattr(self, name) == getattr(default, name))
+
+    def set_limits_from_data_sheet(self, range: float, reflectance: float,
+                                   attenuation: float | None = None) -> "Sensor":
+        """Sets the limits of `EnergyLimits` so that a surface that fills the beam is detected up to `range` (m) at this
+        reflectance. `attenuation` of the air (1/m); default: clear air.
+
+        >>> Sensor("VLP16").set_limits_from_data_sheet(50, 0.1).lower_energy_limit > 0
+        True
+        """
+        air = self.algorithm.GetClearAirAttenuation() if attenuation is None else attenuation
+        update(self.algorithm, run=lambda: self.algorithm.SetLimitsFromDataSheet(range, reflectance, air))
+        return self
 
     @property
     def on_sale(self) -> bool:

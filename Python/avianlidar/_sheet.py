@@ -13,6 +13,7 @@ Up to three numbers are fitted, as far as the points determine them:
 - the width of boards without a given width, which belongs to the test and not to the receiver.
 The fit is SciPy's least squares over logarithms of ranges.
 """
+import copy
 import dataclasses
 import itertools
 import json
@@ -217,13 +218,12 @@ def fit(sensor, points: Sequence[dict[str, Any]] | None = None) -> Fit:
     """Fits a sensor's receiver to points of a data sheet; the sensor is not changed. See `Sensor.fit`."""
     points = sensor.description.get("sheet", {}).get("points", []) if points is None else list(points)
     check(points)
-    if sensor.receiver_aperture <= 0:
-        raise ValueError("receiver_aperture is 0, expected more than 0 m2: without an aperture no signal decreases "
-                         "with the range")
     for i, point in enumerate(points):
         if point["range"] > sensor.range_gate:
             raise ValueError(f"sheet.points[{i}].range is {point['range']!r}, expected at most range_gate, "
                              f"{figures(sensor.range_gate)} m")
+    if sensor.receiver_aperture <= 0:
+        sensor = copy.deepcopy(sensor).set(receiver_aperture=APERTURE)
     receiver = Receiver(sensor)
     start, frees = max(sensor.filter_bandwidth, 1e-3), _told(points)
     aperture, bandwidth, board = _fitted(receiver, points, start, frees)

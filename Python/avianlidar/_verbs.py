@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs need."""
 import pathlib
+import textwrap
 import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -23,6 +24,8 @@ from ._writers import check_suffix, check_target
 from .apps._air import check_received
 from .apps._inputs import read_plan, read_scenario
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
+
+WIDTH = 110  # characters of a line about one sensor
 
 
 def _check_outs(options, check: Callable[[pathlib.Path], None]) -> None:
@@ -297,7 +300,11 @@ def sensors(options) -> None:
     if options.out:
         raise ValueError(f"sensors: -o {options.out} is the file of a fitted sensor, expected --fit FILE as well")
     if options.name:
-        table(_display.sensor_rows(Sensor(options.name)).items())
+        rows = _display.sensor_rows(Sensor(options.name))
+        width = max(map(len, rows)) + 2
+        for key, value in rows.items():
+            tell(*textwrap.wrap(f"{key:<{width}}{value}", WIDTH, subsequent_indent=" " * width, break_long_words=False,
+                                break_on_hyphens=False))
         return
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about sensors that the user has not chosen

@@ -145,9 +145,32 @@ def air_of(sensor: Sensor, words: Sequence[str] | None = None) -> dict[str, Any]
                                 "rain_rate": 0.0, **weather(words)})
 
 
-def left_open(sensor: Sensor) -> float:
-    """Expected relative error of ranges by a sensor's fitted receiver; nan without a fit to several points."""
-    return float(sensor.description.get("sheet", {}).get("bar", math.nan))
+def interval(sensor: Sensor) -> tuple[float, float] | None:
+    """What the ranges of real units are of the ranges by a sensor's file, the least and the greatest factor, for
+    surfaces that fill the beam: `range_interval` of the file, else the error of the fit; None if both are missing."""
+    said = sensor.description
+    bar = said.get("sheet", {}).get("bar")
+    low, high = said.get("range_interval", {}).get("value", (1.0 - (bar or 0.0), 1.0 + (bar or 0.0)))
+    return None if low == high else (max(low, 0.01), high)
+
+
+def in_interval(sensor: Sensor, species: str, **settings: Any) -> tuple[float, float] | None:
+    """The ranges to which the least and the most sensitive unit of a sensor's interval detect half of the birds, m.
+    Such a unit receives the square of its factor times the light. @param settings as for within_beams"""
+    factors = interval(sensor)
+    if factors is None:
+        return None
+    low, high = (within_beams(copy.deepcopy(sensor).set(pulse_energy=factor ** 2 * sensor.pulse_energy), species,
+                              **settings).to(0.5) for factor in factors)
+    return low, high
+
+
+def uncertainty(name: str, sensor: Sensor) -> str:
+    """A sentence on the interval of a sensor; empty if its file gives no interval."""
+    factors = interval(sensor)
+    return "" if factors is None else (
+        f"Units of {name} see surfaces {factors[0]:.3g} to {factors[1]:.3g} times as far as computed "
+        f"({sensor.description.get('range_interval', {}).get('source', 'the error of the fit to its data sheet')}).")
 
 
 def metres(value: float) -> str:
@@ -155,20 +178,21 @@ def metres(value: float) -> str:
     return f"{float(f'{value:.2g}'):g} m" if value > 0.0 else "–"
 
 
-def half(sensor: Sensor, found: Reach) -> str:
-    """The range to which half of the birds are detected, with the interval that the fit of the receiver leaves open."""
-    to, bar = found.to(0.5), left_open(sensor)
-    if math.isnan(bar) or to == 0.0:
-        return metres(to)
-    return f"{metres(to)} ({metres((1.0 - bar) * to).removesuffix(' m')} to {metres((1.0 + bar) * to)})"
+def half(found: Reach, limits: tuple[float, float] | None) -> str:
+    """The range to which half of the birds are detected. @param limits of the interval of this range, m, or None"""
+    if limits is None or limits[1] == 0.0:
+        return metres(found.to(0.5))
+    low = f"{limits[0]:.2g}" if limits[0] < 100.0 else f"{float(f'{limits[0]:.2g}'):g}"
+    return f"{metres(found.to(0.5))} ({low} to {metres(limits[1])})"
 
 
-def sentence(name: str, species: str, sensor: Sensor, found: Reach) -> str:
-    """Sentence on the range to which half of the birds are detected, compared with the width of a runway's strip."""
+def sentence(name: str, species: str, found: Reach, limits: tuple[float, float] | None) -> str:
+    """Sentence on the range to which half of the birds are detected, compared with the width of a runway's strip.
+    @param limits of the interval of this range, m, or None"""
     to, width = found.to(0.5), 2.0 * TABLE["precision"]["4"]["strip"]["half_width"]
     if to == 0.0:
         return f"{name} sees half of the {plural(species)} in its beams at no range."
-    return (f"{name} sees half of the {plural(species)} in its beams to {half(sensor, found)}, "
+    return (f"{name} sees half of the {plural(species)} in its beams to {half(found, limits)}, "
             f"{'less' if to < width else 'more'} than the {width:g} m that the strip of a large runway is wide.")
 
 

@@ -203,6 +203,28 @@ TEST(Prisms, LasersAxisAndOrientation)
   EXPECT_EQ(ScanGenerator(pattern).beam(5).time, ScanGenerator(pattern).beam(3).time);
 }
 
+TEST(Prisms, LasersBelowATurningMirrorStandStill)
+{
+  // Glass as air below a vertical axis: lasers that turn against the axis do not move.
+  PrismTrain train;
+  train.wedgeAngles = train.rotationRates = { 0.0 };
+  train.refractiveIndices = { 1.0 };
+  train.axisElevation = 90.0;
+  train.axisRotationRate = train.laserRotationRate = 2.5;
+  const Vec3 enters(std::sin(0.02), std::cos(0.02), 0.0);
+  for (const double time : { 0.0, 0.03, 0.1, 7.7 })
+  {
+    const Vec3 d = steer(train, 1.0, time, enters);
+    EXPECT_NEAR(d.z, enters.y, 1e-15);
+    EXPECT_NEAR(d.x, steer(train, 1.0, 0.0, enters).x, 1e-13) << time;
+  }
+  // On a level axis a quarter turn takes light from the right to below, clockwise.
+  train.axisElevation = train.axisRotationRate = 0.0;
+  const Vec3 below = steer(train, 0.0, 0.1, enters);
+  EXPECT_NEAR(below.z, -enters.x, 1e-15);
+  EXPECT_NEAR(below.x, 0.0, 1e-15);
+}
+
 TEST(Prisms, StepsAndPiecesShowEachBeamOnce)
 {
   ScanPattern pattern = twoPrisms();
@@ -262,6 +284,8 @@ TEST(Prisms, BadValuesAreNamed)
       "PrismAxisElevation is 91" },
     { [](ScanPattern& p, double v) { p.prisms.axisRotationRate = v; }, nan,
       "PrismAxisRotationRate is" },
+    { [](ScanPattern& p, double v) { p.prisms.laserRotationRate = v; }, 2e6,
+      "PrismLaserRotationRate is 2000000" },
     { [](ScanPattern& p, double v) { p.prisms.wedgeAngles.resize(4, v); }, 1.0,
       "PrismWedgeAngles has 4 values, expected at most 3" },
     { [](ScanPattern& p, double) { p.prisms.wedgeAngles.clear(); }, 0.0,

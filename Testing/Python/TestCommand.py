@@ -363,15 +363,16 @@ class Surroundings(unittest.TestCase):
         self.assertEqual((picture.read_bytes(), list(OUTPUT.glob("kept.png.*"))), (b"before", []))
 
     def test_reach_is_that_of_birds_within_beams(self):
-        """With the ranges that the fit of a receiver leaves open: those of its bar, 11.3 %."""
+        """With the ranges of units that see boards 0.84 and 1.66 times as far, for which they need the squares of the light."""
         few = (*reach.within_beams.__defaults__[:2], 40)  # birds
         with unittest.mock.patch.object(reach, "RANGES", 6), unittest.mock.patch.object(reach.within_beams, "__defaults__", few):
             code, lines, _ = run("reach", "--sensor", "OS1_64", "--species", "herring gull", "--weather", "fog:500", "-o", OUTPUT / "reach.csv")
-            found = reach.within_beams(al.Sensor("OS1_64"), "herring gull", visibility=500.0, air_backscatter=True)
+            found, dim, bright = (reach.within_beams(al.Sensor("OS1_64", pulse_energy=4e-7 * factor**2), "herring gull", visibility=500.0,
+                                                     air_backscatter=True) for factor in (1, 0.84, 1.66))
         self.assertEqual(code, 0)
         half = found.to(0.5)
         self.assertGreater(half, 10.0)
-        words = f"{half:.2g} m ({(1 - 0.113) * half:.2g} to {1.113 * half:.2g} m)"
+        words = f"{half:.2g} m ({dim.to(0.5):.2g} to {bright.to(0.5):.2g} m)"
         self.assertEqual(re.split("  +", lines[1])[:4], ["OS1_64", "herring gull", f"{found.to(0.9):.2g} m", words])
         self.assertTrue(lines[2].startswith(f"OS1_64 sees half of the herring gulls in its beams to {words}, less than the 280 m"))
         table = np.genfromtxt(OUTPUT / "reach.csv", delimiter=",", skip_header=1)

@@ -2,10 +2,14 @@
 """Lidars that can be bought: their patterns against real frames, their limits against their data sheets, what of them is
 assumed; and beams of one's own."""
 import copy
+import csv
 import json
 import os
 import pathlib
 import pickle
+import re
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -14,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 import echotools
-from avianlidar import vtkAvianLidar
+from avianlidar import _display, reach, vtkAvianLidar
 from faulttools import text_array
 from helpertools import same
 
@@ -112,6 +116,67 @@ class Manuals(unittest.TestCase):
                 np.testing.assert_allclose(found.residuals, said["residuals"], atol=2e-3)
                 self.assertAlmostEqual(found.numbers["receiver_aperture"] / aperture, 1, delta=0.01)
                 np.testing.assert_allclose(found.bar, said.get("bar", np.nan), atol=5e-3)
+
+    @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
+    def test_intervals_hold_what_strangers_measured(self):
+        """Bins of distance with the least reflectance (%, whole numbers) in frames of others. For OS0 and OS1 the table has
+        the prediction. With EnergyLimits a surface's least reflectance grows with the square of the range and the air."""
+        with open(pathlib.Path(DATA) / "lidars_measured" / "least_reflectance.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        with open(FILES.parents[1] / "Documentation" / "evidence" / "tables" / "measured-least.csv", encoding="utf-8") as file:
+            ours = [(row["frame"], row["measured over predicted"]) for row in csv.DictReader(file)]
+        for kind, other, name in (("OS0-128", "OS0-32", "OS0_128"), ("OS1-128", "OS1-32", "OS1_64"), ("HDL-32E", "", "HDL32E")):
+            with self.subTest(name):
+                sensor = al.Sensor(name)
+                low, high = sensor.description["range_interval"]["value"]
+                factors = [float(ratio)**-0.5 for frame, ratio in ours if frame == other and ratio != "-"]
+                inside, air = [], sensor.algorithm.GetClearAirAttenuation()
+                for row in (row for row in rows if row["lidar"] == kind):
+                    at, least, predicted = (float(row[key]) for key in ("at_m", "least_reflectance_percent", "predicted_percent"))
+                    if name == "HDL32E":
+                        predicted = 100 * 0.35 * (at / 100)**2 * np.exp(2 * air * (at - 100))
+                    if predicted / low**2 >= 1:  # else below what a scale of whole percents shows
+                        inside.append(predicted / high**2 <= least + 0.5 and least - 0.5 <= predicted / low**2)
+                        factors.append(np.sqrt(predicted / least))
+                self.assertGreaterEqual(len(inside), 6)
+                self.assertGreaterEqual(np.mean(inside), 0.9)
+                self.assertLessEqual(high / low, 1.2 * max(factors) / min(factors))
+
+    def test_each_lidar_on_sale_has_an_interval(self):
+        for name in al.Sensor.presets():
+            sensor = al.Sensor(name)
+            self.assertEqual(reach.interval(sensor) is not None, sensor.on_sale, name)
+        self.assertIn("0.84 to 1.81 times", _display.sensor_rows(al.Sensor("VLP16"))["interval of ranges"])
+        sensor = al.Sensor("VLP16")
+        found = reach.within_beams(sensor, "herring gull", birds=64).to(0.5)
+        low, high = reach.in_interval(sensor, "herring gull", birds=64)
+        self.assertTrue(0 < low < found < high)
+        with tempfile.TemporaryDirectory() as folder:
+            for bad, words in (([1.2, 2.0], "at most 1"), ([0.5], "at most 1"), ([0, 2], "at most 1")):
+                file = pathlib.Path(folder) / "bad.lidarsensor.json"
+                file.write_text(json.dumps({**sensor.description, "range_interval": {"value": bad, "unit": "1", "source": "x"}}))
+                with self.assertRaisesRegex(al.Error, words):
+                    al.Sensor(file)
+
+    def test_what_a_file_does_not_give_is_marked(self):
+        """The guide's example gives neither pattern nor pulse."""
+        guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "mine.lidarsensor.json"
+            file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], encoding="utf-8")
+            rows = _display.sensor_rows(al.Sensor(file))
+            for key in ("beams", "elevations", "pulse energy", "rate", "range gate"):
+                self.assertIn("not given", str(rows[key]), key)
+            self.assertNotIn("not given", rows["wavelength"])
+            self.assertIn("500 m at 10 %", rows["point 1 of the sheet"])
+            run = subprocess.run([sys.executable, "-m", "avianlidar", "reach", "--sensor", str(file)], capture_output=True, text=True)
+            self.assertIn("does not give azimuth_step, elevation_step", run.stderr)
+            self.assertNotEqual(run.returncode, 0)
+            shown = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "Mid360"], capture_output=True, text=True).stdout
+            self.assertLessEqual(max(map(len, shown.splitlines())), 120)
+            self.assertIn("61 %", shown)
+        for name in al.Sensor.presets():
+            self.assertEqual(al.Sensor(name).not_given, (), name)
 
     @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
     def test_patterns_are_those_of_real_frames(self):

@@ -107,8 +107,12 @@ class Sheets(unittest.TestCase):
                 sensor().fit([bad])
         with self.assertRaisesRegex(ValueError, "no points"):
             sensor().fit()
-        with self.assertRaisesRegex(ValueError, "receiver_aperture is 0"):
-            al.Sensor("Airport16").fit([good])
+
+    def test_a_fit_starts_by_itself(self):
+        point = {"range": 100, "reflectance": 0.1, "source": "x"}
+        started = [sensor(receiver_aperture=aperture).fit([point]).numbers["receiver_aperture"] for aperture in (0, 1e-6, 1)]
+        np.testing.assert_allclose(started, started[0], rtol=1e-6)
+        self.assertAlmostEqual(sensor(receiver_aperture=0).fit([point]).predicted[0], 100, delta=1e-3)
 
     def test_the_command_writes_a_sensor(self):
         start = sensor()

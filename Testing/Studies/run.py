@@ -50,7 +50,7 @@ PICTURES = {
     "your_airport": {"airport": "your-airport"},
 }
 DATA = {"ranges": ("ranges.json", "Python/avianlidar/apps")}  # numbers that the package holds, by study
-TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "media_time", "more_reflections",
+TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "intervals", "media_time", "more_reflections",
           "moved_scenes", "multiple_scattering", "others", "paper_times", "presets", "protocol", "quadcopter",
           "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
 LONG = ("accuracy_page", "sequence_costs")  # only when they are named

@@ -79,6 +79,8 @@ std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters
       "PrismAxisElevation", train.axisElevation, -90, 90, "an elevation within [-90, 90] degrees"),
     rangeError(
       "PrismAxisRotationRate", train.axisRotationRate, -1e6, 1e6, "a rate within [-1e6, 1e6] Hz"),
+    rangeError(
+      "PrismLaserRotationRate", train.laserRotationRate, -1e6, 1e6, "a rate within [-1e6, 1e6] Hz"),
   });
   const double combinations = error.empty() ? std::pow(CheckedPhases, prisms) : 0.0;
   for (std::size_t laser = 0; laser < enters.size(); ++laser)
@@ -110,7 +112,8 @@ Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enter
     angles[prism] = degreesAt(train.rotationRates[prism], start, time) +
       (train.phases.empty() ? 0.0 : train.phases[prism]);
   }
-  Vec3 d = enters;
+  const auto [right, up] = sinCosDegrees(degreesAt(train.laserRotationRate, start, time));
+  Vec3 d(up * enters.x + right * enters.z, enters.y, up * enters.z - right * enters.x);
   if (!passPrisms(train, angles, d))
   {
     throw std::runtime_error("light is totally reflected within the prisms at " +

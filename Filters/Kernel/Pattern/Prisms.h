@@ -4,8 +4,7 @@
  * @brief Rotating wedge prisms (Risley prisms), which steer the beams of a lidar.
  *
  * Prisms stand one behind the other on an axis and turn about it, each at its own rate. Directions
- * repeat after the least common multiple of the periods of rotation. If these periods have no
- * common multiple, directions never repeat.
+ * repeat after the least common multiple of the periods of rotation, if there is one.
  *
  * A prism has a face perpendicular to the axis and a face inclined by the wedge angle. Light leaves
  * through the inclined face if the wedge angle is above 0, and enters through this face if the
@@ -21,12 +20,11 @@
  * deflects light upwards. The phase grows clockwise as seen from the sensor, from up to right.
  *
  * Source: Snell's law; Marshall, Proc. SPIE 3787, 1999, for the rose curve that two thin prisms
- * draw. A thin prism of the refractive index n deflects light by (n - 1) times the wedge angle.
+ * draw.
  * Differs: from Brazeal et al., Sensors 21, 4722 (2021), in that all prisms stand exactly on the
  * axis and have exact angles.
- * Valid: all beams start at the sensor's position, and not where they leave the last prism (some
- * millimetres beside the axis). Prisms stand in air of the refractive index 1. The phase is rounded
- * to 1e-16 of the turns since time 0.
+ * Valid: all beams start at the sensor's position, some millimetres beside the last prism. Prisms
+ * stand in air of the index 1. Phases are rounded to 1e-16 of the turns since time 0.
  * Test: TestPrisms.cxx.
  */
 #ifndef avianlidar_Prisms_h
@@ -39,8 +37,7 @@
 
 namespace avianlidar
 {
-/// Values of the prisms, in the order in which light passes the prisms. Each vector has one value
-/// per prism. The vector of phases may be empty.
+/// Prisms in the order in which light passes them. Each vector has one value per prism.
 struct PrismTrain
 {
   std::vector<double> wedgeAngles;       ///< angles between the two faces, deg, -60 to 60
@@ -48,23 +45,23 @@ struct PrismTrain
   std::vector<double> rotationRates;     ///< rotation rates, Hz, -1e6 to 1e6; above 0: clockwise
   std::vector<double> phases;            ///< phases at time 0, deg; empty: all 0
   double axisElevation = 0.0;            ///< elevation of the axis, deg, -90 to 90
-  /// Rotation rate of the axis and all prisms about the vertical, Hz; above 0: clockwise as seen
-  /// from above.
+  /// Rotation rate of axis and prisms about the vertical, Hz; above 0: clockwise from above.
   double axisRotationRate = 0.0;
+  /// Rotation rate of lasers about the axis, Hz; below a turning mirror, minus the axis' rate.
+  double laserRotationRate = 0.0;
 
   bool none() const { return this->wedgeAngles.empty(); }
 };
 
 /// The first bad value in words ("PrismWedgeAngles is 70, expected ..."), or an empty string. Light
 /// must pass through the prisms for all combinations of the prisms' phases in steps of 30 degrees.
-/// @param enters directions of the lasers before the prisms, unit vectors in the frame of the axis
+/// @param enters directions of the lasers at time 0, unit vectors in the frame of the axis
 std::string checkPrisms(const PrismTrain& train, const std::vector<Vec3>& enters);
 
 /// Direction of light behind the prisms, in the sensor's frame. Throws std::runtime_error if no
-/// light passes. Start and time are separate, because their sum would round the time to fewer
-/// digits.
+/// light passes. Start and time are separate, because their sum would round the time.
 /// @param start start of the scan, s since time 0 @param time time since the start, s @param enters
-/// direction before the prisms, unit vector in the frame of the axis
+/// direction of the laser at time 0, unit vector in the frame of the axis
 Vec3 steer(const PrismTrain& train, double start, double time, const Vec3& enters);
 }
 

@@ -45,7 +45,7 @@ double offsetOf(const ScanPattern& pattern, int channel)
   return pattern.azimuthOffsets.empty() ? 0.0 : pattern.azimuthOffsets[channel];
 }
 
-/// Light of a channel before the prisms, in the frame of their axis.
+/// Light of a channel before the prisms at time 0, in the frame of their axis.
 Vec3 enterOf(const ScanPattern& pattern, int channel)
 {
   return directionOf(offsetOf(pattern, channel), channelElevation(pattern, channel));
@@ -155,7 +155,8 @@ std::string checkTrain(const ScanPattern& pattern)
   if (train.none())
   {
     return train.refractiveIndices.empty() && train.rotationRates.empty() && train.phases.empty() &&
-        train.axisElevation == 0.0 && train.axisRotationRate == 0.0
+        train.axisElevation == 0.0 && train.axisRotationRate == 0.0 &&
+        train.laserRotationRate == 0.0
       ? std::string()
       : "PrismWedgeAngles is empty, expected one angle for each prism, as other numbers of prisms "
         "are given";

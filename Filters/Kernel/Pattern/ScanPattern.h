@@ -76,9 +76,8 @@ struct ScanPattern
   /// Optional pairs of azimuths, deg: columns from the first azimuth of a pair to below the second
   /// azimuth do not fire.
   std::vector<double> blankedSectors;
-  /// Optional prisms, which replace the rotor. Elevations and azimuth offsets then describe the
-  /// light of the lasers before the prisms, in the frame of the prisms' axis. A column takes
-  /// channels times firingInterval.
+  /// Optional prisms, which replace the rotor. Elevations and azimuth offsets are the lasers'
+  /// before the prisms, in the frame of their axis. A column takes channels times firingInterval.
   PrismTrain prisms;
   /// Optional beams, each a column of one channel. The table replaces all values above except yaw,
   /// pitch, roll and rotationRate.

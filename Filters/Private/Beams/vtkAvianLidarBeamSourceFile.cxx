@@ -34,6 +34,8 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
       &Source::PrismAxisElevation },
     { Arrays::PrismAxisRotationRate, &Source::PrismAxisRotationRate, nullptr,
       &Source::PrismAxisRotationRate },
+    { Arrays::PrismLaserRotationRate, &Source::PrismLaserRotationRate, nullptr,
+      &Source::PrismLaserRotationRate },
     ofSensor(&Source::HalfBeamwidth, &Sensor::halfBeamwidth),
     ofSensor(&Source::HalfBeamwidthAcross, &Sensor::halfBeamwidthAcross),
     ofSensor(&Source::BeamRotation, &Sensor::beamRotation),

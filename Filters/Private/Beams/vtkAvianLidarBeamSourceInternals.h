@@ -52,7 +52,8 @@ struct vtkAvianLidarBeamSource::vtkInternals
       word == vtkAvianLidarArrays::ElevationStep.name ||
       word == vtkAvianLidarArrays::FiringInterval.name ||
       word == vtkAvianLidarArrays::PrismAxisElevation.name ||
-      word == vtkAvianLidarArrays::PrismAxisRotationRate.name;
+      word == vtkAvianLidarArrays::PrismAxisRotationRate.name ||
+      word == vtkAvianLidarArrays::PrismLaserRotationRate.name;
     return self.Table ? ofPattern : ofColumns && self.GetNumberOfPrisms() > 0;
   }
 

@@ -40,8 +40,8 @@ vtkAvianLidarSensorFile::Entry EntryOf(const std::string& name, const JsonNode& 
 vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
 {
   const JsonNode root(json, "", file);
-  root.RequireKeys(
-    { "format", "name", "maker", "model", "comment", "source", "data_sheet", "sheet", "values" });
+  root.RequireKeys({ "format", "name", "maker", "model", "comment", "source", "data_sheet", "sheet",
+    "range_interval", "values" });
   if (root.Get("format").String() != "lidarsensor 1")
   {
     root.Get("format").Fail("must be \"lidarsensor 1\"");
@@ -64,6 +64,15 @@ vtkAvianLidarSensorFile Parse(const Json& json, const std::string& file)
   if (root.Has("sheet"))
   {
     root.Get("sheet").Members(); // used only by programs that fit the receiver
+  }
+  if (root.Has("range_interval"))
+  {
+    const JsonNode node = root.Get("range_interval");
+    const std::vector<double> factors = EntryOf("range_interval", node).values;
+    if (factors.size() != 2 || !(factors[0] > 0.0 && factors[0] <= 1.0 && factors[1] >= 1.0))
+    {
+      node.Fail("must have a factor of at most 1 and a factor of at least 1");
+    }
   }
   for (const auto& [name, node] : root.Get("values").Members())
   {

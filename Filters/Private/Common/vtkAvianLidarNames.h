@@ -98,6 +98,8 @@ constexpr Name PrismPhases{ "prism_phases", "deg" };
 constexpr Name PrismAxisElevation{ "prism_axis_elevation", "deg" };
 /// rotation rate of the prisms' axis about the vertical, clockwise seen from above
 constexpr Name PrismAxisRotationRate{ "prism_axis_rotation_rate", "Hz" };
+/// rotation rate of the lasers about the prisms' axis, clockwise seen from the sensor
+constexpr Name PrismLaserRotationRate{ "prism_laser_rotation_rate", "Hz" };
 /// first azimuth and excluded end
 constexpr Name AzimuthRange{ "azimuth_range", "deg" };
 /// step of azimuth between columns

@@ -273,7 +273,7 @@ class Plan:
     def assumed(self) -> Tuple[str, ...]:
         """Properties of the sensor whose numbers are assumed, by the sensor's file or because the plan sets them."""
         changed = [name for name in self.plan["sensor"] if name not in ("preset", "name", *PLACE)]
-        return (*self.sensor.beams.fields.get("assumed", ()), *changed)
+        return (*self.sensor.beams.fields.get("assumed", ()), *self.sensor.not_given, *changed)
 
     def map_at(self, height: float) -> Coverage:
         """Coverage of the plan's extent at a height, m, for the first species."""

@@ -201,14 +201,16 @@ class Report:
         settings = {name: value for name, value in plan.settings.items() if name not in without}
         of = {species or "target": reach.within_beams(plan.sensor, species, **settings) for species in plan.mix}
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
+        limits = {species or "target": reach.in_interval(plan.sensor, species, **settings) for species in plan.mix}
         rows: List[Dict[str, Any]] = [
-            {"receiver": plan.name, "species": name, "scans": scans,
+            {"receiver": plan.name, "species": name, "scans": scans, "limits": scans != several and limits[name],
              "to": {share: one.to(share, scans == several) for share in reach.SHARES}}
             for name, one in of.items() for scans in ("one scan", several)]
         table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p),
                   "one_scan_std_error": float(e), "several_scans": float(k)} for name, one in of.items()
                  for r, p, e, k in zip(one.ranges, one.one_scan, one.error, one.several_scans)]
-        return {"of": of, "rows": rows, "table": table, "picture": self._draw(
+        unsure = reach.uncertainty(plan.name, plan.sensor)
+        return {"of": of, "rows": rows, "table": table, "uncertainty": unsure, "picture": self._draw(
             folder / f"{plan.name}-range.png", (4.6, 3.4), "Curves",
             f"{plan.name}: share of birds in its band that are detected, by range, in free air; bars: standard error",
             lambda axes: pictures.draw_reach(axes, of, several))}

@@ -10,7 +10,7 @@ from typing import Any, Dict, Iterator, List, Tuple
 
 from .. import reach as ranges
 from .._disk import only_run
-from .._properties import in_snake_case
+from .._properties import PATTERN, in_snake_case, snake
 from .._ranks import Ranks
 from .._sensor import Sensor
 from .._terminal import bar, close_bar, table, tell, warn
@@ -144,7 +144,8 @@ def coverage(options) -> None:
             row = plan.overall
             tell(f"{folder}: {counted(count, 'file')}; "
                  f"{plan.bird if any(plan.mix) else 'the target'} detected in one scan: "
-                 f"{share_of(row)} {plan.where} (assumed: bird{', receiver' if plan.assumed else ''})")
+                 f"{share_of(row)} {plan.where} (assumed: bird{', receiver' if plan.assumed else ''})",
+                 *filter(None, [ranges.uncertainty(plan.name, plan.sensor)]))
 
 
 def siting(options) -> None:
@@ -213,11 +214,16 @@ def reach(options) -> None:
             bar("reach", round(100.0 * (number + share) / len(pairs)), 100)
         progress(0.0)
         sensor = Sensor(name).set(**dict(options.sensor_set))
-        found = ranges.within_beams(sensor, species, progress=progress,
-                                    **ranges.air_of(sensor, options.weather), required_detections=2, number_of_scans=3)
-        rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(sensor, found),
+        asked = sorted(set(sensor.not_given) & set(PATTERN) - set(map(snake, dict(options.sensor_set))))
+        if asked:
+            raise ValueError(f"{name} does not give {', '.join(asked)}, expected these numbers in the file or by "
+                             "--sensor-set: birds between the beams are not seen, so the pattern decides the answer")
+        settings: Dict[str, Any] = {**ranges.air_of(sensor, options.weather), "required_detections": 2, "number_of_scans": 3}
+        found = ranges.within_beams(sensor, species, progress=progress, **settings)
+        limits = ranges.in_interval(sensor, species, **settings)
+        rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(found, limits),
                      ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
-        said.append(ranges.sentence(name, species, sensor, found))
+        said.append(ranges.sentence(name, species, found, limits))
         columns = {"range": found.ranges, "one_scan": found.one_scan, "one_scan_std_error": found.error,
                    "two_of_three": found.several_scans}
         curve += [{"sensor": name, "species": species, **dict(zip(columns, map(float, row)))}
@@ -226,7 +232,8 @@ def reach(options) -> None:
     table(rows)
     tell(*said)
     tell("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "
-         "In brackets: the interval that the fit of the receiver to its data sheet leaves open.")
+         "In brackets: the interval for units of this kind.",
+         *(text for name in options.sensor if (text := ranges.uncertainty(name, Sensor(name)))))
     if options.out:
         write_table(options.out, curve)
         tell(f"{options.out}: the shares by range")

@@ -20,9 +20,9 @@ SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goos
 VISIBILITY = reach.CLEAR  # m
 
 
-def row(name, sensor, species, found):
+def row(name, species, found, limits):
     """Of the table. Ranges have the two digits that the choice of birds leaves of them."""
-    return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.half(sensor, found)}**",
+    return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.half(found, limits)}**",
             reach.metres(found.to(0.1)), reach.metres(found.to(0.9, True)))
 
 
@@ -33,7 +33,8 @@ def main(options):
         sensor = al.Sensor(name)
         for species in SPECIES:
             found = reach.within_beams(sensor, species, visibility=VISIBILITY)
-            rows.append(row(name, sensor, species, found))
+            limits = reach.in_interval(sensor, species, visibility=VISIBILITY)
+            rows.append(row(name, species, found, limits))
             numbers.setdefault(name, {})[species] = [round(found.to(share), 1) for share in reach.SHARES]
             if name in SHOWN and species in DRAWN:
                 curves.setdefault(name, {})[species] = found

@@ -13,7 +13,7 @@ import falloff
 import room_compare
 import room_data
 import tools
-from avianlidar import _sheet
+from avianlidar import _sheet, reach
 
 
 @dataclasses.dataclass
@@ -46,8 +46,6 @@ ROUND = 0.5        # of a whole number
 EDGES = (5, 10, 20, 30, 40, 60, 80, 120, 160)  # m, of bins of distance
 FEW = 20           # points of a bin, at least
 LEAST = 1.0        # % of the points of a bin that are darker than the least reflectance
-ONE_POINT = 0.58   # of a range, the most that a sensor known by one point errs elsewhere (Documentation/reference/sensor-files.md)
-UNTOLD = {"VLP16": (0.1, 0.8)}  # reflectance where the sheet tells none: from what others' sheets have to what the preset assumes
 
 
 def verdict(fine):
@@ -157,12 +155,12 @@ class Seen:
 
     def __init__(self, name):
         self.sensor = al.Sensor(name)
-        sheet, bar = self.sensor.description["data_sheet"], self.sensor.description.get("sheet", {}).get("bar", ONE_POINT)
+        sheet = self.sensor.description["data_sheet"]
         self.photons = self.sensor.receiver_model == "Photons"
         self.receiver = _sheet.Receiver(self.sensor) if self.photons else None
         self.range, self.reflectance = (None if self.photons else sheet[f"detection_{key}"]["value"] for key in ("range", "reflectance"))
-        low, high = UNTOLD.get(name, (1.0, 1.0))
-        self.factors = (1 - bar)**2 * low / high, (1 + bar)**2
+        low, high = reach.interval(self.sensor)
+        self.factors = high**-2, low**-2
 
     def least(self, distance):
         if not self.photons:
