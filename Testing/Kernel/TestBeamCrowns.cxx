@@ -3,6 +3,7 @@
 #include "BeamAir.h"
 #include "MediumTestScene.h"
 #include "Sanitized.h"
+#include "Statistics.h"
 
 #include <cmath>
 
@@ -199,6 +200,37 @@ TEST(BeamCrowns, AThinRayEndsAtItsFirstLeafOrPasses)
   };
   within(passed, left);
   within(first, 1.0 - std::exp(-0.5 * (end - 18.0)));
+}
+
+TEST(BeamCrowns, LeavesAreDrawnWithoutNoisePhotons)
+{
+  // The independent program gives a standard deviation of 0.99 +- 0.05 of the mean.
+  const CrownCase of{ 9.5e-4, 0.0125, 1.0, 30.0, 33.0, 35.0, {}, {}, 0.0, 0.0 };
+  for (const double rate : { 0.0, 1e-3 })
+  {
+    Sensor sensor = lidarOf(of);
+    sensor.receiverModel = ReceiverModel::EnergyLimits;
+    sensor.lowerEnergyLimit = 1e-30;
+    sensor.noisePhotonRate = rate;
+    ScanSetup setup = inMedium(wallAt(of.wall), sensor, leavesOf(of.density), crownOf(of));
+    setup.settings.noise = true;
+    setup.settings.returnMode = ReturnMode::RangeUnits;
+    planModel(setup);
+    const ScanResult result = runScan(setup, alike(Scans));
+    std::vector<double> walls(Scans, 0.0);
+    for (std::size_t k = 0; k < result.echoes.size(); ++k)
+    {
+      const Echo& echo = result.echoes[k];
+      walls[result.beamOfEcho[k]] += echo.range > of.end + 1.0 ? echo.energyReceived : 0.0;
+    }
+    const double mean = statistics::sumOf(walls) / static_cast<double>(Scans);
+    double square = 0.0;
+    for (const double energy : walls)
+    {
+      square += (energy - mean) * (energy - mean) / static_cast<double>(Scans);
+    }
+    EXPECT_NEAR(std::sqrt(square) / mean, 0.99, 0.1) << rate;
+  }
 }
 
 TEST(BeamCrowns, NoiseOfLeavesLeavesTheMean)

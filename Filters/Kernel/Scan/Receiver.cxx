@@ -66,7 +66,7 @@ void BeamReceiver::planAir()
     {
       ofDrops += varianceOfDrops(share, this->Air->mediumAt(share.medium));
     }
-    const bool hasDrops = this->Plan.active && ofDrops > DropsCount * variance;
+    const bool hasDrops = this->Plan.enabled && ofDrops > DropsCount * variance;
     if (hasDrops || (!this->FollowsAir && this->Air->followed(unit) > 1e-6 * this->Lower))
     {
       looked = unit + 1;
@@ -94,7 +94,7 @@ void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& uni
   this->Beam = beam;
   this->Gaps.clear();
   this->Drops.clear();
-  if (this->Plan.active && this->isLocal())
+  if (this->Plan.enabled && this->isLocal())
   {
     this->Gaps.begin(*this->Air, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
   }
@@ -110,7 +110,7 @@ void BeamReceiver::lookAt(double radiance)
   this->Radiance = radiance;
   this->Lower = there.lowerEnergyLimit;
   this->Upper = there.upperEnergyLimit;
-  this->Plan = planNoise(there, this->Plan.active);
+  this->Plan = planNoise(there, this->Plan.enabled);
   this->Plan.ofRanges = ofRanges;
   this->Errors = RangeErrors(there, ofRanges);
   this->Photons = PhotonReceiver(there);
@@ -221,7 +221,7 @@ double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
     {
       energy = this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium);
     }
-    else if (this->Plan.active && varianceOfDrops(share, medium) > DropsCount * variance)
+    else if (this->Plan.enabled && varianceOfDrops(share, medium) > DropsCount * variance)
     {
       double drawn = energy;
       addDropsBeyondMean(this->Seed, this->Beam, this->drawsOf(share, unit), this->Revolution,
@@ -232,7 +232,7 @@ double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
     received.medium = energy > most ? medium.objectId : received.medium;
     most = std::max(most, energy);
   }
-  if (this->Plan.active)
+  if (this->Plan.enabled)
   {
     beyond +=
       this->Drops.in(unit, [&](std::int64_t of, double* units) { this->drawDrops(of, units); });
@@ -247,7 +247,7 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
   ReceivedUnit unit;
   const double mean = this->Air ? this->Air->followed(index) : 0.0;
   const bool isDrawn =
-    this->isLocal() || (this->Air && this->Plan.active && index < this->Air->looked());
+    this->isLocal() || (this->Air && this->Plan.enabled && index < this->Air->looked());
   const double beyond = isDrawn ? this->drawAir(index, unit) : 0.0;
   light += unit.leaves;
   const double all = light + std::max(0.0, mean + beyond);
