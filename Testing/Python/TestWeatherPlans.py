@@ -238,7 +238,7 @@ EGLL 010220Z NIL=
                            ("9000", "haze:12000")):
             one = _metar.Hours("a", [_metar.report_of(f"ZSSS 010000Z 00000KT {code} Q1013")], [])
             self.assertEqual(one.year()[0]["weather"], [word])
-        self.assertIn("optical ranges, as by day (in a setting times 1.31), so air by night may be 2.8 times as dense", one.words())
+        self.assertIn("optical ranges, as by day (in a setting times 1.31): by night, air of 500 m is 2.8 times as dense", one.words())
         # A lamp of 1000 cd gives 1e-6 lx after 600 m in air that leaves 5 % of a beam after 227 m.
         self.assertAlmostEqual(1000 * 0.05**(600 / 226.7) / 600**2, 1e-6, delta=1e-8)
         self.assertAlmostEqual(_metar.night_factor(600), 600 / 226.7, delta=1e-3)

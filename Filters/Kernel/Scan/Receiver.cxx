@@ -28,7 +28,8 @@ double perceivedEnergy(double received, double lower, double upper)
 }
 
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
-  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, BeamAir* air)
+  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, BeamAir* air,
+  const LeafGaps* gaps)
   : Instrument(sensor)
   , Radiance(sensor.backgroundRadiance)
   , Errors(sensor, noise.ofRanges)
@@ -39,6 +40,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Air(air)
   , FollowsAir(sensor.followsAir())
   , Photons(sensor)
+  , Gaps(gaps)
   , Pulse(sensor.pulseWidth / sensor.samplingInterval)
   , Drops(this->Pulse)
   , Seed(seed)
@@ -92,12 +94,7 @@ void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& uni
   }
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->Beam = beam;
-  this->Gaps.clear();
   this->Drops.clear();
-  if (this->Plan.enabled && this->isLocal())
-  {
-    this->Gaps.begin(*this->Air, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
-  }
   this->collectUnits(units);
   this->formReturns();
   this->select();
@@ -148,7 +145,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
       { next, lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
-    const double light = isLit ? lit->energy * this->openAt(index) : 0.0;
+    const double light = isLit ? lit->energy : 0.0;
     const bool hasAir =
       isLocal ? index == next || !this->FollowsAir : this->Air && index < this->Air->units();
     if (isAlarm || hasAir || !(light < this->Plan.faintLight) || this->Noise.isRare(index))
@@ -217,9 +214,9 @@ double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
       continue;
     }
     double energy = open * share.mean;
-    if (medium.sharesGaps && this->Gaps.any())
+    if (medium.sharesGaps && this->Gaps && this->Gaps->any())
     {
-      energy = this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium);
+      energy = this->Gaps->returnedBetween(from, from + this->UnitLength, share.medium);
     }
     else if (this->Plan.enabled && varianceOfDrops(share, medium) > DropsCount * variance)
     {
@@ -280,10 +277,11 @@ double BeamReceiver::noiseOf(std::int64_t unit, double light)
   return this->Noise.energy(unit, light);
 }
 
-/// Light that leaves let through to a unit and back, over its mean; 1 where no leaves are drawn.
+/// Light of the air that leaves let through to a unit and back, over its mean; 1 where no leaves
+/// are drawn.
 double BeamReceiver::openAt(std::int64_t unit) const
 {
-  return this->Gaps.any() ? this->Gaps.openAt(this->centreOf(unit)) : 1.0;
+  return this->Gaps && this->Gaps->any() ? this->Gaps->openAt(this->centreOf(unit)) : 1.0;
 }
 
 double BeamReceiver::centreOf(std::int64_t unit) const

@@ -65,7 +65,8 @@ class Hour(NamedTuple):
 
 
 def night_factor(visibility: float) -> float:
-    """Extinction by night over extinction by day, at one reported visibility: Allard's law for a lamp. @param visibility m"""
+    """Extinction by night over extinction by day at one reported visibility, by Allard's law for a lamp. @param
+    visibility m"""
     return math.log(LAMP / (SEEN * visibility**2)) / OPTICAL_RANGE
 
 
@@ -184,9 +185,9 @@ class Hours:
             counts = ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
             said += f"; not modelled, except for the visibility: {counts}"
         return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and "
-                f"DZ {DRIZZLE:g} mm/h; 10 km or more is {CLEAR / 1000:g} km; visibilities below are optical ranges, as by day "
-                f"(in a setting times {KOSCHMIEDER / OPTICAL_RANGE:.2f}), so air by night may be {night_factor(500.0):.1f} times "
-                "as dense")
+                f"DZ {DRIZZLE:g} mm/h; 10 km or more is {CLEAR / 1000:g} km; visibilities below are optical ranges, as by "
+                f"day (in a setting times {KOSCHMIEDER / OPTICAL_RANGE:.2f}): by night, air of 500 m is "
+                f"{night_factor(500.0):.1f} times as dense")
 
 
 def _reports(text: str) -> Iterator[Tuple[int, str]]:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What round drops of rain send straight back by Mie's theory, by wavelength and rain rate, and the terms of Filters/Media/media.json that fit
-it: S is the extinction over the backscatter.
+"""What round drops of rain send straight back by Mie's theory, by wavelength and rain rate, and the terms of
+Filters/Media/media.json that fit it. S is the extinction over the backscatter.
 
     Testing/Studies/run.py drops --out build/weather-drops
 """
@@ -14,10 +14,11 @@ import others
 import tools
 from running import argument, study, whole
 
-WATER = json.loads((pathlib.Path(__file__).resolve().parents[3] / "Filters/Media/media.json").read_text(encoding="utf-8"))["water"]
+MEDIA = pathlib.Path(__file__).resolve().parents[3] / "Filters" / "Media" / "media.json"
+WATER = json.loads(MEDIA.read_text(encoding="utf-8"))["water"]
 WAVELENGTHS = 0.905, 1.064, 1.2, 1.31, 1.45, 1.55  # um
 RATES = 1, 10, 50  # mm/h
-OF_905 = 20.0  # sr: assumed; round drops of 5 to 14 sr depend on the third digit of the index, and real drops are not round
+OF_905 = 20.0  # sr, assumed: real drops are not round, and S of round drops depends on the third digit of the index
 
 
 def index_of(wavelength):
@@ -49,9 +50,11 @@ def main(options):
     for wavelength in WAVELENGTHS:
         for rate in RATES:
             case = wavelength, rate
-            _, ratios[case], errors[case] = others.rain_of_spheres(rate, options.drops, wavelength=wavelength, index=index_of(wavelength))
+            _, ratios[case], errors[case] = others.rain_of_spheres(rate, options.drops, wavelength=wavelength,
+                                                                   index=index_of(wavelength))
     rows = [(f"{1e3 * wavelength:.0f}", rate, f"{ratio:.3g} ± {ratio * errors[wavelength, rate]:.1g}",
              f"{ratio_of_terms(wavelength, rate, terms):.3g}") for (wavelength, rate), ratio in ratios.items()]
     used = {case: OF_905 if case[0] == WAVELENGTHS[0] else ratio for case, ratio in ratios.items()}
     print("best terms:", *(f"efficiency {efficiency:.3g}, way {way:.3g};" for efficiency, way in fitted(used)))
-    tools.leave(options.out, "weather-drops", ("wavelength, nm", "rain rate, mm/h", "S of round drops, sr", "S of the simulator, sr"), rows, 2)
+    tools.leave(options.out, "weather-drops",
+                ("wavelength, nm", "rain rate, mm/h", "S of round drops, sr", "S of the simulator, sr"), rows, 2)
