@@ -188,8 +188,85 @@ TEST(Medium, LightThatDropsDiffractIntoTheViewIsNotLost)
   Sensor sensor = sensorOf(Search905);
   EXPECT_NEAR(viewOf(sensor).halfAngle, 5.6e-3, 1e-12);
   EXPECT_NEAR(viewOf(sensor).wavelength, 905e-9, 1e-15);
-  sensor.halfBeamwidthAcross = 1.4e-3;
-  EXPECT_NEAR(viewOf(sensor).halfAngle, 2.8e-3, 1e-6);
+  EXPECT_EQ(viewOf(sensor).across, 0.0);
+}
+
+TEST(Medium, LightIsDiffractedIntoAViewThatIsNotRound)
+{
+  // Angles drawn from Airy's pattern, with 1 - J0^2 - J1^2 of the light within the argument x.
+  constexpr double step = 0.01;
+  std::vector<double> within;
+  for (double x = 0.0, most = 0.0; x < 2000.0; x += step)
+  {
+    most = std::max(most, 1.0 - ::j0(x) * ::j0(x) - ::j1(x) * ::j1(x));
+    within.push_back(most);
+  }
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform;
+  Sensor sensor = sensorOf(Search905);
+  sensor.halfBeamwidth = 2.443e-3; // of the Avia
+  sensor.halfBeamwidthAcross = 2.618e-4;
+  for (const BeamOutline outline : { BeamOutline::Ellipse, BeamOutline::Rectangle })
+  {
+    sensor.beamOutline = outline;
+    for (const double rate : { 1.0, 10.0, 50.0 })
+    {
+      const double slope = 4.1e3 * std::pow(rate, -0.21);
+      std::gamma_distribution<double> diameter(3.0, 1.0 / slope); // weighted with the areas
+      constexpr int draws = 400000;
+      double kept = 0.0;
+      for (int draw = 0; draw < draws; ++draw)
+      {
+        const auto at = std::lower_bound(within.begin(), within.end(), uniform(random));
+        const double x = step * static_cast<double>(at - within.begin());
+        const double angle = x * 905e-9 / (Pi * diameter(random)) * uniform(random);
+        const double turn = 2.0 * Pi * uniform(random);
+        const double along = std::fabs(angle * std::cos(turn)) / sensor.halfBeamwidth;
+        const double across = std::fabs(angle * std::sin(turn)) / sensor.halfBeamwidthAcross;
+        const double edge =
+          outline == BeamOutline::Ellipse ? std::hypot(along, across) : std::max(along, across);
+        kept += edge <= 1.0 ? 1.0 / draws : 0.0;
+      }
+      EXPECT_NEAR(keptInView(viewOf(sensor), slope), kept, 3e-3) << rate;
+    }
+  }
+}
+
+TEST(Medium, AbsorbingDropsReturnLittleLight)
+{
+  // Over diameters by midpoints: mean light and its mean square, with losses as at 1550 nm.
+  const DropLight light(1.3109, 1.083e3, { { { 0.154, 2.2 }, { 1.18, 11.2 } } });
+  for (const double rate : { 1.0, 10.0 })
+  {
+    const double slope = 4.1e3 * std::pow(rate, -0.21);
+    double areas = 0.0, back = 0.0, squares = 0.0, number = 0.0;
+    for (double d = 5e-7; d < 2e-2; d += 1e-6)
+    {
+      const double count = std::exp(-slope * d);
+      const double q =
+        0.018122 + 0.154 * std::exp(-2.2 * 1083.0 * d) + 1.18 * std::exp(-11.2 * 1083.0 * d);
+      number += count;
+      areas += count * d * d;
+      back += count * d * d * q;
+      squares += count * std::pow(d * d * q, 2);
+    }
+    const Medium rain = rainOf(rate, light, {});
+    EXPECT_NEAR(rain.backscatterRatio / (8.0 * Pi * areas / back), 1.0, 1e-3);
+    EXPECT_NEAR(rain.squareOfDrops / (squares * number / (back * back)), 1.0, 1e-3);
+    // Drops drawn one by one have this mean and this mean square.
+    double mean = 0.0, square = 0.0;
+    constexpr int draws = 400000;
+    for (int k = 0; k < draws; ++k)
+    {
+      double energy = 1.0; // of few drops, beyond the mean of 1
+      addDropsBeyondMean(
+        1, static_cast<std::uint64_t>(k), 1, 0, 1.0, 0.5, rain, PulseShares(), &energy);
+      mean += energy / draws;
+      square += (energy - 1.0) * (energy - 1.0) / draws;
+    }
+    EXPECT_NEAR(mean, 1.0, 0.015);
+    EXPECT_NEAR(square / (rain.squareOfDrops / 0.5), 1.0, 0.04);
+  }
 }
 
 TEST(Medium, BadOnesAreNamed)
@@ -495,6 +572,44 @@ TEST(Air, PointsOfRainAreThoseOfDropsOneByOne)
     const double error = std::sqrt(truth / beams + truth / ours); // at most
     EXPECT_NEAR(between(points, from, to) / ours, truth, 3.0 * error) << from;
   }
+}
+
+TEST(Air, DropsAreDrawnWithoutNoisePhotons)
+{
+  // A rate of 1e-9/s gives no photon in these beams. A unit holds 0.3 drops, and the limit lies at
+  // twice the mean energy of a drop.
+  Sensor sensor = sensorOf(Search905);
+  sensor.receiverModel = ReceiverModel::EnergyLimits;
+  sensor.halfBeamwidth = 1.5e-4;
+  sensor.pulseWidth = 0.0;
+  const Medium rain = rainOf(10.0, 20.0, viewOf(sensor));
+  const std::size_t unit = 60;
+  BeamAir echo = filledBy(sensor, rain);
+  const BeamAir::Share share = echo.sharesOf(unit).front();
+  sensor.lowerEnergyLimit = 2.0 * share.mean / share.drops;
+  std::mt19937_64 random(7);
+  std::poisson_distribution<int> poisson(share.drops);
+  std::exponential_distribution<double> diameter(1.0);
+  constexpr int beams = 4000;
+  double theirs = 0.0;
+  for (int beam = 0; beam < beams; ++beam)
+  {
+    double light = 0.0;
+    for (int drop = poisson(random); drop > 0; --drop)
+    {
+      light += 0.5 * std::pow(diameter(random), 2);
+    }
+    theirs += light > 2.0 ? 1.0 : 0.0;
+  }
+  std::vector<std::vector<double>> points;
+  for (const double rate : { 0.0, 1e-9 })
+  {
+    sensor.noisePhotonRate = rate;
+    points.push_back(pointsOf(sensor, filledBy(sensor, rain), beams));
+    ASSERT_GT(points.back().size(), unit);
+    EXPECT_NEAR(points.back()[unit], theirs, 3.0 * std::sqrt(2.0 * theirs));
+  }
+  EXPECT_EQ(points[0], points[1]);
 }
 
 TEST(Air, NearAirBlinds)

@@ -3,6 +3,7 @@
 #include "BeamAir.h"
 #include "MediumTestScene.h"
 #include "Sanitized.h"
+#include "Statistics.h"
 
 #include <cmath>
 
@@ -163,6 +164,84 @@ TEST(BeamCrowns, ABeamMeetsLeavesWithAPartOfIt)
   }
 }
 
+/// A small plate behind a crown of 3 m, in the middle of a beam that is narrow or much wider than
+/// leaves. Expected values are those of the independent program, for 4,000 crowns and 64 rays to
+/// the plate.
+struct PlateCase
+{
+  double halfBeamwidth, aperture; ///< rad, m in radius
+  double begin, plate;            ///< m
+  double halfWidth, halfHeight;   ///< m
+  std::array<double, 2> mean;     ///< light of the plate, over that in clear air
+  double deviation;               ///< standard deviation of this light
+  double dark;                    ///< share of beams with less than 2 % of the light
+};
+
+constexpr PlateCase PlateCases[] = {
+  { 3e-3, 0.075, 30.0, 35.0, 0.01, 0.008, { 0.1921, 0.0049 }, 0.3107, 0.5815 },
+  { 5.6e-3, 0.05, 95.0, 100.0, 0.01, 0.008, { 0.2177, 0.0052 }, 0.3282, 0.5495 },
+  { 5.6e-3, 0.05, 95.0, 100.0, 0.1, 0.05, { 0.2135, 0.0018 }, 0.1169, 0.0165 },
+};
+
+TEST(BeamCrowns, LeavesHideSmallObjectsOrDoNot)
+{
+  for (const PlateCase& of : PlateCases)
+  {
+    if (IsSanitized && &of != PlateCases)
+    {
+      break;
+    }
+    const Sensor sensor =
+      lidarOf({ of.halfBeamwidth, of.aperture, 1.0, 0.0, 0.0, 0.0, {}, {}, 0.0, 0.0 });
+    const auto seen = [&](double density, bool wall)
+    {
+      Scene scene;
+      scene.plate(Vec3(of.plate, 0.0, 0.0), Vec3(0.0, of.halfWidth, 0.0),
+        Vec3(0.0, 0.0, of.halfHeight), Wall, 7);
+      if (wall)
+      {
+        scene.plate(
+          Vec3(of.plate + 8.0, 0.0, 0.0), Vec3(0.0, 50.0, 0.0), Vec3(0.0, 0.0, 50.0), Wall, 8);
+      }
+      Sensor wide = sensor;
+      wide.rangeGate = 130.0;
+      wide.lowerEnergyLimit = 1e-30;
+      wide.receiverModel = ReceiverModel::EnergyLimits;
+      ScanSetup setup = inMedium(scene, wide, leavesOf(density),
+        boxOf(Vec3(of.begin + 1.5, 0.0, 0.0), Vec3(1.5, 50.0, 50.0)));
+      setup.settings.noise = true;
+      setup.settings.returnMode = ReturnMode::RangeUnits;
+      planModel(setup);
+      const ScanResult result = runScan(setup, alike(Scans));
+      std::vector<double> light(Scans, 0.0);
+      for (std::size_t k = 0; k < result.echoes.size(); ++k)
+      {
+        const Echo& echo = result.echoes[k];
+        const bool isOfPlate = std::fabs(echo.range - of.plate) < 1.5 && echo.objectId == 7;
+        light[result.beamOfEcho[k]] += isOfPlate ? echo.energyReceived : 0.0;
+      }
+      return light;
+    };
+    const double clear = statistics::sumOf(seen(1e-9, false)) / static_cast<double>(Scans);
+    for (const bool wall : { false, true })
+    {
+      double mean = 0.0, square = 0.0, dark = 0.0;
+      for (const double energy : seen(1.0, wall))
+      {
+        const double share = energy / clear;
+        mean += share / static_cast<double>(Scans);
+        square += share * share / static_cast<double>(Scans);
+        dark += share < 0.02 ? 1.0 / static_cast<double>(Scans) : 0.0;
+      }
+      const double deviation = std::sqrt(square - mean * mean);
+      const double error = std::hypot(of.mean[1], deviation / std::sqrt(Scans));
+      EXPECT_NEAR(mean, of.mean[0], 3.0 * error) << of.plate << " " << wall;
+      EXPECT_NEAR(deviation / of.deviation, 1.0, 0.08) << of.plate << " " << wall;
+      EXPECT_NEAR(dark, of.dark, 0.045) << of.plate << " " << wall;
+    }
+  }
+}
+
 /// A crown of 4 m before a wall; where nothing is wider than leaves.
 constexpr CrownCase ThinRay{ 1e-8, 1e-6, 1.0, 18.0, 22.0, 40.0, {}, {}, 0.0, 0.0 };
 
@@ -199,6 +278,37 @@ TEST(BeamCrowns, AThinRayEndsAtItsFirstLeafOrPasses)
   };
   within(passed, left);
   within(first, 1.0 - std::exp(-0.5 * (end - 18.0)));
+}
+
+TEST(BeamCrowns, LeavesAreDrawnWithoutNoisePhotons)
+{
+  // The independent program gives a standard deviation of 0.99 +- 0.05 of the mean.
+  const CrownCase of{ 9.5e-4, 0.0125, 1.0, 30.0, 33.0, 35.0, {}, {}, 0.0, 0.0 };
+  for (const double rate : { 0.0, 1e-3 })
+  {
+    Sensor sensor = lidarOf(of);
+    sensor.receiverModel = ReceiverModel::EnergyLimits;
+    sensor.lowerEnergyLimit = 1e-30;
+    sensor.noisePhotonRate = rate;
+    ScanSetup setup = inMedium(wallAt(of.wall), sensor, leavesOf(of.density), crownOf(of));
+    setup.settings.noise = true;
+    setup.settings.returnMode = ReturnMode::RangeUnits;
+    planModel(setup);
+    const ScanResult result = runScan(setup, alike(Scans));
+    std::vector<double> walls(Scans, 0.0);
+    for (std::size_t k = 0; k < result.echoes.size(); ++k)
+    {
+      const Echo& echo = result.echoes[k];
+      walls[result.beamOfEcho[k]] += echo.range > of.end + 1.0 ? echo.energyReceived : 0.0;
+    }
+    const double mean = statistics::sumOf(walls) / static_cast<double>(Scans);
+    double square = 0.0;
+    for (const double energy : walls)
+    {
+      square += (energy - mean) * (energy - mean) / static_cast<double>(Scans);
+    }
+    EXPECT_NEAR(std::sqrt(square) / mean, 0.99, 0.1) << rate;
+  }
 }
 
 TEST(BeamCrowns, NoiseOfLeavesLeavesTheMean)

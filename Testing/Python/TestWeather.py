@@ -18,6 +18,7 @@ import avianlidar as al
 from helpertools import run
 
 import exampletools  # noqa: F401  (finds the studies)
+import drops
 import others
 
 LIGHT, PLANCK = 299792458.0, 6.626e-34  # the constants of the receiver
@@ -169,7 +170,35 @@ class AnotherSimulator(unittest.TestCase):
                 self.assertAlmostEqual(energy / theirs, 1, delta=1e-3 + 1.3 * raised, msg=f"{visibility} m, {r} m")
 
 
+def ratio_of_rain(rate, wavelength):
+    """Twice the drops' areas over their backscatter, sr, by the light of a range unit. @param wavelength um"""
+    sensor = looking(wavelength=1e3 * wavelength, receiver_model="EnergyLimits", lower_energy_limit=0, upper_energy_limit=1e9,
+                     pulse_width=0, range_gate=60)
+    echoes = al.Scan(NOTHING, sensor, noise=False, return_mode="RangeUnits", attenuation_coefficient=0, rain_rate=rate).echoes
+    extinction, length = float(echoes.fields["attenuation_coefficient"]), LIGHT * sensor.sampling_interval / 2
+    k = int(np.argmax(echoes["distance_m"]))
+    r = float(echoes["distance_m"][k])
+    mean = sensor.receiver_aperture / r**2 * np.exp(-2 * extinction * r) * length
+    areas = 0.25e-6 * math.pi * 8000 * 2 * (rate**0.21 / 4.1)**3
+    return 2 * areas / (float(echoes["energy_received"][k]) / sensor.pulse_energy / mean)
+
+
 class Mie(unittest.TestCase):
+    def test_water_absorbs_the_light_from_the_rear_of_drops(self):
+        for rate in (1, 10):
+            _, ratio, error = others.rain_of_spheres(rate, 1200, wavelength=1.55, index=drops.index_of(1.55))
+            self.assertLess(error, 0.1)
+            self.assertAlmostEqual(ratio_of_rain(rate, 1.55) / ratio, 1, delta=0.2)
+        self.assertAlmostEqual(ratio_of_rain(10, 0.905), 20, delta=1)
+
+    def test_water_is_that_of_hale_and_querry(self):
+        """Optical constants of water in the 200-nm to 200-um wavelength region, Applied Optics 12, 1973."""
+        for wavelength, index, extinction in ((0.7, 1.331, 3.35e-8), (0.9, 1.328, 4.86e-7), (1.0, 1.327, 2.89e-6), (1.2, 1.324, 9.89e-6),
+                                              (1.6, 1.317, 8.55e-5)):
+            found = drops.index_of(wavelength)
+            self.assertAlmostEqual(found.real, index, delta=0.008)
+            self.assertAlmostEqual(found.imag / extinction, 1, delta=0.25)
+
     def test_droplets_return_what_ceilometers_found(self):
         for fog in others.FOGS:
             self.assertAlmostEqual(others.ratio_of_fog(fog) / RATIO, 1, delta=0.1, msg=fog)

@@ -224,17 +224,28 @@ EGLL 010220Z NIL=
         found = {tuple(part["weather"]): 12 * part["share"] for part in hours.year()}
         self.assertAlmostEqual(sum(found.values()), 12)
         self.assertAlmostEqual(found["haze:23000",], 3)
-        low = 3 / (1 / 50 + 1 / 300 + 1 / (0.25 * 1609.344))
+        mor = 3.912 / math.log(20)  # setting over report: 5 % of a beam is left at a meteorological optical range (ICAO Annex 3)
+        low = 3 * mor / (1 / 50 + 1 / 300 + 1 / (0.25 * 1609.344))
         self.assertAlmostEqual(found[f"fog:{float(f'{low:.2g}'):g}",], 3)
-        self.assertAlmostEqual(found["haze:1500",], 1)
+        self.assertAlmostEqual(found["haze:2000",], 1)
         # Rain takes its part of the extinction that was reported.
         for visibility, rate in ((4000, 5), (1.5 * 1609.344, 1)):
-            left = 3.912 / visibility - extinction_of_rain(float(rate))
+            left = math.log(20) / visibility - extinction_of_rain(float(rate))
             self.assertAlmostEqual(found[f"haze:{float(f'{3.912 / left:.2g}'):g}", f"rain:{rate}"], 1)
+
+    def test_visibility_is_an_optical_range(self):
+        for code, word in (("0600 FG", "fog:780"), ("0990 FG", "fog:1300"), ("1100 BR", "haze:1400"), ("4000 HZ", "haze:5200"),
+                           ("9000", "haze:12000")):
+            one = _metar.Hours("a", [_metar.report_of(f"ZSSS 010000Z 00000KT {code} Q1013")], [])
+            self.assertEqual(one.year()[0]["weather"], [word])
+        self.assertIn("optical ranges, as by day (in a setting times 1.31): by night, air of 500 m is 2.8 times as dense", one.words())
+        # A lamp of 1000 cd gives 1e-6 lx after 600 m in air that leaves 5 % of a beam after 227 m.
+        self.assertAlmostEqual(1000 * 0.05**(600 / 226.7) / 600**2, 1e-6, delta=1e-8)
+        self.assertAlmostEqual(_metar.night_factor(600), 600 / 226.7, delta=1e-3)
 
     def test_a_file_is_the_year_of_its_hours(self):
         (HERE / "few.txt").write_text("".join(f"ZSSS 01{hour:02d}00Z 00000KT {'0500 FG' if hour < 6 else 'CAVOK'} Q1013\n" for hour in range(24)))
         by_file = read_plan(plan("metar", metar="few.txt"))
         by_option = read_plan(plan("metar", year=YEAR), metar=HERE / "few.txt")
-        self.assertEqual(by_file["year"], [{"weather": ["fog:500"], "share": 0.25}, {"weather": ["haze:23000"], "share": 0.75}])
+        self.assertEqual(by_file["year"], [{"weather": ["fog:650"], "share": 0.25}, {"weather": ["haze:23000"], "share": 0.75}])
         self.assertEqual(by_option["year"], by_file["year"])

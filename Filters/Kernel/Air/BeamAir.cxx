@@ -766,10 +766,11 @@ void BeamAir::findLeaves(std::vector<Leaves>& all) const
     [](const Leaves& one, const Leaves& two) { return one.begin < two.begin; });
 }
 
-const BeamAir::Column& BeamAir::columnOf(const Column& cell) const
+const BeamAir::Column& BeamAir::columnOf(std::uint64_t bits) const
 {
-  return *std::find_if(this->Columns.begin(), this->Columns.end(),
-    [&](const Column& column) { return (column.bits & cell.bits) != 0; });
+  const auto found = std::find_if(this->Columns.begin(), this->Columns.end(),
+    [=](const Column& column) { return (column.bits & bits) != 0; });
+  return found != this->Columns.end() ? *found : this->Columns.front();
 }
 
 double BeamAir::densityAt(const Column& column, std::uint32_t medium, double range) const
@@ -790,15 +791,20 @@ double BeamAir::returnedBy(const MetLeaf& leaf, const Column& column, double sha
     std::exp(-2.0 * this->Attenuation * leaf.range - depth);
 }
 
+double BeamAir::leftByLeaves(const Column& column, double range) const
+{
+  const double depth = this->sumOver(column,
+    [&](const Part& part)
+    { return part.perLeaf > 0.0 ? part.extinction * part.crossing.upTo(range) : 0.0; });
+  return std::exp(-depth) * this->wayBack(column, range);
+}
+
 double BeamAir::leftByLeaves(double range) const
 {
   double sum = 0.0;
   for (const Column& column : this->Columns)
   {
-    const double depth = this->sumOver(column,
-      [&](const Part& part)
-      { return part.perLeaf > 0.0 ? part.extinction * part.crossing.upTo(range) : 0.0; });
-    sum += column.weight * std::exp(-depth) * this->wayBack(column, range);
+    sum += column.weight * this->leftByLeaves(column, range);
   }
   return sum;
 }

@@ -171,14 +171,17 @@ public:
   std::array<double, 2> halfWidths() const { return this->HalfWidths; }
   double apertureRadius() const { return this->ApertureRadius; }
 
-  /// Mean transmission, to a range, m, and back, of leaves whose size is known.
+  /// Mean transmission, to a range, m, and back, of leaves whose size is known: of a column, or of
+  /// the beam.
+  double leftByLeaves(const Column& column, double range) const;
   double leftByLeaves(double range) const;
 
   /// Cells of the grid that lie in the beam, whether or not the beam is divided.
   const std::vector<Column>& grid();
 
-  /// Column that contains a cell; valid until the next beam begins.
-  const Column& columnOf(const Column& cell) const;
+  /// A column that contains one of some cells; valid until the next beam begins. @param bits bits
+  /// of the cells; 0: all cells
+  const Column& columnOf(std::uint64_t bits) const;
 
   /// Relative density of a medium in a column at a range, m; 1 where the medium has its full
   /// density.

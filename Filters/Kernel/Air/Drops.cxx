@@ -60,9 +60,9 @@ std::array<double, 2> gammaBeyondMean(double shape, F draw)
   }
 }
 
-/// Add the drops of one scan. @param square see Medium::squareOfDrops
+/// Add the drops of one scan.
 void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::int32_t revolution,
-  double mean, double drops, double square, const PulseShares& pulse, double* units)
+  double mean, double drops, const Medium& medium, const PulseShares& pulse, double* units)
 {
   if (!(mean > 0.0 && drops > 0.0))
   {
@@ -74,7 +74,7 @@ void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::
   const double place = pulse.placeOfMany();
   if (drops > FewDrops)
   {
-    const double shape = drops / square;
+    const double shape = drops / medium.squareOfDrops;
     const auto [beyond, where] = gammaBeyondMean(shape, draw);
     pulse.add(mean * beyond, where < 0.5 ? place : 1.0 - place, units);
     return;
@@ -88,8 +88,10 @@ void addDrops(std::int32_t seed, std::uint64_t beam, std::uint64_t number, std::
   {
     const auto [size, at] = draw(k);
     const double d = std::log(size);
-    // Square of the drop's diameter, or of the leaf's cosine, over the mean of such squares.
-    const double light = square == SquareOfLeaves ? 3.0 * size * size : 0.5 * d * d;
+    // Energy of the drop, or square of the leaf's cosine, over the mean.
+    const double light = medium.squareOfDrops == SquareOfLeaves
+      ? 3.0 * size * size
+      : 0.5 * d * d * medium.light.efficiencyOf(-d);
     pulse.add(mean * light / drops, at, units);
   }
 }
@@ -100,10 +102,7 @@ void addDropsBeyondMean(std::int32_t seed, std::uint64_t beam, std::uint64_t num
   const PulseShares& pulse, double* units)
 {
   const auto add = [&](std::int32_t scan, double share)
-  {
-    addDrops(
-      seed, beam, number, scan, share * mean, share * drops, medium.squareOfDrops, pulse, units);
-  };
+  { addDrops(seed, beam, number, scan, share * mean, share * drops, medium, pulse, units); };
   // Drops that are not renewed are the same in every scan.
   constexpr std::int32_t always = -1;
   add(revolution, medium.renewed);

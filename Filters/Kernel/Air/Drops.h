@@ -5,9 +5,9 @@
  * this light.
  *
  * The number of drops in the unit's part of the beam is Poisson distributed. The energy of a drop
- * is proportional to the square of its exponentially distributed diameter (Air.h). The energy of a
- * leaf is proportional to the square of its cosine of incidence. Below, leaves count as drops. Up
- * to FewDrops drops are drawn one by one. The energy of more than FewDrops drops is a gamma variate
+ * follows from its exponentially distributed diameter (DropLight). The energy of a leaf is
+ * proportional to the square of its cosine of incidence. Below, leaves count as drops. Up to
+ * FewDrops drops are drawn one by one. The energy of more than FewDrops drops is a gamma variate
  * with the mean and variance of drops that are drawn one by one.
  *
  * The pulse of a drop is divided among the units that it overlaps, as for surfaces (RangeUnits.h).

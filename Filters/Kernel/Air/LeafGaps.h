@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LeafGaps.h
- * @brief Single leaves in a narrow beam: the light that they return and the light that they
- * transmit.
+ * @brief Single leaves in a beam: the light that they return and the light that they transmit.
  *
  * A beam is divided into rays, one through each cell of its grid (BeamAir.h). The light of a ray
  * returns to one point of the aperture. Leaves are discs of one size at random places (Poisson),
  * with all orientations equally likely. A ray ends at the first leaf that it meets. The way back
  * lies beside the way out. The light of the ray comes back unless another leaf stops this light on
  * the way back. So a leaf may stop one part of a beam and not the rest. A range unit receives the
- * light of the rays that end in this unit. Light from a range behind leaves is scaled by the share
- * of rays that no leaf stops on the way to this range and back, divided by the mean of this share.
- * Beams much wider than a leaf are not divided. The leaves in such beams follow the compound
- * Poisson law of Drops.h.
+ * light of the rays that end in this unit. Light of the air from a range behind leaves is scaled by
+ * the share of rays that no leaf stops on the way to this range and back, divided by the mean of
+ * this share. Beams much wider than a leaf are not divided. The leaves in such beams follow the
+ * compound Poisson law of Drops.h.
+ *
+ * The samples of an object in a range unit form a target, with its own rays to random points of the
+ * samples. A ray that no leaf stops carries the light that reaches the target on average, divided
+ * by the ray's mean transmission. In a divided beam, targets share the leaves of the beam. In any
+ * other beam, leaves are drawn about each object that is not much wider than a leaf. The light of
+ * wider objects has its mean.
  *
  * Source: the Boolean model of leaves at random places (Nilson, Agricultural Meteorology 8, 1971).
  * Differs: the paper has no leaves.
@@ -35,15 +40,33 @@ namespace avianlidar
 class LeafGaps
 {
 public:
-  /// Begin a beam that has no leaves or is not divided.
-  void clear() { this->Rays.clear(); }
+  /// A sample of a surface.
+  struct Sample
+  {
+    int object;                         ///< object id
+    std::int64_t unit;                  ///< number of the range unit
+    std::size_t number;                 ///< number for the caller
+    double range;                       ///< range, m
+    double energy;                      ///< mean energy that returns, J
+    std::uint64_t bits;                 ///< cells of the grid that the sample meets
+    std::array<double, 2> middle, half; ///< place in the beam's plane: an ellipse
+    double open = 1.0;                  ///< light that leaves let through, over its mean
+  };
 
-  /// Begin a beam. `along` must not be destroyed before the next beam. @param along air of the beam
-  /// @param solidAngle solid angle of the beam, sr
-  void begin(BeamAir& along, double solidAngle, std::int32_t seed, std::uint64_t beam,
-    std::int32_t revolution);
+  /// Begin a beam without leaves.
+  void clear() { this->Grid = 0; }
 
-  bool any() const { return !this->Rays.empty(); }
+  /// Begin a beam. @return true if the beam meets leaves. @param along air of the beam, which must
+  /// not be destroyed before the next beam
+  bool begin(BeamAir& along);
+
+  /// Draw the leaves of a beam that meets leaves. @param solidAngle solid angle of the beam, sr
+  /// @param samples samples of surfaces, which are sorted and get `open`
+  void draw(double solidAngle, std::int32_t seed, std::uint64_t beam, std::int32_t revolution,
+    std::vector<Sample>& samples);
+
+  /// True if the beam is divided.
+  bool any() const { return this->Grid > 0; }
 
   /// Transmission of the leaves to a range, m, and back, divided by the mean transmission.
   double openAt(double range) const;
@@ -60,16 +83,25 @@ public:
   /// Largest area of a square about all ways out and back, in projected leaf areas. This number
   /// limits the aperture.
   static constexpr double MostLeavesAcross = 1000.0;
+  /// Number of rays to an object, which its targets share, and least number of rays to a target.
+  static constexpr double RaysToObject = 64.0;
+  static constexpr double LeastRaysToTarget = 8.0;
 
 private:
   struct Ray
   {
     std::array<double, 2> slope;    ///< tangents across the beam
     std::array<double, 2> aperture; ///< point of the aperture to which the ray's light returns, m
-    double share;                   ///< share of the pulse in the ray
+    double share; ///< share of the pulse in the ray; to a target, share of the target's mean light
     const BeamAir::Column* column;
     MetLeaf leaf; ///< leaf at which the ray ends, with an infinite range if there is no such leaf
-    bool isSeen;  ///< true if no leaf stops the light that `leaf` returns
+    bool isSeen;  ///< true if no leaf stops the light that `leaf` or the target returns
+    double end;   ///< range of the target, m; infinite if the ray has no target
+  };
+  /// Samples of a target, up to `sample`, and the target's rays, up to `ray`.
+  struct Target
+  {
+    std::size_t sample, ray;
   };
   /// Ranges, m, from which a leaf stops the light of a ray on its way back.
   struct Shadow
@@ -89,13 +121,20 @@ private:
     std::uint64_t number; ///< number of the first draw of the next leaf
     double range;         ///< range of the next leaf, m
   };
-  void makeStreams(double growth, double solidAngle, std::int32_t revolution);
+  void makeStreams(double growth, double solidAngle, std::uint64_t first, std::int32_t revolution);
   void makeRays(double turn, double shift);
   template <class F>
-  void place(const std::array<double, 2>& centre, const Stream& of, F draw);
+  void addTargets(const std::vector<Sample>& samples, std::size_t first, std::size_t last, F draw);
+  template <class F>
+  void place(const std::array<double, 2>& middle, const std::array<double, 2>& half, F draw);
+  void open(std::size_t first, std::vector<Sample>& samples);
+  template <class F>
+  void placeOne(const std::array<double, 2>& centre, const Stream& of, F draw);
   std::uint64_t shadedAt(double range) const;
 
-  std::vector<Ray> Rays;
+  std::vector<Ray> Rays; ///< rays of the grid, then rays to targets
+  std::size_t Grid = 0;  ///< number of rays of the grid
+  std::vector<Target> Targets;
   std::vector<std::size_t> Going; ///< rays that no leaf has stopped so far
   std::vector<Shadow> Shadows;
   std::vector<BeamAir::Leaves> Leaves;

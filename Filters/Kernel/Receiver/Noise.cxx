@@ -157,7 +157,7 @@ NoisePlan planNoise(const Sensor& sensor, bool enabled, bool inFull)
   plan.gateUnits = unitsInsideGate(sensor.samplingInterval, sensor.rangeGate);
   plan.firstUnit = firstUnitInsideGate(sensor.samplingInterval, sensor.minimumRange);
   plan.photonEnergy = sensor.photonEnergy();
-  plan.ofRanges = enabled;
+  plan.enabled = plan.ofRanges = enabled;
   plan.gaussian = enabled && sensor.receiverModel == ReceiverModel::Photons;
   plan.meanPhotons =
     enabled && !plan.gaussian ? sensor.noisePhotonRate * sensor.samplingInterval : 0.0;

@@ -47,6 +47,7 @@ namespace avianlidar
 /// all pieces of a scan.
 struct NoisePlan
 {
+  bool enabled = false;      ///< the switch `Noise`; true if light of drops and leaves is drawn
   bool active = false;       ///< true if noise is drawn; false if noise is off or cannot matter
   bool ofRanges = false;     ///< true if ranges have noise (RangeErrors.h)
   double meanPhotons = 0.0;  ///< b tau_s, mean number of photons in a unit

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace avianlidar
 {
 BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene,
   const ScanBeams& beams, BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver,
-  BeamAir& air, std::function<bool()> wanted)
+  BeamAir& air, LeafGaps& gaps, std::function<bool()> wanted)
   : Setup(setup)
   , Scene(scene)
   , Beams(beams)
@@ -23,6 +24,7 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene,
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
       setup.sensor.minimumRange)
   , Air(air)
+  , Gaps(gaps)
 {
 }
 
@@ -32,9 +34,11 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   this->Skipped = 0;
   this->Paths.clear();
   this->Energies.clear();
+  this->Means.clear();
   this->Units.clear();
   this->Radiance = this->Setup.sensor.backgroundRadiance;
   this->Air.begin(this->Block.frameOf(beam), this->Beams.timeOf(beam));
+  this->Gaps.clear();
   if (!this->placeSamples(beam, trace))
   {
     return false;
@@ -45,6 +49,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
   }
   if (!this->Lit)
   {
+    this->drawLeaves(beam);
     return this->Receiver.mayAlarm() || this->Air.returnsLight();
   }
   this->OfLit.measure(this->Setup, *this->Lit);
@@ -57,7 +62,7 @@ bool BeamLighting::light(std::size_t beam, BeamTrace& trace)
                                 : most *
       (this->MayReflectTwice ? this->Secondary.bound(extent.mostAlbedo, extent.nearest)
                              : this->Secondary.bound(*this->Lit, this->OfLit));
-  if (!this->mayBePerceived(most, ofPaths))
+  if (!this->mayBePerceived(beam, most, ofPaths))
   {
     return false;
   }
@@ -105,21 +110,55 @@ bool BeamLighting::placeNodes(std::size_t beam)
 }
 
 /// Weaken direct echoes by media that do not fill the scene. @return their new sum, J
-double BeamLighting::passMedia(double sum)
+double BeamLighting::passMedia(std::size_t beam, double sum)
 {
   if (!this->Air.isLocal())
   {
     return sum;
   }
   const BeamSamples& samples = *this->Lit;
-  sum = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i)
   {
-    this->Energies[i] *=
-      this->Air.transmission(samples.range[i], samples.columns.empty() ? 0 : samples.columns[i]);
-    sum += this->Energies[i];
+    this->Energies[i] *= this->Air.transmission(samples.range[i], samples.columnsOf(i));
   }
-  return sum;
+  this->drawLeaves(beam);
+  return std::accumulate(this->Energies.begin(), this->Energies.end(), 0.0);
+}
+
+/// Draw the leaves in the beam, and scale direct echoes by the gaps between them.
+void BeamLighting::drawLeaves(std::size_t beam)
+{
+  if (!this->Setup.noise.enabled || !this->Gaps.begin(this->Air))
+  {
+    return;
+  }
+  this->BehindLeaves.clear();
+  const auto add = [&](std::uint32_t triangle, std::size_t begin, std::size_t end)
+  {
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const double range = this->Lit->range[i];
+      LeafGaps::Sample sample{ this->Setup.objectId(triangle),
+        static_cast<std::int64_t>(range / this->Setup.sensor.rangeUnitLength()), i, range,
+        this->Energies[i], this->Lit->columnsOf(i), { 0.0, 0.0 }, { 1.0, 1.0 } };
+      if (!this->Lit->places.empty())
+      {
+        this->Lit->places[i].spread(this->Lit->weight[i], sample.middle, sample.half);
+      }
+      this->BehindLeaves.push_back(sample);
+    }
+  };
+  if (this->Lit)
+  {
+    this->Lit->forEachSurface(add);
+  }
+  this->Gaps.draw(this->Setup.sensor.solidAngle(), this->Setup.settings.seed, this->Beams.ids[beam],
+    this->Setup.revolution, this->BehindLeaves);
+  this->Means = this->Energies;
+  for (const LeafGaps::Sample& sample : this->BehindLeaves)
+  {
+    this->Energies[sample.number] *= sample.open;
+  }
 }
 
 void BeamLighting::fillUnits()
@@ -129,8 +168,7 @@ void BeamLighting::fillUnits()
     std::vector<MetSurface> surfaces(this->Lit->size());
     for (std::size_t i = 0; i < surfaces.size(); ++i)
     {
-      surfaces[i] = { this->Lit->range[i], this->Lit->weight[i],
-        this->Lit->columns.empty() ? 0 : this->Lit->columns[i] };
+      surfaces[i] = { this->Lit->range[i], this->Lit->weight[i], this->Lit->columnsOf(i) };
     }
     this->Air.take(std::move(surfaces));
   }
@@ -236,7 +274,7 @@ double BeamLighting::nearestRange() const
 /// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J
 /// @param ofPaths bound of the energy of all paths with two reflections, J @return false if bounds
 /// show that nothing of the beam can be perceived. In that case energies may not be set.
-bool BeamLighting::mayBePerceived(double most, double ofPaths)
+bool BeamLighting::mayBePerceived(std::size_t beam, double most, double ofPaths)
 {
   const BeamSamples& samples = *this->Lit;
   const bool drops = dropsFaintPaths(this->Setup.settings);
@@ -246,7 +284,8 @@ bool BeamLighting::mayBePerceived(double most, double ofPaths)
   {
     return false;
   }
-  this->Direct = this->passMedia(directEnergies(this->Setup, samples, this->OfLit, this->Energies));
+  this->Direct =
+    this->passMedia(beam, directEnergies(this->Setup, samples, this->OfLit, this->Energies));
   if (drops)
   {
     if (this->raysAreLit()) // nodes of an integral are not paths

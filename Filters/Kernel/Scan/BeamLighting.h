@@ -52,7 +52,7 @@ public:
   /// returns false
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, const ScanBeams& beams,
     BlockBeams& block, BeamSampler& sampler, const BeamReceiver& receiver, BeamAir& air,
-    std::function<bool()> wanted);
+    LeafGaps& gaps, std::function<bool()> wanted);
 
   /// Computes the light of beams even where bounds show that no energy can be perceived.
   void lightAll() { this->LightsAll = true; }
@@ -66,6 +66,11 @@ public:
   RangeUnitAccumulator& units() { return this->Units; }
   /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
   const std::vector<double>& energies() const { return this->Energies; }
+  /// The same, with the mean transmission of leaves.
+  const std::vector<double>& meanEnergies() const
+  {
+    return this->Means.empty() ? this->Energies : this->Means;
+  }
   const std::vector<SecondaryPath>& paths() const { return this->Paths; }
   /// Rays from which paths start; null if no path starts from rays.
   const BeamSamples* starts() const { return this->Starts; }
@@ -84,7 +89,7 @@ public:
 private:
   bool placeSamples(std::size_t beam, BeamTrace& trace);
   bool placeNodes(std::size_t beam);
-  bool mayBePerceived(double most, double ofPaths);
+  bool mayBePerceived(std::size_t beam, double most, double ofPaths);
   bool onlySurfacesMatter() const;
   bool mayBeLeftOut(double farthest, double nearest) const;
   double nearestRange() const;
@@ -93,7 +98,8 @@ private:
   bool reflectAgain(std::size_t beam, BeamTrace& trace, double most);
   bool collectPaths(std::size_t beam, BeamTrace& trace);
   void dropFaintPaths();
-  double passMedia(double sum);
+  double passMedia(std::size_t beam, double sum);
+  void drawLeaves(std::size_t beam);
   void fillUnits();
 
   const ScanSetup& Setup;
@@ -107,6 +113,8 @@ private:
   PolygonQuadrature Quadrature;
   RangeUnitAccumulator Units;
   BeamAir& Air;
+  LeafGaps& Gaps;
+  std::vector<LeafGaps::Sample> BehindLeaves; ///< samples in a beam that meets leaves
   bool LightsAll = false;
 
   // The beam being lit.
@@ -124,6 +132,7 @@ private:
   Throughput OfLit;             ///< throughputs of the direct echoes of `Lit`
   Throughput OfStarts;          ///< throughputs of direct echoes of `Starts`, if not `Lit`
   std::vector<double> Energies; ///< energies of the direct echoes, J
+  std::vector<double> Means;    ///< meanEnergies(); empty if no leaves are drawn
   std::vector<SecondaryPath> Paths;
   double Direct = 0.0;              ///< sum of `Energies` before paths are dropped, J
   double DroppedByQuadrature = 0.0; ///< result of PolygonQuadrature::dropped(), J

@@ -14,9 +14,9 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, boo
   , Tracing(setup, this->Scene, beams, this->Block)
   , Air(setup.sensor, setup.air())
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
-      setup.revolution, wanted, &this->Air)
-  , Lighting(
-      setup, this->Scene, beams, this->Block, sampler, this->Receiver, this->Air, std::move(wanted))
+      setup.revolution, wanted, &this->Air, &this->Gaps)
+  , Lighting(setup, this->Scene, beams, this->Block, sampler, this->Receiver, this->Air, this->Gaps,
+      std::move(wanted))
   , Echoes(setup, this->Lighting, this->Receiver, sampler.error)
 {
 }

@@ -78,6 +78,7 @@ private:
   BlockBeams Block;
   ScanBlock Tracing;
   BeamAir Air;
+  LeafGaps Gaps;
   BeamReceiver Receiver;
   BeamLighting Lighting;
   BeamEchoes Echoes;

@@ -74,9 +74,13 @@ void BlockBeams::makeHits(
   if (haveVolumes(this->Setup.media))
   {
     const BeamRays& rays = this->raysOf(beam);
-    for (const std::uint32_t ray : trace.hits->ray)
+    for (std::size_t i = 0; i < trace.hits->size(); ++i)
     {
-      trace.hits->columns.push_back(BeamAir::columnAt(rays.x[ray], rays.y[ray]));
+      const std::uint32_t ray = trace.hits->ray[i];
+      SamplePlace place;
+      place.add(BeamAir::columnAt(rays.x[ray], rays.y[ray]), trace.hits->weight[i], rays.x[ray],
+        rays.y[ray]);
+      trace.hits->places.push_back(place);
     }
   }
 }

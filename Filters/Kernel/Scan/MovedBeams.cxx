@@ -161,7 +161,7 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
 /// Add the energies of the samples on triangles [begin, end) for the beam lit last.
 void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLighting& lighting)
 {
-  const std::vector<double>& energies = lighting.energies();
+  const std::vector<double>& energies = lighting.meanEnergies();
   if (!lighting.samples() || energies.empty())
   {
     return;

@@ -28,7 +28,8 @@ double perceivedEnergy(double received, double lower, double upper)
 }
 
 BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed,
-  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, BeamAir* air)
+  ReturnMode mode, std::int32_t revolution, std::function<bool()> wanted, BeamAir* air,
+  const LeafGaps* gaps)
   : Instrument(sensor)
   , Radiance(sensor.backgroundRadiance)
   , Errors(sensor, noise.ofRanges)
@@ -40,6 +41,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Air(air)
   , FollowsAir(sensor.followsAir())
   , Photons(sensor)
+  , Gaps(gaps)
   , Pulse(sensor.pulseWidth / sensor.samplingInterval)
   , Drops(this->Pulse)
   , Seed(seed)
@@ -67,7 +69,7 @@ void BeamReceiver::planAir()
     {
       ofDrops += varianceOfDrops(share, this->Air->mediumAt(share.medium));
     }
-    const bool hasDrops = this->Plan.active && ofDrops > DropsCount * variance;
+    const bool hasDrops = this->Plan.enabled && ofDrops > DropsCount * variance;
     if (hasDrops || (!this->FollowsAir && this->Air->followed(unit) > 1e-6 * this->Lower))
     {
       looked = unit + 1;
@@ -93,12 +95,7 @@ void BeamReceiver::receive(std::uint64_t beam, const std::vector<RangeUnit>& uni
   }
   this->Noise.begin(this->Plan, this->Seed, beam, this->Revolution);
   this->Beam = beam;
-  this->Gaps.clear();
   this->Drops.clear();
-  if (this->Plan.active && this->isLocal())
-  {
-    this->Gaps.begin(*this->Air, this->Instrument.solidAngle(), this->Seed, beam, this->Revolution);
-  }
   this->collectUnits(units);
   this->formReturns();
   this->select();
@@ -111,7 +108,7 @@ void BeamReceiver::lookAt(double radiance)
   this->Radiance = radiance;
   this->Lower = there.lowerEnergyLimit;
   this->Upper = there.upperEnergyLimit;
-  this->Plan = planNoise(there, this->Plan.active);
+  this->Plan = planNoise(there, this->Plan.enabled);
   this->Plan.ofRanges = ofRanges;
   this->Errors = RangeErrors(there, ofRanges);
   this->Photons = PhotonReceiver(there);
@@ -149,7 +146,7 @@ void BeamReceiver::collectUnits(const std::vector<RangeUnit>& units)
       { next, lit != units.end() ? lit->index : none, alarm != alarms.end() ? *alarm : none });
     const bool isAlarm = alarm != alarms.end() && *alarm == index;
     const bool isLit = lit != units.end() && lit->index == index;
-    const double light = isLit ? lit->energy * this->openAt(index) : 0.0;
+    const double light = isLit ? lit->energy : 0.0;
     const bool hasAir =
       isLocal ? index == next || !this->FollowsAir : this->Air && index < this->Air->units();
     if (isAlarm || hasAir || !(light < this->Plan.faintLight) || this->Noise.isRare(index))
@@ -218,11 +215,11 @@ double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
       continue;
     }
     double energy = open * share.mean;
-    if (medium.sharesGaps && this->Gaps.any())
+    if (medium.sharesGaps && this->Gaps && this->Gaps->any())
     {
-      energy = this->Gaps.returnedBetween(from, from + this->UnitLength, share.medium);
+      energy = this->Gaps->returnedBetween(from, from + this->UnitLength, share.medium);
     }
-    else if (this->Plan.active && varianceOfDrops(share, medium) > DropsCount * variance)
+    else if (this->Plan.enabled && varianceOfDrops(share, medium) > DropsCount * variance)
     {
       double drawn = energy;
       addDropsBeyondMean(this->Seed, this->Beam, this->drawsOf(share, unit), this->Revolution,
@@ -233,7 +230,7 @@ double BeamReceiver::drawAir(std::int64_t unit, ReceivedUnit& received)
     received.medium = energy > most ? medium.objectId : received.medium;
     most = std::max(most, energy);
   }
-  if (this->Plan.active)
+  if (this->Plan.enabled)
   {
     beyond +=
       this->Drops.in(unit, [&](std::int64_t of, double* units) { this->drawDrops(of, units); });
@@ -248,7 +245,7 @@ void BeamReceiver::addUnit(std::int64_t index, double light, std::uint32_t paths
   ReceivedUnit unit;
   const double mean = this->Air ? this->Air->followed(index) : 0.0;
   const bool isDrawn =
-    this->isLocal() || (this->Air && this->Plan.active && index < this->Air->looked());
+    this->isLocal() || (this->Air && this->Plan.enabled && index < this->Air->looked());
   const double beyond = isDrawn ? this->drawAir(index, unit) : 0.0;
   light += unit.leaves;
   const double all = light + std::max(0.0, mean + beyond);
@@ -281,10 +278,11 @@ double BeamReceiver::noiseOf(std::int64_t unit, double light)
   return this->Noise.energy(unit, light);
 }
 
-/// Light that leaves let through to a unit and back, over its mean; 1 where no leaves are drawn.
+/// Light of the air that leaves let through to a unit and back, over its mean; 1 where no leaves
+/// are drawn.
 double BeamReceiver::openAt(std::int64_t unit) const
 {
-  return this->Gaps.any() ? this->Gaps.openAt(this->centreOf(unit)) : 1.0;
+  return this->Gaps && this->Gaps->any() ? this->Gaps->openAt(this->centreOf(unit)) : 1.0;
 }
 
 double BeamReceiver::centreOf(std::int64_t unit) const

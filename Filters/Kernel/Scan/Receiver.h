@@ -91,8 +91,10 @@ public:
   /// @param wanted function called every 512 units for which noise is drawn, counted over all
   /// beams; WorkStopped is thrown if it returns false
   /// @param air media along each beam; must outlive the object; null: no light from the air
+  /// @param gaps leaves drawn along each beam; must outlive the object; null: no leaves
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
-    std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr);
+    std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr,
+    const LeafGaps* gaps = nullptr);
 
   /// Receive a beam. @param units range units with light, ascending @param radiance spectral
   /// radiance in the beam, W/(m2 sr nm)
@@ -153,7 +155,7 @@ private:
   bool FollowsAir;
   PhotonReceiver Photons;
   std::uint64_t Beam = 0;
-  LeafGaps Gaps; ///< gaps between leaves along a narrow beam
+  const LeafGaps* Gaps; ///< gaps between leaves along a narrow beam; null: no leaves
   PulseShares Pulse;
   SharedDrops Drops; ///< light of drops, divided among range units
   std::int32_t Seed;

@@ -197,7 +197,7 @@ std::uint64_t traceKey(const ScanSetup& setup)
     }
     const MediumVolume& volume = placed.volume;
     const bool isStill = volume.velocity == Vec3(0.0);
-    places.push_back(isStill ? 1.0 : 0.0);
+    places.push_back((isStill ? 1.0 : 0.0) + (placed.medium.sharesGaps ? 2.0 : 0.0));
     if (isStill)
     {
       places.insert(places.end(),

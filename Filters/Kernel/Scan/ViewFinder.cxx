@@ -60,16 +60,17 @@ std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   return cells;
 }
 
-/// True if the border of a medium may lie in a beam. Such a beam cannot be integrated, because
-/// samples of polygons have no place in the beam. A moving medium may be anywhere.
+/// True if leaves, or the border of a medium, may lie in a beam. Such a beam cannot be integrated,
+/// because samples of polygons have no place in the beam. A moving medium may be anywhere.
 bool ViewFinder::meetsBorders(const BeamFrame& frame) const
 {
   const std::vector<PlacedMedium>& media = this->Setup.media;
   return std::any_of(media.begin(), media.end(),
     [&](const PlacedMedium& placed)
     {
-      return placed.volume.velocity != Vec3(0.0) ||
-        mayMeetBorder(placed.volume, frame, this->Setup.sensor.rangeGate);
+      const double gate = this->Setup.sensor.rangeGate;
+      return placed.volume.velocity != Vec3(0.0) || mayMeetBorder(placed.volume, frame, gate) ||
+        (placed.medium.sharesGaps && mayMeet(placed.volume, frame, gate, 0.0));
     });
 }
 }

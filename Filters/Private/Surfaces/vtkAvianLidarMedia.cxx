@@ -38,17 +38,50 @@ using avianlidar::MediumShape;
 using avianlidar::MediumVolume;
 using avianlidar::Vec3;
 
-/// All kinds of media.json.
-JsonNode Known()
+/// The file media.json.
+JsonNode File()
 {
   static const std::string file = "media.json";
   static const Json all = avianlidar::ParseJson(vtkAvianLidarBuiltInText(file), file);
-  return JsonNode(all, "", file).Get("media");
+  return JsonNode(all, "", file);
+}
+
+/// All kinds of media.json.
+JsonNode Known()
+{
+  return File().Get("media");
 }
 
 double NumberOf(const std::string& kind, const char* key)
 {
   return Known().Get(kind).Get(key).Get("value").PositiveNumber();
+}
+
+/// Light that drops of water return. @param wavelength m
+avianlidar::DropLight LightOfDrops(double wavelength)
+{
+  const JsonNode water = File().Get("water");
+  const auto rows = water.Get("rows").Items(); // wavelength, um; index; extinction coefficient
+  const double um = std::clamp(
+    1e6 * wavelength, rows.front().Items(3)[0].Number(), rows.back().Items(3)[0].Number());
+  std::size_t k = 1;
+  while (rows[k].Items(3)[0].Number() < um)
+  {
+    ++k;
+  }
+  const auto below = rows[k - 1].Items(3);
+  const auto above = rows[k].Items(3);
+  const double t = (um - below[0].Number()) / (above[0].Number() - below[0].Number());
+  const double index = (1.0 - t) * below[1].Number() + t * above[1].Number();
+  const double extinction =
+    std::exp((1.0 - t) * std::log(below[2].Number()) + t * std::log(above[2].Number()));
+  std::array<avianlidar::DropLight::Term, 2> rear{};
+  const auto terms = water.Get("rear").Get("terms").Items(rear.size());
+  for (std::size_t i = 0; i < rear.size(); ++i)
+  {
+    rear[i] = { terms[i].Get("efficiency").PositiveNumber(), terms[i].Get("way").PositiveNumber() };
+  }
+  return { index, 4.0 * avianlidar::Pi * extinction / (1e-6 * um), rear };
 }
 
 Medium FoliageOf(const std::string& kind, double density)
@@ -261,7 +294,7 @@ Medium vtkAvianLidarMedia::HazeOf(double visibility, double extinction)
 Medium vtkAvianLidarMedia::RainOf(
   double rate, const avianlidar::LidarView& view, const std::string& kind)
 {
-  return avianlidar::rainOf(rate, NumberOf(kind, "backscatter_ratio"), view,
+  return avianlidar::rainOf(rate, LightOfDrops(view.wavelength), view,
     NumberOf(kind, "drops_per_volume"), NumberOf(kind, "slope"));
 }
 

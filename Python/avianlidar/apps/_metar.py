@@ -2,7 +2,9 @@
 """METAR reports as a year's weather: shares of the hours with some visibilities and rain rates.
 
 Source: the code form FM 15 METAR (WMO No. 306) and its spellings in archives: statute miles, kilometres, visibility by
-direction, lower case, and reports that continue on the next line. Rain rates are assumed. Debian has no parser of such
+direction, lower case, and reports that continue on the next line. By day the visibility of a report is a meteorological
+optical range (ICAO Annex 3), and by night the range of lamps of 1000 cd. Reports do not say whether it is night, so all
+are read as by day. Rain rates are assumed. Debian has no parser of such
 lines for Python (`python3-pymetar` reads the decoded pages of one service), so this module has its own grammar. The
 grammar reads visibility and precipitation, and skips the rest of a report.
 """
@@ -23,7 +25,11 @@ from .._pipeline import Error
 from ._air import extinction_of_rain
 
 MILE = 1609.344  # m
-KOSCHMIEDER = 3.912  # visibility times extinction at 550 nm
+KOSCHMIEDER = 3.912  # visibility of a setting (2 % of contrast) times extinction at 550 nm
+OPTICAL_RANGE = -math.log(0.05)  # the same for the visibility of a report
+FOG = 1306.0  # visibility of a setting up to which air is called fog, m: an optical range of 1 km
+LAMP = 1000.0  # intensity of a lamp by night, cd (ICAO Annex 3)
+SEEN = 1e-6  # illuminance by a lamp that is just seen, lx; assumed
 LEAST = 50.0  # visibility of the group 0000, which means "less than 50 m", m
 MOST = 10_000.0  # visibility from which on reports do not distinguish, m
 CLEAR = 23_000.0  # visibility in place of MOST and more, m; assumed
@@ -52,10 +58,16 @@ class Hour(NamedTuple):
 
     station: str
     time: str  # day, hour, minute
-    visibility: float  # m; infinite for 10 km or more
+    visibility: float  # as reported, m; infinite for 10 km or more
     rain: float  # mm/h
     others: Tuple[str, ...]  # codes of precipitation that is not modelled
     date: str = ""  # year, month and day before the report, if the file gives them
+
+
+def night_factor(visibility: float) -> float:
+    """Extinction by night over extinction by day at one reported visibility, by Allard's law for a lamp. @param
+    visibility m"""
+    return math.log(LAMP / (SEEN * visibility**2)) / OPTICAL_RANGE
 
 
 def _plain(line: str) -> str:
@@ -145,12 +157,12 @@ class Hours:
         sums: Dict[Tuple[float, int], np.ndarray] = collections.defaultdict(lambda: np.zeros(2))
         for hours, one in self.weighted():
             number = sum(one.visibility >= limit for limit in (LIMITS_IN_RAIN if one.rain else LIMITS))
-            sums[one.rain, number] += (hours, hours * KOSCHMIEDER / min(one.visibility, CLEAR))
+            sums[one.rain, number] += (hours, hours * max(OPTICAL_RANGE / one.visibility, KOSCHMIEDER / CLEAR))
         found: Dict[Tuple[str, ...], float] = collections.defaultdict(float)
         for (rain, _), (hours, total) in sorted(sums.items(), key=lambda item: item[0]):
             left = total / hours - (extinction_of_rain(rain) if rain else 0.0)
             visibility = float(f"{KOSCHMIEDER / max(left, KOSCHMIEDER / CLEAR):.2g}")
-            haze = f"{'fog' if visibility <= 1000.0 else 'haze'}:{visibility:.10g}"
+            haze = f"{'fog' if visibility <= FOG else 'haze'}:{visibility:.10g}"
             found[(haze, f"rain:{rain:g}") if rain else (haze,)] += float(hours)
         return dict(found)
 
@@ -173,7 +185,9 @@ class Hours:
             counts = ", ".join(f"{name} ({count} reports)" for name, count in others.most_common())
             said += f"; not modelled, except for the visibility: {counts}"
         return (f"{said}. Assumed: {', '.join(f'{sign}RA {rate:g}' for sign, rate in RAIN.items())} and "
-                f"DZ {DRIZZLE:g} mm/h; 10 km or more is {CLEAR / 1000:g} km")
+                f"DZ {DRIZZLE:g} mm/h; 10 km or more is {CLEAR / 1000:g} km; visibilities below are optical ranges, as by "
+                f"day (in a setting times {KOSCHMIEDER / OPTICAL_RANGE:.2f}): by night, air of 500 m is "
+                f"{night_factor(500.0):.1f} times as dense")
 
 
 def _reports(text: str) -> Iterator[Tuple[int, str]]:

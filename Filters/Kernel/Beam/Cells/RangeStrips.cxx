@@ -258,7 +258,7 @@ RangeStrips::RangeStrips(const ScanSetup& setup)
   , Gate(setup.sensor.rangeGate)
   , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
   , Shape(setup.sensor)
-  , HasColumns(haveVolumes(setup.media))
+  , HasPlaces(haveVolumes(setup.media))
 {
 }
 
@@ -317,7 +317,7 @@ inline RangeStrips::Strip& RangeStrips::sumOf(double number)
   if (place >= this->Sums.size() || this->Sums[place].key != key)
   {
     place = static_cast<std::uint32_t>(this->Sums.size());
-    this->Sums.push_back({ 0.0, 0.0, 0.0, 0.0, key, 0 });
+    this->Sums.push_back({ 0.0, 0.0, 0.0, 0.0, key, {} });
   }
   return this->Sums[place];
 }
@@ -353,9 +353,9 @@ bool RangeStrips::addWhole(
   const double weight = share / (this->Shape.isRound() ? secant2 * secant : 1.0);
   sum.weight += weight;
   sum.moment += weight * secant / inverse;
-  if (this->HasColumns)
+  if (this->HasPlaces)
   {
-    sum.columns |= BeamAir::columnsIn(middle.x, middle.y, half);
+    sum.place.add(BeamAir::columnsIn(middle.x, middle.y, half), weight, middle.x, middle.y, half);
   }
   return true;
 }
@@ -374,6 +374,15 @@ void RangeStrips::addHalves(std::size_t strip, double variance)
     this->Halves.resize(std::max(this->Halves.size(), strip + 1));
     this->Halves[strip] += variance;
   }
+}
+
+namespace
+{
+void addPlace(const Block& block, int ray, SamplePlace& place)
+{
+  place.add(
+    BeamAir::columnAt(block.x[ray], block.y[ray]), block.weight[ray], block.x[ray], block.y[ray]);
+}
 }
 
 bool RangeStrips::add(const CellRays& rays, double share)
@@ -413,9 +422,12 @@ bool RangeStrips::add(const CellRays& rays, double share)
       Strip& sum = this->sumOf(block.key[0]);
       sum.weight += avianlidar::sumOf(block.weight);
       sum.moment += avianlidar::sumOf(block.moment);
-      for (int i = 0; this->HasColumns && i < CellLanes; ++i)
+      for (int i = 0; this->HasPlaces && i < CellLanes; ++i)
       {
-        sum.columns |= block.key[i] >= 0.0 ? BeamAir::columnAt(block.x[i], block.y[i]) : 0;
+        if (block.key[i] >= 0.0)
+        {
+          addPlace(block, i, sum.place);
+        }
       }
     }
     return true;
@@ -431,7 +443,10 @@ bool RangeStrips::add(const CellRays& rays, double share)
       Strip& sum = this->sumOf(block.key[i]);
       sum.weight += block.weight[i];
       sum.moment += block.moment[i];
-      sum.columns |= this->HasColumns ? BeamAir::columnAt(block.x[i], block.y[i]) : 0;
+      if (this->HasPlaces)
+      {
+        addPlace(block, i, sum.place);
+      }
       sum.variance = sum.variance + block.variance[0][i] + block.variance[1][i];
       sum.moves = sum.moves + block.moves[0][i] + block.moves[1][i];
       if (block.moves[0][i] + block.moves[1][i] > 0.0)
@@ -482,7 +497,7 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
   samples.range.resize(count);
   samples.cosine.resize(count);
   samples.weight.resize(count);
-  samples.columns.resize(this->HasColumns ? count : 0);
+  samples.places.resize(this->HasPlaces ? count : 0);
   found->variance.resize(count);
   found->moves.resize(count);
   found->halves.resize(this->Halves.empty() ? 0 : count);
@@ -504,9 +519,9 @@ std::unique_ptr<CellSamples> RangeStrips::collect()
       samples.range[k] = range;
       samples.cosine[k] = std::min(1.0, height / range);
       samples.weight[k] = sum.weight;
-      if (this->HasColumns)
+      if (this->HasPlaces)
       {
-        samples.columns[k] = sum.columns;
+        samples.places[k] = sum.place;
       }
       found->variance[k] = sum.variance;
       found->moves[k] = sum.moves;

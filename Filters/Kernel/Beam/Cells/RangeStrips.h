@@ -109,7 +109,7 @@ private:
   {
     double weight, moment, variance, moves;
     std::uint32_t key;
-    std::uint64_t columns;
+    SamplePlace place;
   };
   const SurfaceStrips* stripsOf(std::uint32_t surface);
   Strip& sumOf(double number);
@@ -123,7 +123,7 @@ private:
   const BeamShape Shape;
   double Tangent2 = 0.0;
   double Flatness2 = 1.0; ///< flatness2 of the current beam's BeamFrame
-  const bool HasColumns;  ///< whether samples have columns of air (BeamSamples::columns)
+  const bool HasPlaces;   ///< whether samples have places (BeamSamples::places)
   bool Uneven = false;    ///< whether weights of the rays of a cell differ
   const std::vector<const BeamSurface*>* All = nullptr;
   std::vector<std::uint32_t> Of;      ///< place of each surface in `Visible`, or None

@@ -16,6 +16,9 @@
 
 #include "Vector.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -33,6 +36,32 @@ constexpr double surfaceMargin(double range)
 /// Marker of a path that does not end at a sample.
 constexpr std::uint32_t NoSample = 0xffffffffu;
 
+/// Place of a sample in the beam's plane. Sums are weighted with shares of the pulse.
+struct SamplePlace
+{
+  std::uint64_t columns = 0; ///< bits of the columns of air in which the rays lie (BeamAir.h)
+  double x = 0.0, y = 0.0;   ///< sums of coordinates
+  double xx = 0.0, yy = 0.0; ///< sums of squared coordinates
+
+  /// Add a point, or an evenly lit square. @param half half the side of the square
+  void add(std::uint64_t bits, double weight, double atX, double atY, double half = 0.0)
+  {
+    this->columns |= bits;
+    this->x += weight * atX;
+    this->y += weight * atY;
+    this->xx += weight * (atX * atX + half * half / 3.0);
+    this->yy += weight * (atY * atY + half * half / 3.0);
+  }
+
+  /// Middle and half widths of an evenly lit ellipse with the same sums.
+  void spread(double weight, std::array<double, 2>& middle, std::array<double, 2>& half) const
+  {
+    middle = { this->x / weight, this->y / weight };
+    half = { 2.0 * std::sqrt(std::max(0.0, this->xx / weight - middle[0] * middle[0])),
+      2.0 * std::sqrt(std::max(0.0, this->yy / weight - middle[1] * middle[1])) };
+  }
+};
+
 /// Samples of a beam, with 28 bytes per sample and 8 bytes per surface.
 struct BeamSamples
 {
@@ -48,8 +77,13 @@ struct BeamSamples
   std::vector<double> cosine;     ///< cosine of incidence, in [0, 1]
   std::vector<double> weight;     ///< share of the pulse's energy that arrives at the sample
 
-  /// Bits of the columns of air in which a sample's rays lie (BeamAir.h); empty: all columns.
-  std::vector<std::uint64_t> columns;
+  std::vector<SamplePlace> places; ///< places of samples; empty if the place in the beam is unknown
+
+  /// Bits of the columns of a sample; 0: all columns.
+  std::uint64_t columnsOf(std::size_t sample) const
+  {
+    return this->places.empty() ? 0 : this->places[sample].columns;
+  }
 
   std::uint32_t rays = 0; ///< number of traced rays, with or without a hit
   bool coplanar = false;  ///< whether all samples lie on one plane
@@ -76,8 +110,7 @@ struct BeamSamples
   std::size_t bytes() const
   {
     return sizeof(BeamSamples) + sizeof(Surface) * this->surfaces.capacity() +
-      sizeof(std::uint32_t) * this->ray.capacity() +
-      sizeof(std::uint64_t) * this->columns.capacity() +
+      sizeof(std::uint32_t) * this->ray.capacity() + sizeof(SamplePlace) * this->places.capacity() +
       sizeof(double) * (this->range.capacity() + this->cosine.capacity() + this->weight.capacity());
   }
 };

@@ -204,7 +204,7 @@ void RaySamples::find(const BeamFrame& frame, const BeamRays& rays,
   samples.range.resize(count);
   samples.cosine.resize(count);
   samples.weight.assign(count, 1.0 / samples.rays);
-  samples.columns.clear();
+  samples.places.clear();
   this->Kinds.resize(count);
   this->findDirections(frame, rays, samples, geometry);
   samples.forEachSurface(
