@@ -77,6 +77,10 @@ TEST(Background, OfPlatesByClosedForm)
     // The sun behind the plate: the side that the lidar sees lies in the sky's light alone.
     sensor.sunAzimuth = 90.0;
     EXPECT_NEAR(radianceOf(plateFrom(-50.0, 0.4), sensor, samples), 0.4 * Sky, 1e-10);
+    // The sun below the horizon, on the side of the plate.
+    sensor.sunAzimuth = 270.0;
+    sensor.sunElevation = -30.0;
+    EXPECT_NEAR(radianceOf(plateFrom(-50.0, 0.4), sensor, samples), 0.4 * Sky, 1e-10);
     sensor.sunlight = 0.0;
     EXPECT_EQ(radianceOf(plateFrom(-50.0, 0.4), sensor, samples), Sky);
   }

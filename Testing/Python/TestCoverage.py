@@ -166,6 +166,19 @@ class Airport(unittest.TestCase):
         self.assertLess(abs((expected - p).mean()), 0.025)
         self.assertLessEqual(result["outside_99.73_percent"], 0.025)
 
+    def test_near_birds_that_hundreds_of_beams_meet(self):
+        """The wings of a gull 4.8 m away span more beams than are followed, between channels 5 degrees apart."""
+        sensor = al.Sensor("Pandar40P")
+        random = np.random.default_rng(3)
+        up = np.array(sensor.channel_elevations)
+        bearing = np.radians(np.arange(16) * 22.5 + random.uniform(0, 5, 16))
+        elevation = np.radians(random.uniform(up.min(), up.max(), 16))
+        places = 4.8 * np.column_stack([np.cos(elevation) * np.sin(bearing), np.cos(elevation) * np.cos(bearing), np.sin(elevation)])
+        scene = al.Scene(([(0, 0, -900), (1, 0, -900), (0, 1, -900)], [(0, 1, 2)]))
+        p = al.Coverage(scene, sensor, places=places, visibility=0.0, clutter=False, attenuation_coefficient=AIR)["detection_probability"]
+        seen, _ = flown.fly(scene, sensor, places, 15, "herring gull", AIR, rays=100)
+        self.assertLess(abs(p.mean() - seen.mean()), 0.025)
+
 
 class Terrain(unittest.TestCase):
     def test_lines_of_sight_are_those_of_gdal_viewshed(self):

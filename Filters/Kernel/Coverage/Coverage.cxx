@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Coverage.h"
 
+#include "Hash.h"
 #include "PhotonReceiver.h"
 
 #include <algorithm>
@@ -222,8 +223,9 @@ struct Coverage::PlacedTarget
   }
 };
 
-/// Beams that may light a target and are not in clutter there. The nearest beams are kept if there
-/// are too many.
+/// Beams that may light a target and are not in clutter there. If there are too many, the nearest
+/// beams are kept, and as many others, drawn at random, which meet the outer parts of a near
+/// target.
 struct Coverage::NearBeams
 {
   struct Beam
@@ -239,16 +241,30 @@ struct Coverage::NearBeams
 
   void add(const Beam& beam)
   {
-    if (this->count < DetectionLaw::MostBeams)
+    constexpr std::size_t most = DetectionLaw::MostBeams;
+    constexpr std::size_t nearest = most / 4;
+    const auto isNearer = [](const Beam& a, const Beam& b) { return a.nearness > b.nearness; };
+    if (this->count < most)
     {
       this->beams[this->count++] = beam;
+      if (this->count == most)
+      {
+        std::nth_element(this->beams, this->beams + nearest, this->beams + most, isNearer);
+      }
       return;
     }
-    Beam* farthest = std::min_element(this->beams, this->beams + this->count,
-      [](const Beam& a, const Beam& b) { return a.nearness < b.nearness; });
-    if (farthest->nearness < beam.nearness)
+    Beam left = beam;
+    Beam* farthest = std::max_element(this->beams, this->beams + nearest, isNearer);
+    if (isNearer(left, *farthest))
     {
-      *farthest = beam;
+      std::swap(left, *farthest);
+    }
+    const auto drawn = [](const Beam& b) { return hashOf(&b.number, sizeof(b.number), 0); };
+    Beam* last = std::max_element(this->beams + nearest, this->beams + most,
+      [&](const Beam& a, const Beam& b) { return drawn(a) < drawn(b); });
+    if (drawn(left) < drawn(*last))
+    {
+      *last = left;
     }
   }
 };

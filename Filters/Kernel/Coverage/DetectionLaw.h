@@ -73,7 +73,7 @@ TargetViews viewsOf(TargetPoses poses, double reach = 0.0);
 class DetectionLaw
 {
 public:
-  static constexpr int MostBeams = 64;
+  static constexpr int MostBeams = 128;
 
   /// @param sensor sensor whose limits are set
   /// @param lowest, highest elevations of the line of sight, rad; an elevation outside [lowest,

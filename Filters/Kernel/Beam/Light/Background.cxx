@@ -12,6 +12,7 @@ double radianceSeen(const ScanSetup& setup, const SceneTriangles& scene, const B
   const Sensor& sensor = setup.sensor;
   const double azimuth = RadiansPerDegree * sensor.sunAzimuth;
   const double elevation = RadiansPerDegree * sensor.sunElevation;
+  const double sunlight = sensor.sunElevation > 0.0 ? sensor.sunlight : 0.0;
   const Vec3 sun(std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
     std::sin(elevation));
   double filled = 0.0;
@@ -32,7 +33,7 @@ double radianceSeen(const ScanSetup& setup, const SceneTriangles& scene, const B
       const double cosine = length > 0.0 ? side * glm::dot(normal, sun) / length : 0.0;
       filled += share;
       ofSurfaces += share * setup.material(triangle).albedo() *
-        (sensor.backgroundRadiance + sensor.sunlight * std::max(0.0, cosine) / Pi);
+        (sensor.backgroundRadiance + sunlight * std::max(0.0, cosine) / Pi);
     });
   return ofSurfaces + std::max(0.0, 1.0 - filled) * sensor.backgroundRadiance;
 }
