@@ -224,7 +224,7 @@ struct Coverage::PlacedTarget
 };
 
 /// Beams that may light a target and are not in clutter there. If there are too many, the nearest
-/// beams are kept, and as many others, drawn at random, which meet the outer parts of a near
+/// beams are kept, and three times as many others, drawn, which meet the outer parts of a near
 /// target.
 struct Coverage::NearBeams
 {

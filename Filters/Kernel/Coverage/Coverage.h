@@ -17,10 +17,10 @@
  * Valid: beams of one origin. Media attenuate along the line to the target's middle. Moving media
  * are at their places at time 0. A beam does not light a target whose middle is more than
  * WidestTarget or 0.4 rad outside the beam's cone. If more than DetectionLaw::MostBeams beams are
- * near, half of them are the beams with the nearest axes (the nearest borders if beams are not
- * round), and half are drawn from the others. If the threshold follows the air, energies are divided by the growth of the threshold. Probabilities
- * then err by up to 0.03.
- * Test: TestCoverage.cxx, TestBeamShapes.py, TestWeather.py.
+ * near, a quarter of them are the beams with the nearest axes (the nearest borders if beams are not
+ * round), and the others are drawn. If the threshold follows the air, energies are divided by the
+ * growth of the threshold. Probabilities then err by up to 0.03.
+ * Test: TestCoverage.cxx, TestCoverage.py, TestBeamShapes.py, TestWeather.py.
  */
 #ifndef avianlidar_Coverage_h
 #define avianlidar_Coverage_h
