@@ -160,8 +160,8 @@ public:
   void SetReflectanceModelToOrenNayar() { this->SetReflectanceModel(REFLECTANCE_MODEL_OREN_NAYAR); }
   ///@}
 
-  /// Largest number of reflections: 1 (direct echoes only), 2 (Sec. 3.4), or 3, which adds matt light
-  /// that arrives and comes back by the same mirror and needs an aperture. Default: 3.
+  /// Largest number of reflections: 1 (direct echoes only), 2 (Sec. 3.4), or 3, which adds matt
+  /// light that arrives and comes back by the same mirror and needs an aperture. Default: 3.
   vtkAvianLidarPropertyMacro(NumberOfReflections, int, 3);
 
   /// Whether second reflections are searched only in the beam's cone. The echoes are the same if

@@ -6,7 +6,7 @@
  *
  * The error follows from the rays (StandardError.h), or from the cells and the rays from which
  * paths start. For an integrated beam, the error is a bound for the direct echo plus the standard
- * error of the paths with two reflections. Where an aperture gathers the light of mirrors, the
+ * error of the paths with more reflections. Where an aperture gathers light from two mirrors, the
  * width of the mirrors' lobes adds to the error.
  *
  * Source: none.

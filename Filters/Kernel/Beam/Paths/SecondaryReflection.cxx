@@ -142,8 +142,7 @@ SecondaryReflection::MirrorThroughput SecondaryReflection::mirrorThroughput(
       sensor.nearRangeShare(path.rangeOne)
     : beam.direct.reflected[path.one];
   const auto scaleAt = [&](std::uint32_t triangle) {
-    return secondaryScale(
-      this->Setup, first, this->Setup.material(triangle), path.cosine, direct);
+    return secondaryScale(this->Setup, first, this->Setup.material(triangle), path.cosine, direct);
   };
   MirrorThroughput part;
   if (path.seen)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SecondaryReflection.h
- * @brief Paths with two reflections inside the beam (with an aperture, mirror paths back and forth,
- * too), and the light-energy constraint on them.
+ * @brief Paths with two reflections inside the beam (with an aperture also a third, by the mirror
+ * of the first), and the light-energy constraint on them.
  *
  * By the beam constraint the second reflection point P2 lies inside the receiving beam. Two kinds
  * of paths start at a primary hit P1:
@@ -28,11 +28,15 @@
  *
  * The following holds for a receiver aperture A > 0, where Omega is the solid angle of the cone:
  *
- * 1. The matt light that a mirror path returns at P2 also comes back by the reverse path, which
- * ends on the mirror. The reverse path is weighted by the beam's density at P2 divided by the
- * density at P1. Matt light that arrives at P2 by the mirror also comes back by the mirror, after
- * three reflections, from the image of P2 behind the mirror. If both surfaces are mirrors, the
- * widths of their lobes add up.
+ * 1. Matt light leaves P1 in a direction drawn from the mirror's lobe cos^kp, and is lost below the
+ * horizon of P1. So P2 may lie where no exact mirror direction ends: more paths start all over the
+ * mirror, and those whose exact end the apex sees are left to MirrorRegions.h. The light also comes
+ * back by the reverse path, which ends on the mirror. The reverse path is weighted by the beam's
+ * density at P2 divided by the density at P1, times the cosines of the drawn and of the lidar's
+ * direction at P1. With NumberOfReflections 3 the light also comes back by the mirror. The third
+ * point is drawn about the image of P2 from the lobe, narrowed by the share of the image's distance
+ * that lies behind the mirror, and weighted by the true lobe. If both surfaces are mirrors, the
+ * exact direction is followed, and the widths of the lobes add up.
  * 2. Both reflections of a connection are matt. The throughput of a connection contains the form
  * factor F = cos(out at P1) cos(in at P2) r2^2 Omega/(pi L^2 cos(lidar's incidence at P2)), at most
  * MostFormFactor = 1.
