@@ -8,7 +8,7 @@ from avianlidar import vtkAvianLidar as al
 from echotools import RAYS, Messages, assert_same_bits, given, scan, town
 
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
-EXPECTED = {"Draft": (25, 1, 2, 0), "Standard": (200, 1, 2, 2), "Reference": (3200, 1, 2, 8), "Preview": (100, 1, 1, 0), "Paper": (100, 0, 2, 2)}
+EXPECTED = {"Draft": (25, 1, 3, 0), "Standard": (200, 1, 3, 2), "Reference": (3200, 1, 3, 8), "Preview": (100, 1, 1, 0), "Paper": (100, 0, 2, 2)}
 # The paper: N rays (Sec. 2.1), batch detection (Sec. 3.2), both constraints, light compared with Qlow (Sec. 3.4), its reflectance
 # (Eq. 8), a point for each range unit (Eq. 12).
 METHOD = {"BeamSamples": 1, "BatchCollisionDetection": 2, "BeamConstraint": 1, "LightEnergyConstraint": 1, "LightEnergyThreshold": 1,

@@ -144,10 +144,17 @@ void RangeUnitAccumulator::add(const double* ranges, const double* energies, std
   const std::size_t before = this->Lengths.size();
   this->Lengths.resize(before + count);
   this->Energies.resize(before + count);
+  bool outside = false;
   for (std::size_t i = 0; i < count; ++i)
   {
-    this->Lengths[before + i] = 2.0 * ranges[i];
-    this->Energies[before + i] = this->recorded(2.0 * ranges[i], energies[i]);
+    const double length = 2.0 * ranges[i];
+    this->Lengths[before + i] = length;
+    outside |= (length < this->LeastLength) | (length > this->MostLength);
+  }
+  std::copy_n(energies, count, this->Energies.begin() + static_cast<std::ptrdiff_t>(before));
+  for (std::size_t i = before; outside && i < before + count; ++i)
+  {
+    this->Energies[i] = this->recorded(this->Lengths[i], this->Energies[i]);
   }
 }
 

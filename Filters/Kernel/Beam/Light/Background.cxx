@@ -12,7 +12,7 @@ double radianceSeen(const ScanSetup& setup, const SceneTriangles& scene, const B
   const Sensor& sensor = setup.sensor;
   const double azimuth = RadiansPerDegree * sensor.sunAzimuth;
   const double elevation = RadiansPerDegree * sensor.sunElevation;
-  const double sunlight = sensor.sunElevation > 0.0 ? sensor.sunlight : 0.0;
+  const double sunlight = sensor.sunElevation < 0.0 ? 0.0 : sensor.sunlight;
   const Vec3 sun(std::cos(elevation) * std::sin(azimuth), std::cos(elevation) * std::cos(azimuth),
     std::sin(elevation));
   double filled = 0.0;

@@ -50,6 +50,13 @@ std::uint64_t lobesOf(const ScanSetup& setup, const SecondaryBeam& beam)
   return hash;
 }
 
+/// The matt end of a mirror path; one from which no light arrives if the path has none.
+const MattEnd& mattEndOf(const SecondaryTrace& trace, const MirrorPath& path)
+{
+  static const MattEnd none{};
+  return path.matt == NoSample ? none : trace.mattEnds[path.matt];
+}
+
 /// Order of the mirror paths of MirrorRegions.h: first those with ends that the apex sees.
 bool isBefore(const MirrorPath& a, const MirrorPath& b)
 {
@@ -82,6 +89,7 @@ void SecondaryReflection::prepare(const SecondaryBeam& beam, bool byRegions)
     trace.mirror.clear();
     trace.searched.clear();
     trace.mirrorPaths.clear();
+    trace.mattEnds.clear();
     trace.lobes = lobes;
   }
   if (trace.mirror.empty() && !byRegions)
@@ -161,7 +169,7 @@ SecondaryReflection::MirrorThroughput SecondaryReflection::mirrorThroughput(
     part.exact = f1 * (aperture > 0.0 ? f2.specular : f2.total()) *
       sensor.nearRangeShare(path.range) * scaleAt(path.triangle) * path.weight;
   }
-  const MattEnd& matt = path.matt;
+  const MattEnd& matt = mattEndOf(beam.trace, path);
   const auto returned = [&](ReflectionGeometry geometry, double range)
   {
     geometry.cosIncidence = geometry.cosOutgoing;
@@ -419,8 +427,9 @@ double SecondaryReflection::addPaths(
     beam.units->add({ path.length, most * part.exact });
     if (gathers)
     {
-      beam.units->add({ path.matt.length, most * (part.there + part.back) });
-      beam.units->add({ path.matt.lengthAgain, most * part.again });
+      const MattEnd& matt = mattEndOf(beam.trace, path);
+      beam.units->add({ matt.length, most * (part.there + part.back) });
+      beam.units->add({ matt.lengthAgain, most * part.again });
     }
   }
   beam.units->accumulate();
@@ -518,7 +527,7 @@ void SecondaryReflection::listPaths(
       number = numberAfter(before, number, path);
       before = &path;
       const MirrorThroughput& part = this->MirrorParts[p];
-      const MattEnd& matt = path.matt;
+      const MattEnd& matt = mattEndOf(beam.trace, path);
       const std::uint32_t one = bySample ? path.one : NoSample;
       const std::uint32_t two = bySample ? NoSample : number;
       if (part.exact > 0.0)

@@ -95,20 +95,20 @@ struct MattEnd
 /// materials.
 struct MirrorPath
 {
-  std::uint32_t start;       ///< surface of MirrorRegions.h on which the path starts
-  std::uint32_t one;         ///< hit of the first reflection, or sample of MirrorRegions.h
-  std::uint32_t first;       ///< triangle of the first reflection
-  std::uint32_t triangle;    ///< triangle of the second reflection
-  double weight;             ///< share of the pulse's energy
-  double cosine;             ///< cosine of incidence at the first point
-  double rangeOne;           ///< range of the first point, m
-  double length;             ///< length of the whole path, m
-  double range;              ///< range of the second point, m
-  ReflectionGeometry second; ///< angles at the second point
-  Vec3 from, end;            ///< the two points relative to the apex, m
-  Visibility visibility;     ///< whether the path is blocked
-  bool seen = true;          ///< whether the apex sees the second point, in the cone
-  MattEnd matt{};            ///< with an aperture, set for paths that are not blocked
+  std::uint32_t start;           ///< surface of MirrorRegions.h on which the path starts
+  std::uint32_t one;             ///< hit of the first reflection, or sample of MirrorRegions.h
+  std::uint32_t first;           ///< triangle of the first reflection
+  std::uint32_t triangle;        ///< triangle of the second reflection
+  double weight;                 ///< share of the pulse's energy
+  double cosine;                 ///< cosine of incidence at the first point
+  double rangeOne;               ///< range of the first point, m
+  double length;                 ///< length of the whole path, m
+  double range;                  ///< range of the second point, m
+  ReflectionGeometry second;     ///< angles at the second point
+  Vec3 from, end;                ///< the two points relative to the apex, m
+  Visibility visibility;         ///< whether the path is blocked
+  bool seen = true;              ///< whether the apex sees the second point, in the cone
+  std::uint32_t matt = NoSample; ///< number of the matt end, or NoSample
 };
 
 /// Number of a mirror path by MirrorRegions.h, after the path `before` (null: none) of the number
@@ -143,6 +143,7 @@ struct SecondaryTrace
   std::vector<char> searched;
   std::uint64_t lobes = 0; ///< hash of the lobes from which directions of `mirrorPaths` were drawn
   std::vector<MirrorPath> mirrorPaths; ///< mirror paths, in the order of hits or surfaces
+  std::vector<MattEnd> mattEnds;       ///< with an aperture, those of paths that are not blocked
   SecondaryConnections connections;
   std::uint32_t partners = 0;        ///< M of `connections`
   std::vector<ShortPath> shortPaths; ///< short paths, in the order of hits
@@ -151,7 +152,8 @@ struct SecondaryTrace
   std::size_t bytes() const
   {
     return sizeof(SecondaryTrace) + this->mirror.capacity() * sizeof(MirrorEnd) +
-      this->mirrorPaths.capacity() * sizeof(MirrorPath) + this->searched.capacity() +
+      this->mirrorPaths.capacity() * sizeof(MirrorPath) +
+      this->mattEnds.capacity() * sizeof(MattEnd) + this->searched.capacity() +
       this->shortPaths.capacity() * sizeof(ShortPath) + this->connections.bytes();
   }
 };

@@ -79,9 +79,8 @@ double densityAt(const SecondaryBeam& beam, const BeamShape& shape, const Vec3& 
 /// Find whether and where the mirror shows the end of a path. The direction from the apex is drawn
 /// about the image of the end. @param out direction in which the light arrives at the end
 void findImage(const ScanSetup& setup, const SecondaryBeam& beam, const std::array<double, 2>& u,
-  const Vec3& normal, const Vec3& out, const Vec3& endNormal, MirrorPath& path)
+  const Vec3& normal, const Vec3& out, const Vec3& endNormal, const MirrorPath& path, MattEnd& matt)
 {
-  MattEnd& matt = path.matt;
   const double kp = setup.material(path.first).kp;
   const double height = path.rangeOne * path.cosine;
   const double above = glm::dot(normal, matt.end) + height;
@@ -121,11 +120,11 @@ void findImage(const ScanSetup& setup, const SecondaryBeam& beam, const std::arr
   matt.third = reflectionGeometry(out, back / step, endNormal);
 }
 
-/// Set the matt end of a mirror path whose start is known. @param number number of the path
-void findMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
-  std::uint64_t number, MirrorPath& path)
+/// Find the matt end of a mirror path whose start is known. @param number number of the path
+MattEnd findMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
+  std::uint64_t number, const MirrorPath& path)
 {
-  MattEnd& matt = path.matt;
+  MattEnd matt{};
   const auto draw = [&](std::uint64_t k)
   { return uniformPair(setup.settings.seed, beam.id, 2 * number + k, RandomPurpose::Lobes); };
   const Vec3 normal = seeTriangle(beam.scene, path.first, beam.frame.origin).normal;
@@ -134,12 +133,12 @@ void findMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
   const double rise = glm::dot(out, normal);
   if (!(rise > 0.0))
   {
-    return; // the surface itself stops the part of the lobe below its horizon
+    return matt; // the surface itself stops the part of the lobe below its horizon
   }
   const Hit found = beam.tracer.traceFrom(path.from, out, surfaceMargin(path.rangeOne), path.first);
   if (!found.valid())
   {
-    return;
+    return matt;
   }
   const Vec3 endNormal = seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal;
   matt.triangle = found.triangle;
@@ -156,8 +155,23 @@ void findMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
   if (setup.settings.numberOfReflections > 2)
   {
     findImage(setup, beam, draw(1), normal, out,
-      glm::dot(endNormal, out) < 0.0 ? endNormal : -endNormal, path);
+      glm::dot(endNormal, out) < 0.0 ? endNormal : -endNormal, path, matt);
   }
+  return matt;
+}
+
+/// Find the matt end of a mirror path, and keep it if light arrives. @return whether light arrives
+bool keepMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const BeamShape& shape,
+  std::uint64_t number, MirrorPath& path)
+{
+  const MattEnd matt = findMattEnd(setup, beam, shape, number, path);
+  const bool arrives = matt.seen || matt.shown;
+  if (arrives)
+  {
+    path.matt = static_cast<std::uint32_t>(beam.trace.mattEnds.size());
+    beam.trace.mattEnds.push_back(matt);
+  }
+  return arrives;
 }
 
 /// Number of a path of MirrorRegions.h.
@@ -173,16 +187,20 @@ bool followBeyond(const ScanSetup& setup, const SecondaryBeam& beam, const BeamS
 {
   path.seen = false;
   path.visibility = Visibility::Clear;
-  findMattEnd(setup, beam, shape, number, path);
-  if (!path.matt.seen && !path.matt.shown)
+  if (!keepMattEnd(setup, beam, shape, number, path))
   {
     return false;
   }
   const Hit found =
     beam.tracer.traceFrom(path.from, path.end, surfaceMargin(path.rangeOne), path.first);
-  return !found.valid() ||
-    !seesEnd(beam, path.from + found.range * path.end, path.end, found.triangle,
+  const bool isSeen = found.valid() &&
+    seesEnd(beam, path.from + found.range * path.end, path.end, found.triangle,
       seeTriangle(beam.scene, found.triangle, beam.frame.origin).normal);
+  if (isSeen)
+  {
+    beam.trace.mattEnds.pop_back();
+  }
+  return !isSeen;
 }
 
 /// End of the path from a hit in a direction; invalid if the end is outside the cone or hidden.
@@ -220,11 +238,7 @@ void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
       beam.samples.cosine[hit], from.range, 0.0, 0.0, {}, from.point, direction, Visibility::Clear,
       false };
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
-    if (gathers)
-    {
-      findMattEnd(setup, beam, shape, beam.samples.ray[hit], path);
-    }
-    if (path.matt.seen || path.matt.shown)
+    if (gathers && keepMattEnd(setup, beam, shape, beam.samples.ray[hit], path))
     {
       beam.trace.mirror[hit] = MirrorEnd::Arrives;
       beam.trace.mirrorPaths.push_back(path);
@@ -243,7 +257,7 @@ void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
     Visibility::Clear };
   if (gathers)
   {
-    findMattEnd(setup, beam, shape, beam.samples.ray[hit], path);
+    keepMattEnd(setup, beam, shape, beam.samples.ray[hit], path);
   }
   beam.trace.mirrorPaths.push_back(path);
 }
@@ -389,7 +403,7 @@ void traceMirrorPaths(const ScanSetup& setup, const SecondaryBeam& beam,
     path.visibility = clear ? Visibility::Clear : Visibility::Blocked;
     if (clear && setup.sensor.receiverAperture > 0.0)
     {
-      findMattEnd(setup, beam, shape, numberOf(path), path);
+      keepMattEnd(setup, beam, shape, numberOf(path), path);
     }
   }
 }
