@@ -290,7 +290,7 @@ TEST(StabilitySweep, WhatLiesBeyondTheLimitsIsNamed)
     expect(settingsWith(&EchoSettings::raysPerBeam, rays), "RaysPerBeam");
   }
   expect(settingsWith(&EchoSettings::raysPerBeam, 1000000), "");
-  expect(settingsWith(&EchoSettings::numberOfReflections, 3), "NumberOfReflections");
+  expect(settingsWith(&EchoSettings::numberOfReflections, 4), "NumberOfReflections");
   expect(settingsWith(&EchoSettings::numberOfConnections, -1), "NumberOfConnections");
   // Noise and paths that would need more than memory is there for, and the last that do not.
   Sensor fine;
@@ -372,7 +372,7 @@ TEST(StabilitySweep, AllNumbersAtOnce)
     world.settings.raysPerBeam = 1 + static_cast<int>(below(64));
     world.settings.noise = below(2) != 0;
     world.settings.beamSamples = static_cast<BeamSampleSource>(below(2));
-    world.settings.numberOfReflections = 1 + static_cast<int>(below(2));
+    world.settings.numberOfReflections = 1 + static_cast<int>(below(3));
     world.settings.reflectanceModel = static_cast<ReflectanceModel>(below(3));
     for (const Number& number : numbers())
     {
