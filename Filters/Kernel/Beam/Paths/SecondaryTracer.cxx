@@ -234,14 +234,17 @@ void traceMirror(const ScanSetup& setup, const SecondaryBeam& beam, const BeamSh
   const bool gathers = setup.sensor.receiverAperture > 0.0;
   if (!found.valid())
   {
-    MirrorPath path{ 0, hit, beam.geometry.triangle(hit), NoTriangle, beam.samples.weight[hit],
-      beam.samples.cosine[hit], from.range, 0.0, 0.0, {}, from.point, direction, Visibility::Clear,
-      false };
     beam.trace.mirror[hit] = MirrorEnd::Nowhere;
-    if (gathers && keepMattEnd(setup, beam, shape, beam.samples.ray[hit], path))
+    if (gathers)
     {
-      beam.trace.mirror[hit] = MirrorEnd::Arrives;
-      beam.trace.mirrorPaths.push_back(path);
+      MirrorPath path{ 0, hit, beam.geometry.triangle(hit), NoTriangle, beam.samples.weight[hit],
+        beam.samples.cosine[hit], from.range, 0.0, 0.0, {}, from.point, direction,
+        Visibility::Clear, false };
+      if (keepMattEnd(setup, beam, shape, beam.samples.ray[hit], path))
+      {
+        beam.trace.mirror[hit] = MirrorEnd::Arrives;
+        beam.trace.mirrorPaths.push_back(path);
+      }
     }
     return;
   }
