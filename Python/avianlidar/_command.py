@@ -105,10 +105,15 @@ VERBS = {
         "it.", """\
   avianlidar report hongqiao.coverage.json -o report.html
 """),
-    "reach": ("how far birds are seen",
-        "Computes how far one scan of a sensor detects birds within its beams, in free air. In brackets stand the "
-        "ranges that the fit of the receiver leaves open.", """\
+    "reach": ("how far birds and other targets are seen",
+        "Computes how far one scan of a sensor detects birds, boards, spheres, drones, people, walls or the ground "
+        "within its beams, in free air, and the number of points at half of this range. In brackets stand the ranges "
+        "of real units. What is assumed is marked.", """\
   avianlidar reach --sensor OS1_64 --species "herring gull"
+  avianlidar reach --sensor Search905 --target board:0.5 --target wall --reflectance 0.1
+  avianlidar reach --sensor OS1_64 --target ground --height 5
+  avianlidar reach --sensor Search905 --species starling --flock 20
+  avianlidar reach --sensor Search905 --birds my.csv
   avianlidar reach --sensor Search905 --sensor VLP16 --species crow --weather fog:1000
 """),
     "sensors": ("sensors that are known by name",
@@ -248,6 +253,15 @@ def parser() -> Parser:
     add = verb["reach"].add_argument
     add("--sensor", action="append", required=True, help=f"{SENSOR}; {MANY}")
     add("--species", action="append", help=f"species of the bird; default herring gull; {MANY}")
+    add("--birds", type=pathlib.Path, metavar="FILE",
+        help="a table of birds with the columns of Filters/Birds/species.csv; without --species, all of its birds")
+    add("--flock", type=int, metavar="NUMBER", help="number of birds of a flock, of which one must be detected")
+    add("--target", action="append", default=[], metavar="KIND",
+        help=f"instead of birds: board:SIDE or sphere:DIAMETER (m), drone, person, wall or ground; {MANY}")
+    add("--reflectance", type=float,
+        help="reflectance of all targets, above 0 to 1; default: assumed by kind, 0.3 for birds")
+    add("--height", type=float, metavar="METRES", help="height of the sensor above the ground, for --target ground; "
+        "default 5 (assumed)")
     _settings(verb["reach"], sensor="range_gate=800")
     _out(verb["reach"], "file: .csv with shares by range", required=False)
 

@@ -373,7 +373,8 @@ class Surroundings(unittest.TestCase):
         half = found.to(0.5)
         self.assertGreater(half, 10.0)
         words = f"{half:.2g} m ({dim.to(0.5):.2g} to {bright.to(0.5):.2g} m)"
-        self.assertEqual(re.split("  +", lines[1])[:4], ["OS1_64", "herring gull", f"{found.to(0.9):.2g} m", words])
+        nine = f"{found.to(0.9):.2g} m ({dim.to(0.9):.2g} to {bright.to(0.9):.2g} m)"
+        self.assertEqual(re.split("  +", lines[1])[:4], ["OS1_64", "herring gull", nine, words])
         self.assertTrue(lines[2].startswith(f"OS1_64 sees half of the herring gulls in its beams to {words}, less than the 280 m"))
         table = np.genfromtxt(OUTPUT / "reach.csv", delimiter=",", skip_header=1)
         np.testing.assert_allclose(table[:, 2:4], np.column_stack([found.ranges, found.one_scan]), rtol=1e-5)

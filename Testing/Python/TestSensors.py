@@ -149,7 +149,7 @@ class Manuals(unittest.TestCase):
         self.assertIn("0.84 to 1.81 times", _display.sensor_rows(al.Sensor("VLP16"))["interval of ranges"])
         sensor = al.Sensor("VLP16")
         found = reach.within_beams(sensor, "herring gull", birds=64).to(0.5)
-        low, high = reach.in_interval(sensor, "herring gull", birds=64)
+        low, high = (one.to(0.5) for one in reach.in_interval(sensor, "herring gull", birds=64))
         self.assertTrue(0 < low < found < high)
         with tempfile.TemporaryDirectory() as folder:
             for bad, words in (([1.2, 2.0], "at most 1"), ([0.5], "at most 1"), ([0, 2], "at most 1")):

@@ -203,7 +203,9 @@ class Report:
         several = f"{plan.coverage.required_detections} of {plan.coverage.number_of_scans} scans"
         limits = {species or "target": reach.in_interval(plan.sensor, species, **settings) for species in plan.mix}
         rows: List[Dict[str, Any]] = [
-            {"receiver": plan.name, "species": name, "scans": scans, "limits": scans != several and limits[name],
+            {"receiver": plan.name, "species": name, "scans": scans,
+             "limits": {share: [edge.to(share, scans == several) for edge in limits[name] or ()]
+                        for share in reach.SHARES},
              "to": {share: one.to(share, scans == several) for share in reach.SHARES}}
             for name, one in of.items() for scans in ("one scan", several)]
         table = [{"receiver": plan.name, "species": name, "range": float(r), "one_scan": float(p),

@@ -198,40 +198,66 @@ def design(options) -> None:
         tell(*answers(study), f"{options.out / 'design.html'}: the page; its tables and pictures are beside it")
 
 
+def _wanted(options) -> List[Any]:
+    """The birds, flocks and other targets that the options give. The default is a herring gull."""
+    birds = options.species or (ranges.own_species(options.birds) if options.birds else [])
+    if not birds and not options.target:
+        birds = ["herring gull"]
+    if options.flock is not None:
+        if not birds:
+            raise ValueError(f"--flock {options.flock} is for birds, expected --species or --birds as well")
+        birds = [ranges.flock(species, options.flock) for species in birds]
+    if options.height is not None and "ground" not in options.target:
+        raise ValueError(f"--height {options.height:g} is for the ground, expected --target ground as well")
+    return birds + [ranges.target(form, options.reflectance, options.height if form == "ground" else None)
+                    for form in options.target]
+
+
 def reach(options) -> None:
     if options.out and options.out.suffix.lower() != ".csv":
         raise ValueError(f"{options.out}: is not the name of a table, expected one that ends in .csv")
-    several = options.species or ["herring gull"]
+    several = _wanted(options)
     ideas = [idea(name, Sensor(name), dict(options.sensor_set)) for name in options.sensor]
     if any(ideas):
-        tell(*filter(None, [*ideas, *map(farthest, several)]))
-    rows: List[Tuple[Any, ...]] = [
-        ("sensor", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to")]
+        tell(*filter(None, [*ideas, *(farthest(one) for one in several if isinstance(one, str) and not options.birds)]))
+    rows: List[Tuple[Any, ...]] = [("sensor", "target", "9 of 10, to", "half, to", "a tenth, to",
+                                    "9 of 10 by 2 of 3 scans, to", "points at half of the range of half")]
     said, curve = [], []
     pairs = list(itertools.product(options.sensor, several))
-    for number, (name, species) in enumerate(pairs):
-        def progress(share: float, _: str = "", number: int = number) -> None:
-            bar("reach", round(100.0 * (number + share) / len(pairs)), 100)
+    for number, (name, what) in enumerate(pairs):
+        def progress(share: float, _: str = "", number: int = number, begin: float = 0.0, part: float = 1.0) -> None:
+            bar("reach", round(100.0 * (number + begin + part * share) / len(pairs)), 100)
         progress(0.0)
         sensor = Sensor(name).set(**dict(options.sensor_set))
         asked = sorted(set(sensor.not_given) & set(PATTERN) - set(map(snake, dict(options.sensor_set))))
         if asked:
             raise ValueError(f"{name} does not give {', '.join(asked)}, expected these numbers in the file or by "
-                             "--sensor-set: birds between the beams are not seen, so the pattern decides the answer")
-        settings: Dict[str, Any] = {**ranges.air_of(sensor, options.weather), "required_detections": 2, "number_of_scans": 3}
-        found = ranges.within_beams(sensor, species, progress=progress, **settings)
-        limits = ranges.in_interval(sensor, species, **settings)
-        rows.append((name, species, ranges.metres(found.to(0.9)), ranges.half(found, limits),
-                     ranges.metres(found.to(0.1)), ranges.metres(found.to(0.9, True))))
-        said.append(ranges.sentence(name, species, found, limits))
+                             "--sensor-set: targets between the beams are not seen, so the pattern decides the answer")
+        settings: Dict[str, Any] = {**ranges.air_of(sensor, options.weather), "required_detections": 2,
+                                    "number_of_scans": 3}
+        if options.birds:
+            settings["species_file_name"] = str(options.birds)
+        if options.reflectance is not None:
+            settings["reflectance"] = options.reflectance
+        part = 1.0 if ranges.interval(sensor) is None else 1.0 / 3.0
+        found = ranges.within_beams(sensor, what, progress=functools.partial(progress, part=part), **settings)
+        limits = ranges.in_interval(sensor, what, progress=functools.partial(progress, begin=part, part=1.0 - part),
+                                    **settings)
+        to, words = found.to(0.5), getattr(what, "words", what)
+        points = ranges.points(sensor, what, 0.5 * to, **settings) if to else None
+        rows.append((name, words, *(ranges.in_words(found, limits, share) for share in ranges.SHARES),
+                     ranges.in_words(found, limits, 0.9, True), "–" if points is None else f"{points:.2g}"))
+        said.append(ranges.sentence(name, what, found, limits, points, sensor.range_gate))
         columns = {"range": found.ranges, "one_scan": found.one_scan, "one_scan_std_error": found.error,
                    "two_of_three": found.several_scans}
-        curve += [{"sensor": name, "species": species, **dict(zip(columns, map(float, row)))}
+        curve += [{"sensor": name, "species": words, **dict(zip(columns, map(float, row)))}
                   for row in zip(*columns.values())]
     bar("reach", 100, 100)
     table(rows)
     tell(*said)
-    tell("Birds lie evenly between the lowest and the highest beam; sizes of birds are assumed. "
+    birds = not options.birds and any(isinstance(one, str) or one.kind == "flock" for one in several)
+    sizes = "; sizes of birds are assumed" if birds else ""
+    tell(f"Targets lie evenly between the lowest and the highest beam{sizes}. "
          "In brackets: the interval for units of this kind.",
          *(text for name in options.sensor if (text := ranges.uncertainty(name, Sensor(name)))))
     if options.out:

@@ -14,6 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from avianlidar._cloud import vertices
 from avianlidar._pipeline import update
+from avianlidar._targets import SIDES as BOX_SIDES  # noqa: F401 of BOX
 from avianlidar.vtkAvianLidar import (vtkAvianLidarCloudComparison, vtkAvianLidarEchoFilter, vtkAvianLidarMaterial,
                                       vtkAvianLidarSceneReader)
 
@@ -24,8 +25,6 @@ AIRPORT = pathlib.Path(__file__).resolve().parents[3] / "Examples" / "airport" /
 FOOTPRINTS = AIRPORT.with_name("hongqiao.geojson")
 # Corners and triangles of a box with sides of 1.
 BOX = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-BOX_SIDES = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
-                      (0, 6, 4), (1, 5, 7), (1, 7, 3)])
 
 
 def whole(low, high):

@@ -22,7 +22,7 @@ VISIBILITY = reach.CLEAR  # m
 
 def row(name, species, found, limits):
     """Of the table. Ranges have the two digits that the choice of birds leaves of them."""
-    return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.half(found, limits)}**",
+    return (f"`{name}`", species, reach.metres(found.to(0.9)), f"**{reach.in_words(found, limits)}**",
             reach.metres(found.to(0.1)), reach.metres(found.to(0.9, True)))
 
 

@@ -19,11 +19,13 @@ from scipy.spatial.transform import Rotation
 import avianlidar as al
 import tools
 from avianlidar import _sheet
-from running import BOX, BOX_SIDES, above_zero, argument, finite, study, whole
+from avianlidar._targets import box, quadcopter  # noqa: F401 intervals.py takes `box` from here
+from avianlidar.apps._json import packaged
+from running import above_zero, argument, finite, study, whole
 
-ACROSS = 0.4             # m, from motor to motor over the middle
+ACROSS = packaged("targets.json")["drone"]["across"]  # m, from motor to motor over the middle
 REFLECTANCE = 0.05, 0.5  # assumed: dark plastic and carbon to light grey
-THICK = 0.8, 1.25        # assumed: of the parts below
+THICK = 0.8, 1.25        # assumed: of the parts in targets.json
 OFF_AXIS = 2.0           # deg at most, evenly over the disc
 TILT = 25.0              # deg at most
 STEP = 2.0               # m, between frames
@@ -32,31 +34,6 @@ AIR = 8.9e-5             # 1/m, visibility 23 km
 LIGHTS = (100, 0)        # klx
 SKY = 0.05               # W/(m2 sr nm) in 100 klx, assumed
 FRAMES = 150             # in turn, begun anywhere
-# Boxes: middle and half sizes, m (assumed). Body, battery, four arms, motors, legs; rotors spin and are left out.
-BODY = (((0, 0, 0), (0.085, 0.045, 0.025)), ((0, 0, 0.03), (0.05, 0.03, 0.015)), ((0.09, 0, -0.02), (0.02, 0.02, 0.02)))
-ARM, MOTOR, LEG = (0.008, 0.006), (0.014, 0.014), (0.006, 0.03)
-
-
-def box(middle, half, turn=0.0):
-    """Corners and triangles of a box that is turned about z."""
-    c, s = np.cos(turn), np.sin(turn)
-    return (2 * BOX - 1) * half @ np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)]) + middle, BOX_SIDES
-
-
-def quadcopter(thick):
-    """Points (m, nose towards +x) and triangles."""
-    parts = [box(np.array(middle), np.array(half) * thick) for middle, half in BODY]
-    for angle in np.radians((45, 135, 225, 315)):
-        out = np.array((np.cos(angle), np.sin(angle), 0))
-        parts.append(box(0.25 * ACROSS * out, np.array((0.25 * ACROSS, ARM[0] * thick, ARM[1] * thick)), angle))
-        parts.append(box(0.5 * ACROSS * out + (0, 0, 0.01), np.array((MOTOR[0], MOTOR[0], MOTOR[1])) * thick))
-        parts.append(box(0.3 * ACROSS * out - (0, 0, 0.04), np.array((LEG[0] * thick, LEG[0] * thick, LEG[1]))))
-    points, faces, first = [], [], 0
-    for corners, triangles in parts:
-        points.append(corners)
-        faces.append(triangles + first)
-        first += len(corners)
-    return np.concatenate(points), np.concatenate(faces)
 
 
 @dataclasses.dataclass
