@@ -117,8 +117,8 @@ def within_beams(sensor: Sensor, species: str | Target = "herring gull", ranges:
               species_file_name="my.csv"
 
     >>> board = within_beams(Sensor("OS1_64"), target("board:0.5", reflectance=0.1))
-    >>> round(board.to(0.5), -1)
-    40.0
+    >>> round(board.to(0.5), -1)  # half of the boards, m
+    50.0
     """
     if birds < 2:
         raise ValueError(f"birds is {birds}, expected at least 2 at each range")
@@ -327,7 +327,9 @@ def sentence(name: str, what: str | Target, found: Reach, limits: tuple[Reach, R
         text += f", {'less' if to < width else 'more'} than the {width:g} m that the strip of a large runway is wide"
     if to > 0.99 * gate:
         text += ", where its range gate ends"
-    if number is not None:
+    if kind == "ground" and number == 0.0:
+        text += ". At half of this range, no beam meets the ground"
+    elif number is not None:
         on = {"wall": "in a square metre", "ground": "in a square metre"}.get(kind)
         on = on or f"on a {what if kind == 'bird' else kind}"
         text += f". At half of this range, one scan has {figures(number, 2)} points {on}"

@@ -94,6 +94,8 @@ class Targets(unittest.TestCase):
         ground = reach.target("ground", 0.5, height=5.0)
         self.assertAlmostEqual(reach.points(sensor, ground, 25.0) / (density * 30.0 ** 2 / 25.0 ** 2 * 5.0 / 25.0), 1.0, delta=0.3)  # rings
         self.assertEqual(reach.points(sensor, ground, 6.0), 0.0)  # below the beams
+        seen = reach.Reach(np.array([10.0, 20.0]), np.array([1.0, 0.5]), np.zeros(2), np.zeros(2))
+        self.assertTrue(reach.sentence("VLP16", ground, seen, None, 0.0).endswith(" to 20 m. At half of this range, no beam meets the ground."))
 
     def test_half_of_still_targets_have_a_point_at_the_printed_range(self):
         """Within four standard errors of 400 surfaces; points at half of the range within a tenth."""
