@@ -32,6 +32,7 @@ MOST = 100.0  # largest board or sphere, m
 PHASES = 8  # phases of wingbeats, and places in a range unit at which a beam meets a wall
 MARGIN = 1.5  # a surface that fills the beam, in half beamwidths; a rectangular beam's corners are at 1.41
 SPEED_OF_LIGHT = 299792458.0  # m/s
+GOLDEN = 0.6180339887498949  # its multiples, modulo 1, are evenly spread
 ASSUMED = " (assumed)"
 SIDES = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
                   (0, 6, 4), (1, 5, 7), (1, 7, 3)])
@@ -224,7 +225,7 @@ def _apart(lines: np.ndarray, angle: float) -> Iterator[np.ndarray]:
 def look(scan: Scan, what: str | Target, distance: float, lines: np.ndarray, settings: dict[str, Any],
          seed: int) -> tuple[np.ndarray, np.ndarray]:
     """For targets at a distance, m, along lines: the probability that one scan detects each, and its number of points.
-    Yaw and wings are random, except for boards; ranges vary by one range unit."""
+    Yaw and wings are random, except for boards; ranges vary evenly by one range unit."""
     random, sensor, file = np.random.default_rng(seed), scan.sensor, str(settings.get("species_file_name", ""))
     surfaces = _surfaces(what, settings.get("reflectance", 0.3), settings.get("gliding", False), file)
     kind, flocks = "bird", [np.zeros((1, 3))]
@@ -242,7 +243,7 @@ def look(scan: Scan, what: str | Target, distance: float, lines: np.ndarray, set
         movers: list[vtkPolyData] = []
         owners: list[int] = []
         for number in group:
-            middle = (distance + unit * (random.random() - 0.5)) * lines[number]
+            middle = (distance + unit * ((number + 0.5) * GOLDEN % 1.0 - 0.5)) * lines[number]
             turn, tilt = 2.0 * np.pi * random.random(), 0.0
             if kind == "board":
                 turn, tilt = math.atan2(*middle[:2]), math.asin(lines[number, 2])

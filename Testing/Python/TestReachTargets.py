@@ -36,11 +36,11 @@ def in_band(sensor, distance, count, seed):
     return distance * np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
 
 
-def share_seen(sensor, mesh, kd, distance, squarely, count=400):
+def share_seen(sensor, mesh, kd, distance, squarely, count=400, seed=2):
     """The share of still surfaces at random places with a point, and the mean number of their points, in one scan with noise."""
     points, faces = mesh
-    scene, random = al.Scene(), np.random.default_rng(3)
-    for number, place in enumerate(in_band(sensor, distance, count, 2)):
+    scene, random = al.Scene(), np.random.default_rng(1000 + seed)
+    for number, place in enumerate(in_band(sensor, distance, count, seed)):
         place *= 1.0 + random.uniform(-0.25, 0.25) * 299792458.0 * sensor.sampling_interval / distance  # within one range unit
         turn = math.atan2(place[0], place[1]) if squarely else random.uniform(0.0, 2.0 * np.pi)
         right, ahead, up = (math.cos(turn), -math.sin(turn), 0.0), np.array([math.sin(turn), math.cos(turn), 0.0]), np.array([0.0, 0.0, 1.0])
@@ -48,7 +48,7 @@ def share_seen(sensor, mesh, kd, distance, squarely, count=400):
             ahead = place / np.linalg.norm(place)
             up = np.cross(right, ahead)
         scene.add(points @ np.array([right, ahead, up]) + place, faces, material=(kd, 0.0, 1.0), name=str(number))
-    echoes = al.Scan(scene, sensor, visibility=reach.CLEAR, number_of_reflections=1, seed=4).echoes
+    echoes = al.Scan(scene, sensor, visibility=reach.CLEAR, number_of_reflections=1, seed=seed).echoes
     found = np.bincount(echoes["object_id"][echoes["object_id"] >= 0], minlength=count)
     return (found > 0).mean(), found.mean()
 
