@@ -23,11 +23,11 @@ from ._numbers import figures
 from ._pipeline import Progress
 from ._scene import Scene
 from ._sensor import Sensor
-from ._targets import PHASES, Target, flock, look, met, own_species, places_in_flock, scan_of, target
 from ._weather import weather
 from .apps._air import as_received
 from .apps._plan import Plan
 from .apps._candidates import TABLE
+from .apps._targets import PHASES, Target, flock, look, met, own_species, places_in_flock, scan_of, target
 from .apps._words import plural
 
 RANGES = 48
@@ -304,6 +304,11 @@ def in_words(found: Reach, limits: tuple[Reach, Reach] | None, share: float = 0.
         return metres(found.to(share, several))
     low = f"{first:.2g}" if first < 100.0 else f"{float(f'{first:.2g}'):g}"
     return f"{metres(found.to(share, several))} ({low} to {metres(last)})"
+
+
+def half(sensor: Sensor, found: Reach) -> str:
+    """The range to which half of the birds are detected, without the interval of units like `sensor` (`in_words`)."""
+    return in_words(found, None)
 
 
 def sentence(name: str, what: str | Target, found: Reach, limits: tuple[Reach, Reach] | None,

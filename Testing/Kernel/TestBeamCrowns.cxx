@@ -183,6 +183,26 @@ constexpr PlateCase PlateCases[] = {
   { 5.6e-3, 0.05, 95.0, 100.0, 0.1, 0.05, { 0.2135, 0.0018 }, 0.1169, 0.0165 },
 };
 
+namespace
+{
+/// Light of the echoes that pass a test, J, for each of Scans scans with drawn leaves.
+template <class F>
+std::vector<double> lightOfScans(ScanSetup setup, F isWanted)
+{
+  setup.settings.noise = true;
+  setup.settings.returnMode = ReturnMode::RangeUnits;
+  planModel(setup);
+  const ScanResult result = runScan(setup, alike(Scans));
+  std::vector<double> light(Scans, 0.0);
+  for (std::size_t k = 0; k < result.echoes.size(); ++k)
+  {
+    const Echo& echo = result.echoes[k];
+    light[result.beamOfEcho[k]] += isWanted(echo) ? echo.energyReceived : 0.0;
+  }
+  return light;
+}
+}
+
 TEST(BeamCrowns, LeavesHideSmallObjectsOrDoNot)
 {
   for (const PlateCase& of : PlateCases)
@@ -207,20 +227,10 @@ TEST(BeamCrowns, LeavesHideSmallObjectsOrDoNot)
       wide.rangeGate = 130.0;
       wide.lowerEnergyLimit = 1e-30;
       wide.receiverModel = ReceiverModel::EnergyLimits;
-      ScanSetup setup = inMedium(scene, wide, leavesOf(density),
-        boxOf(Vec3(of.begin + 1.5, 0.0, 0.0), Vec3(1.5, 50.0, 50.0)));
-      setup.settings.noise = true;
-      setup.settings.returnMode = ReturnMode::RangeUnits;
-      planModel(setup);
-      const ScanResult result = runScan(setup, alike(Scans));
-      std::vector<double> light(Scans, 0.0);
-      for (std::size_t k = 0; k < result.echoes.size(); ++k)
-      {
-        const Echo& echo = result.echoes[k];
-        const bool isOfPlate = std::fabs(echo.range - of.plate) < 1.5 && echo.objectId == 7;
-        light[result.beamOfEcho[k]] += isOfPlate ? echo.energyReceived : 0.0;
-      }
-      return light;
+      return lightOfScans(inMedium(scene, wide, leavesOf(density),
+                            boxOf(Vec3(of.begin + 1.5, 0.0, 0.0), Vec3(1.5, 50.0, 50.0))),
+        [&](const Echo& echo)
+        { return std::fabs(echo.range - of.plate) < 1.5 && echo.objectId == 7; });
     };
     const double clear = statistics::sumOf(seen(1e-9, false)) / static_cast<double>(Scans);
     for (const bool wall : { false, true })
@@ -290,17 +300,9 @@ TEST(BeamCrowns, LeavesAreDrawnWithoutNoisePhotons)
     sensor.receiverModel = ReceiverModel::EnergyLimits;
     sensor.lowerEnergyLimit = 1e-30;
     sensor.noisePhotonRate = rate;
-    ScanSetup setup = inMedium(wallAt(of.wall), sensor, leavesOf(of.density), crownOf(of));
-    setup.settings.noise = true;
-    setup.settings.returnMode = ReturnMode::RangeUnits;
-    planModel(setup);
-    const ScanResult result = runScan(setup, alike(Scans));
-    std::vector<double> walls(Scans, 0.0);
-    for (std::size_t k = 0; k < result.echoes.size(); ++k)
-    {
-      const Echo& echo = result.echoes[k];
-      walls[result.beamOfEcho[k]] += echo.range > of.end + 1.0 ? echo.energyReceived : 0.0;
-    }
+    const std::vector<double> walls =
+      lightOfScans(inMedium(wallAt(of.wall), sensor, leavesOf(of.density), crownOf(of)),
+        [&](const Echo& echo) { return echo.range > of.end + 1.0; });
     const double mean = statistics::sumOf(walls) / static_cast<double>(Scans);
     double square = 0.0;
     for (const double energy : walls)

@@ -12,7 +12,8 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 import avianlidar as al
-from avianlidar import _sheet, _targets, reach
+from avianlidar import _sheet, reach
+from avianlidar.apps import _targets
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
 import helpertools
 

@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 import avianlidar as al
 import tools
 from avianlidar import _sheet
-from avianlidar._targets import box, quadcopter  # noqa: F401 intervals.py takes `box` from here
+from avianlidar.apps._targets import box, quadcopter  # noqa: F401 intervals.py takes `box` from here
 from avianlidar.apps._json import packaged
 from running import above_zero, argument, finite, study, whole
 

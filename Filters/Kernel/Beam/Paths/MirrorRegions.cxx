@@ -30,14 +30,13 @@ constexpr double GoldenRatio = 0.6180339887498949;
 /// Number of samples for each ray that would fall in a region.
 constexpr double SamplesPerRay = 2.0;
 
-/// The same for paths that may end anywhere, whose light comes from far surfaces, evenly; and the
-/// fewest pairs of samples of a surface.
+/// Number of samples for each ray that falls on a mirror, for paths that may end anywhere.
 constexpr double SpreadPerRay = 1.0;
-constexpr double FewestSpread = 1.0;
 
-/// Number of the first sample of such paths.
+/// Number of the first sample of such paths on a surface.
 constexpr std::uint32_t FirstSpread = 0x80000000;
 
+/// Region::two of such paths.
 constexpr std::uint32_t Anywhere = 0xffffffff;
 
 PlaneLine operator+(const PlaneLine& a, const PlaneLine& b)
@@ -500,9 +499,7 @@ void MirrorRegions::placeIn(std::size_t first, std::size_t end, std::vector<Mirr
   const bool anywhere = this->Regions[first].two == Anywhere;
   const double samples = (anywhere ? SpreadPerRay : SamplesPerRay) *
     this->Setup.settings.raysPerBeam * area * this->ShareOfArea;
-  const double least = anywhere ? FewestSpread
-    : end - first > 1           ? static_cast<double>(FewRegions)
-                                : 1.0;
+  const double least = !anywhere && end - first > 1 ? static_cast<double>(FewRegions) : 1.0;
   const auto pairs = static_cast<std::uint32_t>(std::max(least, std::round(0.5 * samples)));
   const std::uint32_t count = 2 * pairs;
   const double tangent2 = this->Frame.tanHalf * this->Frame.tanHalf;

@@ -508,13 +508,11 @@ void SecondaryReflection::listPaths(
   paths.clear();
   const bool bySample = beam.trace.searched.empty();
   // Transmission of the media that do not fill the scene.
+  const Vec3 apex(0.0);
+  const auto passed = [&](const Vec3& one, const Vec3& two)
+  { return beam.air ? beam.air->transmissionBetween(one, two) : 1.0; };
   const auto leftOf = [&](const Vec3& one, const Vec3& two)
-  {
-    const Vec3 apex(0.0);
-    return beam.air ? beam.air->transmissionBetween(apex, one) *
-        beam.air->transmissionBetween(one, two) * beam.air->transmissionBetween(two, apex)
-                    : 1.0;
-  };
+  { return passed(apex, one) * passed(one, two) * passed(two, apex); };
   const auto pointOf = [&](std::uint32_t sample)
   { return beam.samples.range[sample] * beam.geometry.direction(sample); };
   const MirrorPath* before = nullptr;
@@ -547,13 +545,10 @@ void SecondaryReflection::listPaths(
       }
       if (part.again > 0.0)
       {
-        paths.push_back({ matt.lengthAgain,
-          part.again * leftOf(path.from, matt.end) *
-            (beam.air ? beam.air->transmissionBetween(matt.end, matt.through) *
-                  beam.air->transmissionBetween(matt.through, Vec3(0.0)) /
-                  beam.air->transmissionBetween(matt.end, Vec3(0.0))
-                      : 1.0),
-          matt.mirror, matt.cosine, one, two });
+        const double there = passed(apex, path.from) * passed(path.from, matt.end);
+        const double back = passed(matt.end, matt.through) * passed(matt.through, apex);
+        paths.push_back(
+          { matt.lengthAgain, part.again * there * back, matt.mirror, matt.cosine, one, two });
       }
     }
   }
@@ -632,7 +627,7 @@ bool SecondaryReflection::collect(
       lost += all;
       return true;
     }
-    // With an aperture, as many short paths as connections.
+    // With an aperture, more paths start in each hit: by mirrors, and short paths.
     threshold = budget / (pathsOfABeam(settings) * waysOf(this->Setup));
   }
   const auto throughputOf = [=](double energy)

@@ -33,6 +33,10 @@ double distanceInCone(
   return reach * (1.0 + 1e-6) + 1e-6 * range;
 }
 
+/// Distance of a point from a mirror's plane, over the range, below which it lies on the mirror.
+/// Coordinates in single precision have such errors.
+constexpr double CoplanarWithin = 1e-6;
+
 /// Whether the apex sees the point at which a path ends, on a side that faces the apex, in the
 /// cone.
 bool seesEnd(const SecondaryBeam& beam, const Vec3& point, const Vec3& direction,
@@ -47,28 +51,32 @@ bool seesEnd(const SecondaryBeam& beam, const Vec3& point, const Vec3& direction
   return !seen.valid() || seen.triangle == triangle || seen.range >= range - surfaceMargin(range);
 }
 
-/// A direction near another direction, with the density of cos^kp of the angle between.
-struct LobeSample
+/// Direction at an angle, whose sine and cosine are given, from an axis. @param turn about the
+/// axis, as a share of a whole turn
+Vec3 directionAbout(const Vec3& axis, double sine, double cosine, double turn)
 {
-  Vec3 direction;
-  double cosine;
-};
-
-/// Draw from the lobe cos^kp. @param narrower factor by which the angle is multiplied afterwards
-LobeSample drawFromLobe(
-  const std::array<double, 2>& u, double kp, const Vec3& axis, double narrower)
-{
-  const double cosine = std::pow(u[0], 1.0 / (kp + 1.0));
-  const double sine2 = -std::expm1(2.0 * std::log(u[0]) / (kp + 1.0));
-  const double angle = narrower * std::atan2(std::sqrt(sine2), cosine);
   const Vec3 other = std::fabs(axis.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 e1 = unitVector(glm::cross(axis, other));
   const Vec3 e2 = glm::cross(axis, e1);
-  const double turn = 2.0 * Pi * u[1];
-  return { unitVector(std::cos(angle) * axis +
-             std::sin(angle) * (std::cos(turn) * e1 + std::sin(turn) * e2)),
-    cosine };
+  const double angle = 2.0 * Pi * turn;
+  return unitVector(sine * (std::cos(angle) * e1 + std::sin(angle) * e2) + cosine * axis);
 }
+
+/// A direction drawn from a lobe cos^kp. If `narrower` is not 1, the angle to the axis is
+/// multiplied by it afterwards. Cosine and squared sine belong to the angle before.
+struct LobeSample
+{
+  Vec3 direction;
+  double cosine, sine2;
+
+  LobeSample(const std::array<double, 2>& u, double kp, const Vec3& axis, double narrower = 1.0)
+    : cosine(std::pow(u[0], 1.0 / (kp + 1.0)))
+    , sine2(-std::expm1(2.0 * std::log(u[0]) / (kp + 1.0)))
+  {
+    const double angle = narrower * std::atan2(std::sqrt(this->sine2), this->cosine);
+    this->direction = directionAbout(axis, std::sin(angle), std::cos(angle), u[1]);
+  }
+};
 
 double densityAt(const SecondaryBeam& beam, const BeamShape& shape, const Vec3& point)
 {
@@ -84,36 +92,41 @@ void findImage(const ScanSetup& setup, const SecondaryBeam& beam, const std::arr
   const double kp = setup.material(path.first).kp;
   const double height = path.rangeOne * path.cosine;
   const double above = glm::dot(normal, matt.end) + height;
-  if (!(above > 0.0))
+  if (!(above > 0.0) || !(height > 0.0))
   {
     return;
   }
   const Vec3 image = matt.end - 2.0 * above * normal;
   matt.image = safeLength(image);
   const double behind = matt.image * above / (height + above); // mirror to image
-  const LobeSample view = drawFromLobe(u, kp, image / matt.image, behind / matt.image);
+  const LobeSample view(u, kp, image / matt.image, behind / matt.image);
   matt.cosine = -glm::dot(view.direction, normal);
+  if (!(matt.cosine > 0.0))
+  {
+    return;
+  }
   const double range = height / matt.cosine;
   matt.through = range * view.direction;
-  if (!(matt.cosine > 0.0) || !beam.frame.contains(matt.through))
+  const Vec3 back = matt.through - matt.end;
+  const double step = safeLength(back);
+  const double margin = surfaceMargin(std::max(range, matt.range));
+  if (!beam.frame.contains(matt.through) || !(step > 2.0 * margin))
   {
     return;
   }
   const Hit seen = beam.tracer.traceFromApex(matt.through);
-  const Vec3 back = matt.through - matt.end;
-  const double step = safeLength(back);
-  if (!seen.valid() || !(std::fabs(seen.range - range) * matt.cosine <= 1e-6 * range) ||
-    beam.tracer.occluded(matt.through, matt.end, surfaceMargin(std::max(range, matt.range)),
-      seen.triangle, matt.triangle))
+  if (!seen.valid() || !(std::fabs(seen.range - range) * matt.cosine <= CoplanarWithin * range) ||
+    beam.tracer.occluded(matt.through, matt.end, margin, seen.triangle, matt.triangle))
   {
     return;
   }
-  // The drawn lobe takes the mirror's height above the end for the height at the image's centre.
-  const double lobe =
-    std::max(0.0, -glm::dot(mirrorDirection(view.direction, normal), back) / step);
-  const double toDrawn = std::exp(kp * std::log(std::max(lobe, 1e-300) / view.cosine));
-  matt.again = std::min(MostGrazing,
-    toDrawn * -glm::dot(back, normal) / (step * matt.cosine) * (behind * behind) / (step * step));
+  // The angle at the mirror differs from the drawn angle, which belongs to the image's middle.
+  const ReflectionGeometry atMirror = reflectionGeometry(view.direction, -back / step, normal);
+  const double toDrawn =
+    lobe(atMirror.cosLobe, atMirror.sin2Lobe, kp) / lobe(view.cosine, view.sine2, kp);
+  const double nearer = behind / step;
+  matt.again =
+    std::min(MostGrazing, toDrawn * atMirror.cosOutgoing / matt.cosine * nearer * nearer);
   matt.shown = true;
   matt.mirror = seen.triangle;
   matt.lengthAgain = matt.length - matt.range + step + range;
@@ -129,7 +142,7 @@ MattEnd findMattEnd(const ScanSetup& setup, const SecondaryBeam& beam, const Bea
   { return uniformPair(setup.settings.seed, beam.id, 2 * number + k, RandomPurpose::Lobes); };
   const Vec3 normal = seeTriangle(beam.scene, path.first, beam.frame.origin).normal;
   const Vec3 mirrored = mirrorDirection(path.from / path.rangeOne, normal);
-  const Vec3 out = drawFromLobe(draw(0), setup.material(path.first).kp, mirrored, 1.0).direction;
+  const Vec3 out = LobeSample(draw(0), setup.material(path.first).kp, mirrored).direction;
   const double rise = glm::dot(out, normal);
   if (!(rise > 0.0))
   {
@@ -271,13 +284,7 @@ Vec3 drawDirection(
   const ScanSetup& setup, const SecondaryBeam& beam, std::uint64_t number, const Vec3& normal)
 {
   const auto u = uniformPair(setup.settings.seed, beam.id, number, RandomPurpose::ShortPaths);
-  const Vec3 other = std::fabs(normal.x) < 0.7 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-  const Vec3 e1 = unitVector(glm::cross(normal, other));
-  const Vec3 e2 = glm::cross(normal, e1);
-  const double turn = 2.0 * Pi * u[1];
-  const double sine = std::sqrt(u[0]);
-  return unitVector(
-    sine * (std::cos(turn) * e1 + std::sin(turn) * e2) + std::sqrt(1.0 - u[0]) * normal);
+  return directionAbout(normal, std::sqrt(u[0]), std::sqrt(1.0 - u[0]), u[1]);
 }
 
 /// Trace the k-th direction of a ray, and keep the path if its form factor exceeds MostFormFactor.

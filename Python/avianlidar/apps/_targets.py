@@ -3,7 +3,7 @@
 
 The echo filter scans boards, spheres, drones, people and birds as movers at places in the pattern of the sensor. Walls
 and ground fill the beam, so single beams that meet them suffice. Sizes and reflectances that nobody has given stand in
-apps/targets.json and are assumed.
+targets.json and are assumed.
 """
 import copy
 import dataclasses
@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from . import vtkAvianLidar as _wrapped
-from ._cloud import add_array, field_values
-from ._pipeline import update
-from ._properties import PropertyOwner, set_properties, unknown
-from ._scan import Scan
-from ._scene import Scene, mover
-from ._sensor import Sensor
-from .apps._json import packaged
-from .apps._words import plural
+from .. import vtkAvianLidar as _wrapped
+from .._cloud import add_array, field_values
+from .._pipeline import update
+from .._properties import set_properties, unknown
+from .._scan import Scan
+from .._scene import Scene, mover
+from .._sensor import Sensor
+from ._json import packaged
+from ._words import plural
 
 FORMS = {"board": "board:SIDE", "sphere": "sphere:DIAMETER", "drone": "drone", "person": "person", "wall": "wall",
          "ground": "ground"}
