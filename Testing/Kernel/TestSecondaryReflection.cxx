@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paths with two reflections: the known ones, and the bound on what a ray returns.
 #include "GivenHits.h"
+#include "MediumTestScene.h"
 #include "SecondaryTestScene.h"
 
 #include "OneBeamTracer.h"
@@ -283,6 +284,24 @@ TEST(SecondaryReflection, LightOfTheWayBackIsLabelledByTheMirror)
   EXPECT_GT(result.echoes[0].secondaryShare, 0.5);
   const double last = 1.85 / 2.85 * result.echoes[0].secondaryShare;
   EXPECT_NEAR(result.echoes[0].labelShare, 1.0 - last, 2e-3);
+}
+
+TEST(SecondaryReflection, FogBeforeAWallLeavesWhatTheMirrorShows)
+{
+  // Fog that no light passes lies before the wall, not before the mirror: of three ways over both,
+  // the one there and back by the mirror is left.
+  Medium fog;
+  fog.extinction = 1e3;
+  fog.backscatterRatio = 1e9;
+  ScanSetup setup = inMedium(corner(Glass, { 0.5, 0.0, 1.0 }), gatheringSensor(), fog,
+    boxOf(Vec3(50.0, 0.5, 0.0), Vec3(1.0, 0.5, 5.0)));
+  setup.settings.numberOfReflections = 2;
+  finishSetup(setup);
+  EXPECT_LT(secondaryOfSeeds(setup, 8).mean(), 0.03 * 1.103e-11);
+  setup.settings.numberOfReflections = 3;
+  finishSetup(setup);
+  const statistics::Moments energies = secondaryOfSeeds(setup, 40);
+  EXPECT_NEAR(energies.mean(), 1.103e-11, 0.02 * 1.103e-11 + 4.0 * energies.error());
 }
 
 TEST(SecondaryReflection, APlateInBetweenBlocksThePath)
