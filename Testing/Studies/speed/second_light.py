@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What paths with two reflections cost at eight places: processor time of a scan with two reflections over that with
-one.
+"""What paths with two and three reflections cost at eight places: processor time of a scan over that with one
+reflection. Three reflections need an aperture, so their column is of Search905's receiver.
 
     Testing/Studies/run.py second_light
 
-Airport16 with its columns --factor times as far apart; the median of --turns pairs of scans, taken by turns. At four
+Airport16 with its columns --factor times as far apart; the median of --turns rounds of scans, taken by turns. At four
 places every surface is a mirror as glass or sheet metal is (kd 0.05, ks 0.6, kp 3000; assumed), so that all of them
 pass light on. The sceneries that are not part of the repository are scene files in AVIANLIDAR_SCENES_DIR, and a place
 without its file is left out.
@@ -39,10 +39,10 @@ def tree_of(file, mirrors):
     return tree
 
 
-def scan(tree, position, reflections, factor):
+def scan(tree, position, reflections, factor, preset="Airport16"):
     """Seconds of the processor."""
     source, echoes = al.vtkAvianLidarBeamSource(), al.vtkAvianLidarEchoFilter()
-    source.SetPresetToAirport16()
+    getattr(source, f"SetPresetTo{preset}")()
     source.SetAzimuthStep(source.GetAzimuthStep() * factor)
     source.SetPosition(*position)
     source.Update()
@@ -63,8 +63,13 @@ def main(options):
     for title, name, position, mirrors in PLACES:
         if built_scene(name):
             tree = tree_of(built_scene(name), mirrors)
-            pairs = [[scan(tree, position, reflections, options.factor) for reflections in (1, 2)]
-                     for _ in range(options.turns)]
-            rows.append((title, "yes" if mirrors else "no", *(f"{1000 * min(times):.0f}" for times in zip(*pairs)),
-                         f"{statistics.median(two / one for one, two in pairs):.1f}"))
-    tools.leave(options.out, "second-light", ("place", "mirrors", "one, ms", "two, ms", "factor"), rows, 2)
+            rounds = [[scan(tree, position, *kind) for kind in ((1, options.factor), (2, options.factor),
+                                                                (1, options.factor, "Search905"),
+                                                                (3, options.factor, "Search905"))]
+                      for _ in range(options.turns)]
+            one, two, open_one, open_three = zip(*rounds)
+            rows.append((title, "yes" if mirrors else "no", *(f"{1000 * min(times):.0f}" for times in (one, two)),
+                         *(f"{statistics.median(more / less for less, more in zip(*both)):.1f}"
+                           for both in ((one, two), (open_one, open_three)))))
+    tools.leave(options.out, "second-light", ("place", "mirrors", "one, ms", "two, ms", "factor",
+                                              "three by one, Search905"), rows, 2)
