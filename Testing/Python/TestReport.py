@@ -81,6 +81,10 @@ class Page(unittest.TestCase):
         self.assertEqual([row[1] for row in shown], ["nobody", *2 * ["Ouster (formerly Velodyne)"]])
         self.assertEqual([row[2] for row in shown], ["2\u00a0s", "0.1\u00a0s", "0.1\u00a0s"])
         self.assertEqual({row[0] for row in shown[1:]}, set(ON_SALE))
+        self.assertEqual(shown[0][-1], "–")
+        for name, *_, interval in shown[1:]:
+            low, high = al.Sensor(name).description["range_interval"]["value"]
+            self.assertEqual(interval, f"{low:g} to {high:g}")
         asked = Plan(read_plan(HERE / "report.coverage.json"))
         for name, _, _, share, *_ in shown:
             there = asked.at(self.position(), "there", 1 << 40)

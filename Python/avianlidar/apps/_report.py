@@ -311,6 +311,7 @@ class Report:
                 row, found = there.in_airs([{}])[0][-1], crossing(there) if there.runways else None
             offers.append({"name": name, "maker": there.sensor.description["maker"], "takes": _answer.takes(there),
                            "row": row, "crossing": found, "half": half_range(name, next(iter(view.mix))),
+                           "interval": reach.interval(there.sensor),
                            "looks_around": len(np.unique(there.sensor.beams["azimuth"] // SECTOR)) == 36000 // SECTOR})
             self.progress("lidars on sale", number, len(names))
         write_table(folder / "on-sale.csv", [
@@ -398,7 +399,8 @@ class Report:
             said=[" ".join([_answer.in_short(answering[0], site_of[0], crossings[0]),
                             *_answer.about_idea(answering[0], offers)]), *said[0]], offers=offers,
             own={"name": first.name, "maker": "nobody", "takes": _answer.takes(first), "row": answering[0].overall,
-                 "crossing": crossings[0], "half": self._half_in_clear_air(first)},
+                 "crossing": crossings[0], "half": self._half_in_clear_air(first),
+                 "interval": reach.interval(first.sensor)},
             ideas=[plan.idea for plan in self.plans if plan.idea], not_checked=listed(NOT_CHECKED),
             question=self.plan.get("description") or f"Where is a {first.bird} detected?",
             first=self._first_picture(answering[0], folder, reaches[0]),
