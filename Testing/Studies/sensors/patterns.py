@@ -15,7 +15,7 @@ import tools
 from running import study
 
 PRISMS = ("Mid40", "Avia", "Mid360")
-ASSUMED = {"Mid40": "", "Avia": "prisms assumed", "Mid360": "fitted to the maker's"}
+ASSUMED = {"Mid40": "", "Avia": "prisms assumed", "Mid360": "pattern fitted"}
 WINDOWS = (0.1, 0.5, 2.0)  # s, shown
 TIMES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)  # s, in the table
 LONG = 5.0  # s
