@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Photon noise: tails and quantiles at their ends, the bound, and false alarms.
-#include "Noise.h"
+#include "BeamNoise.h"
+#include "Distributions.h"
 #include "RangeUnits.h"
 
 #include <gtest/gtest.h>

@@ -41,7 +41,7 @@ Nodes nodesOf(const ScanSetup& setup)
   {
     return { false, 0 };
   }
-  if (!quadrature.fits(*found))
+  if (!PolygonRule(setup).fits(*found))
   {
     return { false, 0 };
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Range units from a picosecond to a millisecond over 100 km, and photon noise from 1e-12 to 1e12
 // photons, beside the Poisson distribution summed term by term.
+#include "Distributions.h"
 #include "EchoTestScene.h"
 #include "Memory.h"
 #include "Random.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every number that a scan depends on, from 1e-320 to 1e308, one by one and all at once: either an
 // error that names what is wrong and what was expected, or echoes that are numbers. And the limits.
+#include "Distributions.h"
 #include "EchoTestScene.h"
 #include "ScanPattern.h"
 #include "StabilityTable.h"

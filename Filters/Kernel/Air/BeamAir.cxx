@@ -3,7 +3,6 @@
 
 #include "BeamShape.h"
 #include "Drops.h"
-#include "RangeUnits.h"
 
 #include <boost/math/quadrature/gauss.hpp>
 

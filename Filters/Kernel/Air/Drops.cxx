@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Drops.h"
 
-#include "Noise.h"
+#include "Distributions.h"
 #include "Random.h"
 
 #include <array>

@@ -15,6 +15,7 @@
 #ifndef avianlidar_BeamTrace_h
 #define avianlidar_BeamTrace_h
 
+#include "BeamReport.h"
 #include "BeamSamples.h"
 #include "BeamTracer.h"
 #include "LitBeam.h"

@@ -6,6 +6,57 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// Standard error, J, of the energy in some range units. @param shares shares of the samples in
+/// these units, before any shares of paths with two reflections
+double errorOfCells(const CellSamples& cells, const RangeShares& shares, const ScanSetup& setup)
+{
+  const auto sampleOf = [&](std::size_t s) { return shares.contribution[s]; };
+  const auto perWeight = [&](std::size_t s)
+  { return shares.energies[s] / cells.samples.weight[sampleOf(s)]; };
+  // Weight that moves over the diagonal counts if the material differs there.
+  const auto halvesDiffer = [&](std::size_t k)
+  {
+    return cells.others[k] != NoTriangle && !cells.halves.empty() &&
+      setup.material(cells.others[k]) != setup.material(cells.samples.surfaces[k].triangle);
+  };
+  auto surface = cells.samples.surfaces.begin();
+  bool differ = !cells.others.empty() && halvesDiffer(0);
+  std::size_t first = 0; // first sample of the surface
+  double sum = 0.0;
+  const auto addStep = [&](std::size_t sample, double step)
+  { sum += step * step * (cells.moves[sample] + cells.moves[sample + 1]); };
+  for (std::size_t s = 0; s < shares.count; ++s)
+  {
+    const std::size_t sample = sampleOf(s);
+    if (sample >= cells.samples.size())
+    {
+      break;
+    }
+    while (surface->end <= sample)
+    {
+      first = surface->end;
+      ++surface;
+      differ = halvesDiffer(surface - cells.samples.surfaces.begin());
+    }
+    const double energy = perWeight(s);
+    // The previous sample has no share in these units.
+    if (sample > first && (s == 0 || sampleOf(s - 1) + 1 != sample))
+    {
+      addStep(sample - 1, energy);
+    }
+    sum += energy * energy * (cells.variance[sample] + (differ ? cells.halves[sample] : 0.0));
+    if (sample + 1 < surface->end)
+    {
+      const bool isNext = s + 1 < shares.count && sampleOf(s + 1) == sample + 1;
+      addStep(sample, energy - (isNext ? perWeight(s + 1) : 0.0));
+    }
+  }
+  return std::sqrt(sum);
+}
+}
+
 EnergyErrors::EnergyErrors(
   const ScanSetup& setup, const BeamLighting& lighting, StandardErrorEstimator& ofRays)
   : Setup(setup)
@@ -54,7 +105,7 @@ double EnergyErrors::ofSamples(const RangeShares& shares, std::uint32_t paths) c
     std::hypot(fromRays ? this->ofRays(shares, false) : 0.0, this->ofMirrors(shares));
   if (this->Lighting.cells())
   {
-    const double ofCells = this->Lighting.cells()->errorOf(shares, this->Setup);
+    const double ofCells = errorOfCells(*this->Lighting.cells(), shares, this->Setup);
     return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
   }
   return ofPaths + this->Lighting.quadrature().boundOf(shares, this->Lighting.energies());

@@ -3,7 +3,7 @@
  * @file Receiver.h
  * @brief Makes returns from the energies in range units.
  *
- * Energies are sums over paths (RangeUnits.h) plus noise (Noise.h), limited to the dynamic range. A
+ * Energies are sums over paths (RangeUnits.h) plus noise (BeamNoise.h), limited to the dynamic range. A
  * **return** is a maximal run of consecutive perceived range units. The range of a return is the
  * mean range (half the path length) of its paths, weighted with the energies that these paths put
  * into the run. A run of false alarms has no paths. In each unit of such a run the noise has a
@@ -33,7 +33,7 @@
 #include "Drops.h"
 #include "EchoSettings.h"
 #include "LeafGaps.h"
-#include "Noise.h"
+#include "BeamNoise.h"
 #include "PhotonReceiver.h"
 #include "RangeErrors.h"
 #include "RangeUnits.h"

@@ -11,7 +11,7 @@ ViewFinder::ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, Beam
   , Polygons(scene,
       BeamShape(setup.sensor).width().isRound ? mostTrianglesIntegrated(setup.settings) : 0,
       MostTrianglesOfCells)
-  , Quadrature(setup)
+  , Rule(setup)
   , Cells(setup, scene)
 {
 }
@@ -28,7 +28,7 @@ BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
     return EmptyView{};
   }
   if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) &&
-    this->Quadrature.fits(*polygons))
+    this->Rule.fits(*polygons))
   {
     return BeamView(std::move(polygons));
   }

@@ -21,7 +21,7 @@
 
 #include "BeamCells.h"
 #include "BeamTrace.h"
-#include "PolygonQuadrature.h"
+#include "PolygonRule.h"
 #include "ScanSetup.h"
 
 #include <cstdint>
@@ -50,7 +50,7 @@ private:
   const ScanSetup& Setup;
   BeamTracer& Tracer;
   PolygonFinder Polygons;
-  PolygonQuadrature Quadrature;
+  PolygonRule Rule;
   BeamCells Cells;
   std::vector<std::uint32_t> Numbers; ///< triangles that may enter a crowded beam
 };

@@ -11,6 +11,7 @@
 #ifndef avianlidar_MoverReport_h
 #define avianlidar_MoverReport_h
 
+#include "BeamReport.h"
 #include "Mover.h"
 #include "ScanBeams.h"
 #include "ScanSetup.h"

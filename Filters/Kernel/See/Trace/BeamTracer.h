@@ -20,6 +20,7 @@
 
 #include "BeamFrame.h"
 #include "BeamRays.h"
+#include "EchoSettings.h"
 #include "SceneTriangles.h"
 #include "TriangleTest.h"
 
@@ -52,16 +53,6 @@ struct TraceCounters
 /// Add costs of one beam to a sum of costs of this beam. The sum takes the larger value of
 /// `candidates`.
 void addCounters(const TraceCounters& more, TraceCounters& sum);
-
-/// Way in which beams descend the tree. All modes give bitwise identical hits.
-enum class TraceMode
-{
-  SingleRays = 0, ///< one descent per ray
-  Automatic = 1,  ///< groups of neighbouring beams, then packets of their rays
-  /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
-  /// its cone may meet, S_potential. All rays of the beam are then tested against S_potential.
-  Beams = 2
-};
 
 /// Beams that are traced together.
 struct BeamBlock

@@ -11,6 +11,19 @@
 
 namespace avianlidar
 {
+std::int64_t unitsInsideGate(double samplingInterval, double rangeGate)
+{
+  // checkSensor() refuses more than MaximumGateUnits.
+  const double units = std::ceil(2.0 * rangeGate / (SpeedOfLight * samplingInterval));
+  return static_cast<std::int64_t>(std::clamp(units, 1.0, MaximumGateUnits));
+}
+
+std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange)
+{
+  return static_cast<std::int64_t>(
+    std::min(MaximumGateUnits, std::floor(2.0 * minimumRange / (SpeedOfLight * samplingInterval))));
+}
+
 const std::vector<SensorField>& sensorFields()
 {
   static const std::vector<SensorField> all = {

@@ -25,7 +25,6 @@
 #include "BeamShape.h"
 #include "BeamTriangles.h"
 #include "CellLanes.h"
-#include "RangeUnits.h"
 #include "ScanSetup.h"
 #include "VisiblePolygons.h"
 
@@ -60,9 +59,6 @@ struct CellSamples
       sizeof(double);
   }
 
-  /// Standard error, J, of the energy in some range units. @param shares shares of the samples in
-  /// these units, before any shares of paths with two reflections
-  double errorOf(const RangeShares& shares, const ScanSetup& setup) const;
 };
 
 /// The strips of a surface. Range units are divided into equal parts, so that strips are short

@@ -16,6 +16,7 @@
 #include "Vector.h"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -148,6 +149,13 @@ struct Sensor
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }
 };
+
+/// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.
+std::int64_t unitsInsideGate(double samplingInterval, double rangeGate);
+
+/// The unit in which the gate begins, floor(2 minimum/(c tau_s)). Units before this unit receive
+/// nothing.
+std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange);
 
 /// Beams whose input must contain a value of the sensor. For other beams the default replaces an
 /// absent value.

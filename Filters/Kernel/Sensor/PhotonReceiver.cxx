@@ -2,8 +2,7 @@
 #include "PhotonReceiver.h"
 
 #include "Figures.h"
-#include "Noise.h"
-#include "RangeUnits.h"
+#include "Distributions.h"
 #include "ValueError.h"
 
 #include <boost/math/special_functions/erf.hpp>

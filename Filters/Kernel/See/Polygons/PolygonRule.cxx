@@ -619,6 +619,29 @@ void PolygonRule::place(const PlaneSurface& surface, const PlaneRing& ring, Poly
   }
 }
 
+PolygonRule::Extent PolygonRule::extentOf(const PlaneSurface& surface, const PlaneRing& ring)
+{
+  const PlaneLine& w = surface.inverse;
+  Extent extent{ w.at(ring.corners[0]), w.at(ring.corners[0]) };
+  for (int i = 1; i < ring.size; ++i)
+  {
+    extent.leastInverse = std::min(extent.leastInverse, w.at(ring.corners[i]));
+    extent.mostInverse = std::max(extent.mostInverse, w.at(ring.corners[i]));
+  }
+  const double nearest = 1.0 / surface.height;
+  const double farthest = std::min(nearest, surface.leastInverse);
+  return { std::clamp(extent.leastInverse, farthest, nearest),
+    std::clamp(extent.mostInverse, farthest, nearest) };
+}
+
+bool PolygonRule::fits(const VisiblePolygons& seen, double most) const
+{
+  double nodes = 0.0;
+  seen.forEach([&](const PlaneSurface& surface, const PlaneRing& ring)
+    { nodes += this->count(surface.height, extentOf(surface, ring)); });
+  return nodes <= most;
+}
+
 double PolygonRule::count(double height, const Extent& extent) const
 {
   const double nearest = 1.0 / extent.mostInverse;

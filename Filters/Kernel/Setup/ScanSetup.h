@@ -27,7 +27,7 @@
 #include "CollisionTree.h"
 #include "EchoSettings.h"
 #include "Mover.h"
-#include "Noise.h"
+#include "NoisePlan.h"
 #include "Sensor.h"
 #include "SharedVector.h"
 

@@ -206,52 +206,6 @@ double sumOf(const double* values)
 }
 }
 
-double CellSamples::errorOf(const RangeShares& shares, const ScanSetup& setup) const
-{
-  const auto sampleOf = [&](std::size_t s) { return shares.contribution[s]; };
-  const auto perWeight = [&](std::size_t s)
-  { return shares.energies[s] / this->samples.weight[sampleOf(s)]; };
-  // Weight that moves over the diagonal counts if the material differs there.
-  const auto halvesDiffer = [&](std::size_t k)
-  {
-    return this->others[k] != NoTriangle && !this->halves.empty() &&
-      setup.material(this->others[k]) != setup.material(this->samples.surfaces[k].triangle);
-  };
-  auto surface = this->samples.surfaces.begin();
-  bool differ = !this->others.empty() && halvesDiffer(0);
-  std::size_t first = 0; // first sample of the surface
-  double sum = 0.0;
-  const auto addStep = [&](std::size_t sample, double step)
-  { sum += step * step * (this->moves[sample] + this->moves[sample + 1]); };
-  for (std::size_t s = 0; s < shares.count; ++s)
-  {
-    const std::size_t sample = sampleOf(s);
-    if (sample >= this->samples.size())
-    {
-      break;
-    }
-    while (surface->end <= sample)
-    {
-      first = surface->end;
-      ++surface;
-      differ = halvesDiffer(surface - this->samples.surfaces.begin());
-    }
-    const double energy = perWeight(s);
-    // The previous sample has no share in these units.
-    if (sample > first && (s == 0 || sampleOf(s - 1) + 1 != sample))
-    {
-      addStep(sample - 1, energy);
-    }
-    sum += energy * energy * (this->variance[sample] + (differ ? this->halves[sample] : 0.0));
-    if (sample + 1 < surface->end)
-    {
-      const bool isNext = s + 1 < shares.count && sampleOf(s + 1) == sample + 1;
-      addStep(sample, energy - (isNext ? perWeight(s + 1) : 0.0));
-    }
-  }
-  return std::sqrt(sum);
-}
-
 RangeStrips::RangeStrips(const ScanSetup& setup)
   : Setup(setup)
   , UnitLength(setup.sensor.rangeUnitLength())

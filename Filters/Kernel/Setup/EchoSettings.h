@@ -13,7 +13,6 @@
 #define avianlidar_EchoSettings_h
 
 #include "BeamRays.h"
-#include "BeamTracer.h"
 #include "Reflectance.h"
 #include "Sensor.h"
 
@@ -93,6 +92,16 @@ enum class LightEnergyThreshold
   ShareOfLimit = 0, ///< lightEnergyFraction Qlow / (number of paths of the beam)
   Limit = 1,        ///< Qlow, only for paths with two reflections (paper, Sec. 3.4)
   LimitPerRay = 2   ///< Qlow / raysPerBeam, only for paths with two reflections
+};
+
+/// Way in which beams descend the tree. All modes give bitwise identical hits.
+enum class TraceMode
+{
+  SingleRays = 0, ///< one descent per ray
+  Automatic = 1,  ///< groups of neighbouring beams, then packets of their rays
+  /// The paper's batch collision detection (Sec. 3.2): every beam descends to the triangles that
+  /// its cone may meet, S_potential. All rays of the beam are then tested against S_potential.
+  Beams = 2
 };
 
 struct EchoSettings

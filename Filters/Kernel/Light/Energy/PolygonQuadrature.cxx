@@ -13,35 +13,12 @@ namespace
 {
 /// Factor that covers the rounding of bounds.
 constexpr double Surely = 1.0 + 1e-5;
-
-PolygonRule::Extent extentOf(const PlaneSurface& surface, const PlaneRing& ring)
-{
-  const PlaneLine& w = surface.inverse;
-  PolygonRule::Extent extent{ w.at(ring.corners[0]), w.at(ring.corners[0]) };
-  for (int i = 1; i < ring.size; ++i)
-  {
-    extent.leastInverse = std::min(extent.leastInverse, w.at(ring.corners[i]));
-    extent.mostInverse = std::max(extent.mostInverse, w.at(ring.corners[i]));
-  }
-  const double nearest = 1.0 / surface.height;
-  const double farthest = std::min(nearest, surface.leastInverse);
-  return { std::clamp(extent.leastInverse, farthest, nearest),
-    std::clamp(extent.mostInverse, farthest, nearest) };
-}
 }
 
 PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup)
   : Setup(setup)
   , Rule(setup)
 {
-}
-
-bool PolygonQuadrature::fits(const VisiblePolygons& seen, double most) const
-{
-  double nodes = 0.0;
-  seen.forEach([&](const PlaneSurface& surface, const PlaneRing& ring)
-    { nodes += this->Rule.count(surface.height, extentOf(surface, ring)); });
-  return nodes <= most;
 }
 
 void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& seen)
@@ -94,7 +71,7 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
   const Sensor& sensor = this->Setup.sensor;
   const PlaneLine& w = surface.inverse;
   const double slope = w.slope();
-  Bounds bounds{ extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
+  Bounds bounds{ PolygonRule::extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
   double least = 1.0; // lower end of the extent across the gradient, times the slope
   double most = -1.0;
   for (int i = 0; i < ring.size; ++i)

@@ -50,6 +50,9 @@ constexpr double MostCurved = 0.1;
 /// part.
 constexpr double MostFaintStretch = 1e-2;
 
+/// Largest estimated number of samples of a beam. Specular lobes add samples to the estimate.
+constexpr double MostNodes = 2e4;
+
 /// Samples of a beam, and bounds of their errors.
 struct PolygonNodes
 {
@@ -79,6 +82,13 @@ public:
   {
     double leastInverse, mostInverse; ///< bounds, 1/m, at most 1/height
   };
+
+  /// Bounds of the part of a surface within a ring.
+  static Extent extentOf(const PlaneSurface& surface, const PlaneRing& ring);
+
+  /// False if a beam that sees these polygons cannot be integrated. @param most largest number of
+  /// samples
+  bool fits(const VisiblePolygons& seen, double most = MostNodes) const;
 
   /// Begin a polygon of a surface. @param triangle triangle of the surface, which gives the
   /// material

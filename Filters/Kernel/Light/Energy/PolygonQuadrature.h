@@ -36,9 +36,6 @@ namespace avianlidar
 /// Number of range units up to which a polygon is never dropped.
 constexpr double FewUnits = 16.0;
 
-/// Largest estimated number of samples of a beam. Specular lobes add samples to the estimate.
-constexpr double MostNodes = 2e4;
-
 /// Relative error of a unit's energy where an aperture gathers all light that a surface returns.
 constexpr double ErrorOfGathered = 1e-2;
 
@@ -48,10 +45,6 @@ class PolygonQuadrature
 {
 public:
   explicit PolygonQuadrature(const ScanSetup& setup);
-
-  /// False if a beam that sees these polygons cannot be integrated. @param most largest number of
-  /// samples
-  bool fits(const VisiblePolygons& seen, double most = MostNodes) const;
 
   /// Begin a beam. The caller must keep the polygons until the next call of begin().
   void begin(const BeamFrame& frame, const VisiblePolygons& seen);

@@ -164,13 +164,6 @@ private:
   std::vector<std::uint32_t> ByFirst; ///< contributions sorted by first unit, after some requests
   std::vector<std::uint32_t> Near;    ///< contributions near the requested units, by number
 };
-
-/// Number of range units whose beginning lies inside the gate: ceil(2 gate/(c tau_s)), at least 1.
-std::int64_t unitsInsideGate(double samplingInterval, double rangeGate);
-
-/// The unit in which the gate begins, floor(2 minimum/(c tau_s)). Units before this unit receive
-/// nothing.
-std::int64_t firstUnitInsideGate(double samplingInterval, double minimumRange);
 }
 
 #endif
