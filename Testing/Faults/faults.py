@@ -31,7 +31,7 @@ FAULTS = [Fault(*fault) for fault in (
      "Filters/Kernel/Sensor/PhotonReceiver.cxx",
      "sensor.solidAngle() * sensor.receiverAperture * sensor.samplingInterval", "sensor.solidAngle() * sensor.samplingInterval"),
     ("pulse_border", "an off-by-one at a border", "Kernel-Test(RangeUnits|Receiver|PolygonUnits)$|Python-TestBeamView$",
-     "Filters/Kernel/Light/Energy/RangeUnits.cxx", "const bool meets = (pulseFirst < last) & (pulseLast >= first)",
+     "Filters/Kernel/Light/Energy/RangeShares.cxx", "const bool meets = (pulseFirst < last) & (pulseLast >= first)",
      "const bool meets = (pulseFirst < last) & (pulseLast > first)"),
     ("nearest_axis", "a swapped index", "Python-TestCloudComparison$",
      "Filters/vtkAvianLidarCloudComparison.cxx", "Place(p[0], p[1], p[2])", "Place(p[0], p[2], p[1])"),

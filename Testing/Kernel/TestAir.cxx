@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Air that weakens light (paper, Eq. 9) and sends it back: a table calculated by hand, closed
 // forms, and scans of air against counts by std::poisson_distribution.
-#include "BeamAir.h"
+#include "BeamReceiver.h"
 #include "Drops.h"
+#include "FollowedAir.h"
 #include "PhotonReceiver.h"
-#include "Receiver.h"
 #include "Statistics.h"
 
 #include <gtest/gtest.h>
@@ -72,34 +72,35 @@ double tail(double z)
 }
 
 /// Air of one medium that fills the scene.
-BeamAir filledBy(const Sensor& sensor, const Medium& medium)
+FollowedAir filledBy(const Sensor& sensor, const Medium& medium)
 {
   return { sensor, { 0.0, { { medium, {} } } } };
 }
 
 /// Variance by the drops of a unit, J^2.
-double varianceOf(BeamAir& air, std::int64_t unit)
+double varianceOf(FollowedAir& air, std::int64_t unit)
 {
   double sum = 0.0;
-  for (const BeamAir::Share& share : air.sharesOf(unit))
+  for (const AirLight::Share& share : air.sharesOf(unit))
   {
-    sum += share.mean * share.mean * air.mediumAt(share.medium).squareOfDrops / share.drops;
+    sum += share.mean * share.mean * air.scan.mediumAt(share.medium).squareOfDrops / share.drops;
   }
   return sum;
 }
 
 /// Points of so many beams through nothing but air, by unit.
 std::vector<double> pointsOf(
-  const Sensor& sensor, BeamAir air, int beams, std::vector<double>* runs = nullptr)
+  const Sensor& sensor, const ScanAir& air, int beams, std::vector<double>* runs = nullptr)
 {
-  BeamReceiver receiver(sensor, planNoise(sensor, true), 7, ReturnMode::RangeUnits, 0, {}, &air);
+  BeamReceiver receiver(sensor, planNoise(sensor, true), 7, ReturnMode::RangeUnits, air);
   std::vector<double> counts;
   for (int beam = 0; beam < beams; ++beam)
   {
-    receiver.receive(static_cast<std::uint64_t>(beam), {}, sensor.backgroundRadiance);
-    for (const Return& one : receiver.returns())
+    const Received received = receiver.receive(static_cast<std::uint64_t>(beam),
+      { {}, {}, sensor.backgroundRadiance }, BeamAir(air), DrawnLeaves());
+    for (const Return& one : received.returns)
     {
-      const auto unit = static_cast<std::size_t>(receiver.units()[one.strongestUnit].index);
+      const auto unit = static_cast<std::size_t>(received.units[one.strongestUnit].index);
       counts.resize(std::max(counts.size(), unit + 1), 0.0);
       counts[unit] += 1.0;
       if (runs)
@@ -319,7 +320,7 @@ TEST(Air, TheTableHolds)
     const Sensor sensor = sensorOf(row.of);
     const PhotonReceiver receiver(sensor);
     const Medium air = airOf(row.visibility, row.ratio);
-    BeamAir echo = filledBy(sensor, air);
+    FollowedAir echo = filledBy(sensor, air);
     const double length = sensor.rangeUnitLength();
     for (int k = 0; k < 4; ++k)
     {
@@ -354,7 +355,7 @@ TEST(Air, UnitsAreIntegralsOfTheLaw)
     for (const double extinction : { 1e-5, 4e-3, 0.3, 20.0 })
     {
       const Medium air{ extinction, 30.0, 0.0 };
-      BeamAir echo = filledBy(sensor, air);
+      FollowedAir echo = filledBy(sensor, air);
       for (const std::int64_t unit : { 1, 2, 10, 300 })
       {
         const double from = sensor.rangeUnitLength() * static_cast<double>(unit);
@@ -370,7 +371,7 @@ TEST(Air, UnitsAreIntegralsOfTheLaw)
   // Nothing arrives before the gate; the unit in which it begins is recorded in part.
   sensor.minimumRange = 1.7;
   const Medium air{ 1e-4, 30.0, 2.0 };
-  BeamAir gated = filledBy(sensor, air);
+  FollowedAir gated = filledBy(sensor, air);
   const double length = sensor.rangeUnitLength();
   EXPECT_EQ(gated.followed(0), 0.0);
   EXPECT_EQ(gated.followed(1), 0.0);
@@ -380,9 +381,9 @@ TEST(Air, UnitsAreIntegralsOfTheLaw)
     2.0 * sensor.solidAngle() * (std::pow(3.0 * length, 3) - std::pow(1.7, 3)) / 3.0;
   EXPECT_NEAR(
     varianceOf(gated, 2), SquareOfDrops * part * part / drops, 1e-5 * varianceOf(gated, 2));
-  EXPECT_FALSE(BeamAir(sensor, { 0.1, {} }).fillsScene());
+  EXPECT_FALSE(ScanAir(sensor, { 0.1, {} }).fillsScene());
   sensor.receiverAperture = 0.0;
-  EXPECT_FALSE(filledBy(sensor, { 0.1, 20.0, 0.0 }).fillsScene());
+  EXPECT_FALSE(filledBy(sensor, { 0.1, 20.0, 0.0 }).scan.fillsScene());
 }
 
 TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
@@ -391,17 +392,17 @@ TEST(Air, FalseAlarmsInFogAreThoseOfItsNoise)
   EXPECT_EQ(setPhotonLimits(sensor, 3000.0, 40.0, 15360.0), "");
   const PhotonReceiver receiver(sensor);
   const Medium air = airOf(1000.0, 18.8);
-  BeamAir echo = filledBy(sensor, air);
+  FollowedAir echo = filledBy(sensor, air);
   const double k = sensor.lowerEnergyLimit * receiver.electronsPerJoule / receiver.deviation(0.0);
   constexpr int beams = 3000;
   const auto units = static_cast<double>(unitsInsideGate(5e-9, sensor.rangeGate));
   // A threshold that follows leaves all units alike.
-  const std::vector<double> follows = pointsOf(sensor, echo, beams);
+  const std::vector<double> follows = pointsOf(sensor, echo.scan, beams);
   const double expected = beams * units * tail(k);
   EXPECT_NEAR(statistics::sumOf(follows), expected, 3.0 * std::sqrt(expected));
   sensor.thresholdLaw = ThresholdLaw::Fixed;
   std::vector<double> ofAir;
-  const std::vector<double> fixed = pointsOf(sensor, echo, beams, &ofAir);
+  const std::vector<double> fixed = pointsOf(sensor, echo.scan, beams, &ofAir);
   double truth = 0.0;
   double variance = 0.0;
   std::size_t last = 0; // where the air is as likely perceived as not
@@ -425,7 +426,7 @@ TEST(Air, DropsAreACompoundPoissonLaw)
   Sensor sensor = sensorOf(Search905);
   sensor.pulseWidth = 0.0;
   const Medium rain = rainOf(10.0, 20.0, {});
-  BeamAir echo = filledBy(sensor, rain);
+  FollowedAir echo = filledBy(sensor, rain);
   std::mt19937_64 random(3);
   for (const std::int64_t unit : { 2, 8, 14, 40, 200 })
   {
@@ -443,7 +444,7 @@ TEST(Air, DropsAreACompoundPoissonLaw)
     for (int beam = 0; beam < draws; ++beam)
     {
       double whole = 0.0;
-      for (const BeamAir::Share& share : echo.sharesOf(unit))
+      for (const AirLight::Share& share : echo.sharesOf(unit))
       {
         addDropsBeyondMean(1, static_cast<std::uint64_t>(beam), static_cast<std::uint64_t>(unit), 0,
           share.mean, share.drops, rain, PulseShares(), &whole);
@@ -512,7 +513,7 @@ TEST(Air, PointsOfRainAreThoseOfDropsOneByOne)
   const Sensor sensor = sensorOf(Search905);
   const PhotonReceiver receiver(sensor);
   const Medium rain = rainOf(10.0, 20.0, viewOf(sensor));
-  BeamAir echo = filledBy(sensor, rain);
+  FollowedAir echo = filledBy(sensor, rain);
   const double length = sensor.rangeUnitLength();
   const double far = 160.0; // m
   const auto units = static_cast<std::size_t>(far / length) - 2;
@@ -564,7 +565,7 @@ TEST(Air, PointsOfRainAreThoseOfDropsOneByOne)
   };
   // Nearer than 8 m the mean of the rain blinds the receiver.
   constexpr int ours = 400;
-  std::vector<double> points = pointsOf(sensor, echo, ours);
+  std::vector<double> points = pointsOf(sensor, echo.scan, ours);
   for (const auto& [from, to] :
     { std::pair(8.0, 50.0), std::pair(50.0, 100.0), std::pair(100.0, 150.0) })
   {
@@ -584,8 +585,8 @@ TEST(Air, DropsAreDrawnWithoutNoisePhotons)
   sensor.pulseWidth = 0.0;
   const Medium rain = rainOf(10.0, 20.0, viewOf(sensor));
   const std::size_t unit = 60;
-  BeamAir echo = filledBy(sensor, rain);
-  const BeamAir::Share share = echo.sharesOf(unit).front();
+  FollowedAir echo = filledBy(sensor, rain);
+  const AirLight::Share share = echo.sharesOf(unit).front();
   sensor.lowerEnergyLimit = 2.0 * share.mean / share.drops;
   std::mt19937_64 random(7);
   std::poisson_distribution<int> poisson(share.drops);
@@ -605,7 +606,7 @@ TEST(Air, DropsAreDrawnWithoutNoisePhotons)
   for (const double rate : { 0.0, 1e-9 })
   {
     sensor.noisePhotonRate = rate;
-    points.push_back(pointsOf(sensor, filledBy(sensor, rain), beams));
+    points.push_back(pointsOf(sensor, filledBy(sensor, rain).scan, beams));
     ASSERT_GT(points.back().size(), unit);
     EXPECT_NEAR(points.back()[unit], theirs, 3.0 * std::sqrt(2.0 * theirs));
   }
@@ -617,8 +618,8 @@ TEST(Air, NearAirBlinds)
   // Where the air alone is above the upper limit nothing is perceived.
   Sensor sensor = sensorOf(Search905);
   const Medium air = airOf(200.0, 18.8);
-  BeamAir echo = filledBy(sensor, air);
-  BeamReceiver receiver(sensor, planNoise(sensor, false), 7, ReturnMode::All, 0, {}, &echo);
+  FollowedAir echo = filledBy(sensor, air);
+  BeamReceiver receiver(sensor, planNoise(sensor, false), 7, ReturnMode::All, echo.scan);
   std::int64_t blind = 0;
   while (echo.followed(blind) > sensor.upperEnergyLimit)
   {
@@ -626,10 +627,15 @@ TEST(Air, NearAirBlinds)
   }
   EXPECT_GT(blind, 5);
   const double wall = 0.5 * sensor.upperEnergyLimit;
-  receiver.receive(1, { { blind - 3, wall, 1 } }, sensor.backgroundRadiance);
-  EXPECT_TRUE(receiver.returns().empty());
-  receiver.receive(1, { { blind + 20, wall, 1 } }, sensor.backgroundRadiance);
-  ASSERT_EQ(receiver.returns().size(), 1u);
-  EXPECT_NEAR(receiver.returns()[0].energyReceived, wall, 1e-12 * wall);
-  EXPECT_LE(receiver.returns()[0].energy, sensor.upperEnergyLimit - echo.followed(blind + 20));
+  const auto returnsAt = [&](std::int64_t unit)
+  {
+    const std::vector<RangeUnit> units = { { unit, wall, 1 } };
+    return receiver.receive(1, { units, {}, sensor.backgroundRadiance }, echo.along, DrawnLeaves())
+      .returns;
+  };
+  EXPECT_TRUE(returnsAt(blind - 3).empty());
+  const std::vector<Return> returns = returnsAt(blind + 20);
+  ASSERT_EQ(returns.size(), 1u);
+  EXPECT_NEAR(returns[0].energyReceived, wall, 1e-12 * wall);
+  EXPECT_LE(returns[0].energy, sensor.upperEnergyLimit - echo.followed(blind + 20));
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Media that do not fill the scene: boxes that hold everything against air that fills it, walls
 // behind and before parts of them, rain and layers.
-#include "BeamAir.h"
+#include "FollowedAir.h"
 #include "MediumTestScene.h"
-#include "Receiver.h"
 #include "ScanTestTown.h"
 #include "SecondaryTestScene.h"
 
@@ -20,10 +19,10 @@ TEST(BeamAir, ABoxThatHoldsEverythingIsAirThatFillsTheScene)
   for (Medium medium : { Medium{ 4e-3, 18.8, 0.0 }, rainOf(10.0, 20.0, {}) })
   {
     const double clear = 1e-4;
-    BeamAir echo(sensor, { clear, { { medium, {} } } });
-    BeamAir air(sensor, { clear, { { medium, boxOf(Vec3(0.0), Vec3(1e4)) } } });
-    air.begin(frame, 0.0);
-    ASSERT_TRUE(air.isLocal());
+    FollowedAir echo(sensor, { clear, { { medium, {} } } });
+    FollowedAir air(sensor, { clear, { { medium, boxOf(Vec3(0.0), Vec3(1e4)) } } });
+    air.begin(frame);
+    ASSERT_TRUE(air.along.isLocal());
     for (const std::int64_t unit : { 0, 1, 3, 20, 300, 1000 })
     {
       const double mean = air.followed(unit);
@@ -34,7 +33,7 @@ TEST(BeamAir, ABoxThatHoldsEverythingIsAirThatFillsTheScene)
       }
     }
     EXPECT_NEAR(air.transmission(500.0), std::exp(-1000.0 * medium.extinction), 1e-12);
-    EXPECT_EQ(air.returnsLight(), medium.drops > 0.0);
+    EXPECT_EQ(air.along.alone().empty(), !(medium.drops > 0.0));
   }
 }
 
@@ -53,26 +52,26 @@ TEST(BeamAir, UnitsAreLookedAtWhereMediaMayBePerceived)
   std::vector<PlacedMedium> andRain = placed;
   andRain.insert(andRain.begin(), { rainOf(10.0, 20.0, {}), {} });
   const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  BeamAir air(sensor, { 1e-4, placed });
-  air.begin(frame, 0.0);
-  EXPECT_EQ(air.nextLooked(0), unitAt(100.0));
-  EXPECT_EQ(air.nextLooked(unitAt(200.0)), unitAt(300.0));
+  FollowedAir air(sensor, { 1e-4, placed });
+  air.begin(frame);
+  EXPECT_EQ(air.light.nextLooked(0, 0), unitAt(100.0));
+  EXPECT_EQ(air.light.nextLooked(unitAt(200.0), 0), unitAt(300.0));
   for (std::int64_t unit = 0; unit < unitAt(1100.0); ++unit)
   {
     double mean = 0.0;
-    for (const BeamAir::Share& share : air.sharesOf(unit))
+    for (const AirLight::Share& share : air.sharesOf(unit))
     {
       mean += share.mean;
     }
-    EXPECT_TRUE(air.nextLooked(unit) == unit || mean < 2e-6 * sensor.lowerEnergyLimit) << unit;
+    EXPECT_TRUE(air.light.nextLooked(unit, 0) == unit || mean < 2e-6 * sensor.lowerEnergyLimit)
+      << unit;
   }
-  EXPECT_EQ(air.nextLooked(unitAt(600.0)), most);
+  EXPECT_EQ(air.light.nextLooked(unitAt(600.0), 0), most);
   // Air that fills the scene is looked at as far as the receiver says.
-  BeamAir inRain(sensor, { 0.0, andRain });
-  inRain.lookAt(20);
-  inRain.begin(frame, 0.0);
-  EXPECT_EQ(inRain.nextLooked(0), 0);
-  EXPECT_EQ(inRain.nextLooked(20), unitAt(100.0));
+  FollowedAir inRain(sensor, { 0.0, andRain });
+  inRain.begin(frame);
+  EXPECT_EQ(inRain.light.nextLooked(0, 20), 0);
+  EXPECT_EQ(inRain.light.nextLooked(20, 20), unitAt(100.0));
 }
 
 TEST(BeamAir, AVolumeThatABeamPassesReturnsNothing)
@@ -84,21 +83,21 @@ TEST(BeamAir, AVolumeThatABeamPassesReturnsNothing)
   std::vector<PlacedMedium> andBox = rain;
   andBox.push_back({ { 0.15, 11.8, 30.0 }, boxOf(Vec3(100.0, 50.0, 0.0), Vec3(1.0, 40.0, 60.0)) });
   ASSERT_TRUE(mayMeet(andBox[1].volume, frame, sensor.rangeGate, 0.0));
-  BeamAir alone(sensor, { 0.0, rain });
-  alone.begin(frame, 0.0);
-  BeamAir air(sensor, { 0.0, andBox });
+  FollowedAir alone(sensor, { 0.0, rain });
+  alone.begin(frame);
+  FollowedAir air(sensor, { 0.0, andBox });
   const auto expectRain = [&]()
   {
-    EXPECT_FALSE(air.isLocal());
+    EXPECT_FALSE(air.along.isLocal());
     for (const std::int64_t unit : { 3, 20, 70, 300 })
     {
       ASSERT_EQ(air.sharesOf(unit).size(), 1u) << unit;
       EXPECT_EQ(air.sharesOf(unit)[0].mean, alone.sharesOf(unit)[0].mean) << unit;
     }
   };
-  air.begin(frame, 0.0);
+  air.begin(frame);
   expectRain();
-  air.beginRay(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 0.0);
+  air.beginRay(Vec3(1.0, 0.0, 0.0));
   expectRain();
 }
 
@@ -111,11 +110,11 @@ TEST(BeamAir, AVolumeAboutALidarWithoutNearViewIsLookedAtBeyondIt)
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth);
   Medium smoke{ 4e-3, 18.8, 0.0 };
   smoke.isFollowed = false;
-  BeamAir air(sensor, { 0.0, { { smoke, boxOf(Vec3(0.0), Vec3(200.0)) } } });
-  air.begin(frame, 0.0);
+  FollowedAir air(sensor, { 0.0, { { smoke, boxOf(Vec3(0.0), Vec3(200.0)) } } });
+  air.begin(frame);
   for (const std::int64_t unit : { 0, 1, 2, 20 })
   {
-    EXPECT_EQ(air.nextLooked(unit), unit);
+    EXPECT_EQ(air.light.nextLooked(unit, 0), unit);
     air.sharesOf(unit);
   }
 }
@@ -125,7 +124,7 @@ TEST(BeamAir, WhatSurfacesMeetTheAirDoesNotReturn)
   const Sensor sensor = search905();
   const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth);
   const Medium fog{ 4e-3, 18.8, 0.0 };
-  BeamAir echo(sensor, { 0.0, { { fog, {} } } });
+  FollowedAir echo(sensor, { 0.0, { { fog, {} } } });
   for (const bool isLocal : { false, true })
   {
     Air all{ 0.0, { { fog, {} } } };
@@ -133,9 +132,9 @@ TEST(BeamAir, WhatSurfacesMeetTheAirDoesNotReturn)
     {
       all.media.push_back({ { 0.0, 1.0, 0.0 }, boxOf(Vec3(0.0), Vec3(9.0)) });
     }
-    BeamAir air(sensor, all);
-    air.begin(frame, 0.0);
-    EXPECT_EQ(air.isLocal(), isLocal);
+    FollowedAir air(sensor, all);
+    air.begin(frame);
+    EXPECT_EQ(air.along.isLocal(), isLocal);
     air.take({ { 100.0, 0.25, 0 }, { 60.0, 0.25, 0 }, { 100.2, 0.5, 0 } });
     for (const auto& [range, open] : { std::pair(30.0, 1.0), std::pair(80.0, 0.75),
            std::pair(120.0, 0.0), std::pair(3000.0, 0.0), std::pair(30.0, 1.0) })
@@ -273,9 +272,9 @@ TEST(BeamAir, FarAndDenseMediaReturnLight)
     for (const double extinction : { 0.5, 1.5, 20.0 })
     {
       Medium leaves{ extinction, 10.5, 0.0, 6.0, 1.0, false, 9, true };
-      BeamAir air(sensor,
+      FollowedAir air(sensor,
         { 0.0, { { leaves, boxOf(Vec3(from + 50.0, 0.0, 0.0), Vec3(50.0, 400.0, 400.0)) } } });
-      air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth), 0.0);
+      air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth));
       const auto unit = static_cast<std::int64_t>((from + 1.0) / sensor.rangeUnitLength());
       const double begin = sensor.rangeUnitLength() * static_cast<double>(unit);
       double truth = 0.0;
@@ -341,8 +340,8 @@ TEST(BeamAir, BordersAnywhereInABeam)
   for (const bool isLayer : { false, true })
   {
     const Medium opaque{ 1e9, 18.8, 0.0 };
-    BeamAir low(sensor, { 0.0, { { opaque, isLayer ? below : box } } });
-    BeamAir high(sensor, { 0.0, { { opaque, isLayer ? above : box } } });
+    FollowedAir low(sensor, { 0.0, { { opaque, isLayer ? below : box } } });
+    FollowedAir high(sensor, { 0.0, { { opaque, isLayer ? above : box } } });
     double worst = 0.0;
     double squares = 0.0;
     for (int k = 0; k < angles * offsets; ++k)
@@ -360,8 +359,8 @@ TEST(BeamAir, BordersAnywhereInABeam)
       }
       const double left = isLayer && offset < 0.0 ? -offset : offset; // the layer is below the beam
       const double truth = 1.0 - (std::acos(left) - left * std::sqrt(1.0 - left * left)) / Pi;
-      BeamAir& air = offset < 0.0 ? low : high;
-      air.begin(frame, 0.0);
+      FollowedAir& air = offset < 0.0 ? low : high;
+      air.begin(frame);
       const double error = air.transmission(range + 0.1) - truth;
       worst = std::max(worst, std::fabs(error));
       squares += error * error / (angles * offsets);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Crowns of leaves against leaves that an independent program places one by one.
-#include "BeamAir.h"
+#include "FollowedAir.h"
 #include "MediumTestScene.h"
 #include "Sanitized.h"
 #include "Statistics.h"
@@ -104,20 +104,20 @@ TEST(BeamCrowns, TheWayBackMeetsOtherLeaves)
   for (const CrownCase& of : CrownCases)
   {
     const Sensor sensor = lidarOf(of);
-    BeamAir air(sensor, { 0.0, { { leavesOf(of.density), crownOf(of) } } });
-    air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth), 0.0);
+    FollowedAir air(sensor, { 0.0, { { leavesOf(of.density), crownOf(of) } } });
+    air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth));
     EXPECT_NEAR(air.transmission(of.wall), of.behind[0], 3.0 * of.behind[1]) << of.wall;
     double leaves = 0.0;
     for (std::int64_t unit = 0; unit < 100; ++unit)
     {
-      for (const BeamAir::Share& share : air.sharesOf(unit))
+      for (const AirLight::Share& share : air.sharesOf(unit))
       {
         leaves += share.mean * 10.5 / (sensor.pulseEnergy * sensor.receiverAperture);
       }
     }
     EXPECT_NEAR(leaves, of.leaves[0], 3.0 * of.leaves[1]) << of.wall;
     // Along one direction, as coverage sees it.
-    air.beginRay(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 0.0);
+    air.beginRay(Vec3(1.0, 0.0, 0.0));
     EXPECT_NEAR(air.transmission(of.wall), of.behind[0], 3.0 * of.behind[1]) << of.wall;
   }
 }

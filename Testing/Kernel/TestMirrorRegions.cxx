@@ -179,7 +179,7 @@ TEST(MirrorRegions, BeamsOfManySurfacesFollowRays)
     setup.settings.numberOfConnections = connections;
     finishSetup(setup);
     ASSERT_TRUE(simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result));
-    ASSERT_GT(cache.beams[0].cells()->surfaces->polygons.size(), 1024u);
+    ASSERT_GT(cache.beams[0].view.cells()->surfaces->polygons.size(), 1024u);
     EXPECT_TRUE(sameEchoes(result, runScan(setup, oneBeam()))) << connections;
   }
 }

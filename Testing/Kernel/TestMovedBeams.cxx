@@ -536,7 +536,7 @@ TEST(MovedBeams, NothingStaticIsTracedTwice)
   {
     if (std::find(touchedNow.begin(), touchedNow.end(), beam) == touchedNow.end())
     {
-      const BeamTrace& trace = cache.beams[beam];
+      const KeptBeam& trace = cache.beams[beam];
       EXPECT_TRUE(trace.lit && !trace.lit->returns.empty()) << "beam " << beam;
       ++kept;
     }

@@ -62,7 +62,7 @@ TEST(NoisePlan, PaperTableTwoIsProvenNegligible)
   EXPECT_LT(plan.bound, 1.1e-12 * sensor.lowerEnergyLimit);
   EXPECT_EQ(checkNoise(plan, 1u << 30), "");
   BeamNoise noise;
-  noise.begin(plan, 0, 0);
+  noise.begin(plan, { 0, 0 });
   EXPECT_TRUE(noise.alarms().empty());
   EXPECT_EQ(noise.energy(100), 0.0);
 }
@@ -114,7 +114,7 @@ TEST(NoiseBeam, EveryUnitIsPoissonAndAlarmsAreItsTail)
     BeamNoise noise;
     for (std::uint64_t beam = 0; beam < 100; ++beam)
     {
-      noise.begin(plan, 12, beam);
+      noise.begin(plan, { 12, static_cast<std::uint64_t>(beam) });
       for (std::int64_t unit = 0; unit < plan.gateUnits; ++unit)
       {
         const double energy = noise.energy(unit);
@@ -145,7 +145,7 @@ TEST(NoiseBeam, RareAlarmsComeAtTheirRate)
   constexpr std::uint64_t beams = 1000000;
   for (std::uint64_t beam = 0; beam < beams; ++beam)
   {
-    noise.begin(plan, 0, beam);
+    noise.begin(plan, { 0, static_cast<std::uint64_t>(beam) });
     for (const std::int64_t unit : noise.alarms())
     {
       alarms += 1.0;
@@ -163,12 +163,12 @@ TEST(NoiseBeam, AlmostEveryUnitAlarms)
 {
   const NoisePlan plan = planNoise(photonCounter(1e4, 1.0), true);
   BeamNoise noise;
-  noise.begin(plan, 0, 0);
+  noise.begin(plan, { 0, 0 });
   EXPECT_EQ(noise.alarms().size(), static_cast<std::size_t>(plan.gateUnits));
   EXPECT_TRUE(std::is_sorted(noise.alarms().begin(), noise.alarms().end()));
   Sensor gated = photonCounter(1e4, 1.0);
   gated.minimumRange = 30.0;
-  noise.begin(planNoise(gated, true), 0, 0);
+  noise.begin(planNoise(gated, true), { 0, 0 });
   EXPECT_EQ(noise.alarms().front(), 200); // units of 0.1499 m
   EXPECT_EQ(noise.energy(199), 0.0);
   EXPECT_GT(noise.energy(200), 0.0);

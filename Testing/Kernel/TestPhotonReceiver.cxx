@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The photon receiver: a table calculated by hand, probabilities against counted scans, and what
 // free space does to walls and small targets.
+#include "BeamReceiver.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "PhotonReceiver.h"
 #include "RangeUnits.h"
-#include "Receiver.h"
 #include "Statistics.h"
 
 #include <gtest/gtest.h>
@@ -83,7 +83,8 @@ int countTargets(const Sensor& sensor, double electrons, int scans)
 {
   const PhotonReceiver receiver(sensor);
   RangeUnitAccumulator units(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate);
-  BeamReceiver beam(sensor, planNoise(sensor, true), 1, ReturnMode::RangeUnits);
+  const ScanAir clear(sensor, {});
+  BeamReceiver beam(sensor, planNoise(sensor, true), 1, ReturnMode::RangeUnits, clear);
   const double length = sensor.rangeUnitLength();
   const double target = 700.0 * length;
   geometrytest::Numbers random(3);
@@ -94,9 +95,10 @@ int countTargets(const Sensor& sensor, double electrons, int scans)
     units.add(
       { 2.0 * (target + random(0.0, 1.0) * length), electrons / receiver.electronsPerJoule });
     units.accumulate();
-    beam.receive(scan, units.units(), sensor.backgroundRadiance);
+    const Received received = beam.receive(
+      scan, { units.units(), {}, sensor.backgroundRadiance }, BeamAir(clear), DrawnLeaves());
     bool perceived = false;
-    for (const Return& found : beam.returns())
+    for (const Return& found : received.returns)
     {
       perceived = perceived || std::fabs(found.range - target) < 2.0 * length;
     }
@@ -180,7 +182,7 @@ TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
     statistics::Moments received;
     for (int scan = 0; scan < Scans; ++scan)
     {
-      noise.begin(plan, 1, scan);
+      noise.begin(plan, { 1, static_cast<std::uint64_t>(scan) });
       received.add((light + noise.energy(700, light)) * receiver.electronsPerJoule);
     }
     const double expected = 3.0 * (electrons + 3525.22) + 60.0 * 60.0;
@@ -201,7 +203,7 @@ TEST(PhotonReceiver, FaintLightIsPerceivedWithRareDeviatesAlone)
   int perceived = 0;
   for (std::uint64_t beam = 0; beam < 400; ++beam)
   {
-    noise.begin(plan, 3, beam);
+    noise.begin(plan, { 3, static_cast<std::uint64_t>(beam) });
     for (std::int64_t unit = 0; unit < 1000; ++unit)
     {
       const double light = limit * static_cast<double>(unit % 100) / 80.0;
@@ -241,7 +243,7 @@ TEST(PhotonReceiver, RaisesAsManyFalseAlarmsAsAllowed)
   {
     for (int beam = 0; beam < beams; ++beam)
     {
-      noise.begin(plan, 5, beam, scan);
+      noise.begin(plan, { 5, static_cast<std::uint64_t>(beam), scan });
       for (const std::int64_t unit : noise.alarms())
       {
         ++alarms;

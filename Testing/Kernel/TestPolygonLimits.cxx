@@ -45,8 +45,11 @@ Nodes nodesOf(const ScanSetup& setup)
   {
     return { false, 0 };
   }
-  quadrature.begin(frame, *found);
-  return { true, quadrature.place().samples.size() };
+  PolygonBounds bounds;
+  PolygonNodes nodes;
+  quadrature.bound(*found, bounds);
+  quadrature.place(frame, *found, bounds, nodes);
+  return { true, nodes.samples.size() };
 }
 
 /// Ground below the lidar, up to a distance.

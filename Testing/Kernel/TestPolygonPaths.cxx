@@ -153,7 +153,7 @@ TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
       TraceCache cache;
       ScanResult result;
       simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result);
-      ASSERT_EQ(cache.beams[0].direct(), ways[way].direct);
+      ASSERT_EQ(cache.beams[0].view.direct(), ways[way].direct);
       energies[way][0].add(receivedFrom(result));
       energies[way][1].add(secondaryOf(result));
     }

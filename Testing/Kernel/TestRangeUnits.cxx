@@ -2,7 +2,7 @@
 // Range units: pulse overlap, sums unit by unit, shares of the paths, memory, and the gate.
 #include "Memory.h"
 #include "Random.h"
-#include "RangeUnits.h"
+#include "RangeShares.h"
 #include "Sensor.h"
 
 #include <gtest/gtest.h>
@@ -208,10 +208,12 @@ TEST(RangeShares, AddUpToTheirUnits)
       accumulator.add(c);
     }
     accumulator.accumulate();
+    ShareFinder finder;
+    finder.begin(accumulator);
     ASSERT_GT(accumulator.units().size(), 20u);
     for (const RangeUnit& unit : accumulator.units())
     {
-      const RangeShares shares = accumulator.sharesOf(unit.index, unit.index + 1);
+      const RangeShares shares = finder.sharesOf(unit.index, unit.index + 1);
       EXPECT_EQ(shares.count, unit.paths);
       double sum = 0.0;
       double moment = 0.0;
@@ -236,7 +238,7 @@ TEST(RangeShares, AddUpToTheirUnits)
     }
     // All units but the first three, at once.
     const std::int64_t third = accumulator.units()[3].index;
-    const RangeShares rest = accumulator.sharesOf(third, accumulator.units().back().index + 1);
+    const RangeShares rest = finder.sharesOf(third, accumulator.units().back().index + 1);
     double expected = 0.0;
     for (std::size_t u = 3; u < accumulator.units().size(); ++u)
     {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Receiver: dynamic range, returns and their ranges, return modes, false alarms.
 #include "BeamRays.h"
+#include "BeamReceiver.h"
 #include "ParallelLoop.h"
 #include "PhotonReceiver.h"
-#include "Receiver.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,8 @@ class Bench
 public:
   Bench(const Sensor& sensor, ReturnMode mode)
     : Accumulator(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate)
-    , Receiver(sensor, planNoise(sensor, true), 0, mode)
+    , Clear(sensor, {})
+    , Receiver(sensor, planNoise(sensor, true), 0, mode, this->Clear)
   {
   }
   const std::vector<Return>& operator()(const std::vector<Pulse>& echoes, std::uint64_t beam = 0)
@@ -50,19 +51,33 @@ public:
       this->Accumulator.add({ 2.0 * echo.range, echo.energy });
     }
     this->Accumulator.accumulate();
-    this->Receiver.receive(beam, this->Accumulator.units(), Sensor().backgroundRadiance);
-    this->Returns = this->Receiver.returns();
-    for (Return& ret : this->Returns)
+    this->Got =
+      this->Receiver.receive(beam, { this->Accumulator.units(), {}, Sensor().backgroundRadiance },
+        BeamAir(this->Clear), DrawnLeaves());
+    ShareFinder shares;
+    shares.begin(this->Accumulator);
+    for (Return& ret : this->Got.returns)
     {
-      ret.range = this->Receiver.rangeOf(ret, this->Accumulator);
+      ret.range = this->Receiver.rangeOf(this->Got, ret,
+        shares.sharesOf(
+          this->Got.units[ret.firstUnit].index, this->Got.units[ret.lastUnit - 1].index + 1),
+        this->Accumulator.pathLengths());
     }
-    return this->Returns;
+    return this->Got.returns;
   }
 
   RangeUnitAccumulator Accumulator;
+  const ScanAir Clear;
   BeamReceiver Receiver;
-  std::vector<Return> Returns;
+  Received Got;
 };
+
+/// Receives a beam without light.
+Received inTheDark(BeamReceiver& receiver, const ScanAir& air, std::uint64_t beam)
+{
+  return receiver.receive(
+    beam, { {}, {}, Sensor().backgroundRadiance }, BeamAir(air), DrawnLeaves());
+}
 
 /// Probability that numbers which are uniform in (0, 1) are as far from it as these: Kolmogorov and
 /// Smirnov, with Stephens' correction for few numbers.
@@ -123,7 +138,7 @@ TEST(Receiver, ReturnsAreMaximalRuns)
   Bench bench(unitSensor(), ReturnMode::All);
   const auto& returns = bench(threeReturns);
   ASSERT_EQ(returns.size(), 3u);
-  const auto& units = bench.Receiver.units();
+  const auto& units = bench.Got.units;
   EXPECT_EQ(units.size(), 8u);
   EXPECT_EQ(units[returns[0].firstUnit].index, 10);
   EXPECT_EQ(units[returns[0].lastUnit - 1].index, 12);
@@ -141,7 +156,7 @@ TEST(Receiver, ReturnsAreMaximalRuns)
     EXPECT_EQ(returns[r].returnNumber, r + 1);
     EXPECT_EQ(returns[r].numberOfReturns, 3);
   }
-  EXPECT_EQ(bench.Receiver.strongest()->energyReceived, 16.0);
+  EXPECT_EQ(bench.Got.strongest->energyReceived, 16.0);
 }
 
 TEST(Receiver, ModesChooseAndKeepTheNumbering)
@@ -191,9 +206,9 @@ TEST(Receiver, NothingPerceivedGivesNoReturn)
   {
     Bench bench(unitSensor(), mode);
     EXPECT_TRUE(bench({}).empty());
-    EXPECT_EQ(bench.Receiver.strongest(), nullptr);
+    EXPECT_FALSE(bench.Got.strongest);
     EXPECT_TRUE(bench({ { 7.5, 1.0 } }).empty());
-    EXPECT_EQ(bench.Receiver.strongest(), nullptr);
+    EXPECT_FALSE(bench.Got.strongest);
   }
 }
 
@@ -204,7 +219,8 @@ TEST(ReceiverNoise, FalseAlarmsLieAnywhereInTheirUnit)
     const Sensor sensor = noisySensor(model);
     Bench bench(sensor, ReturnMode::All);
     Bench again(sensor, ReturnMode::All);
-    BeamReceiver next(sensor, planNoise(sensor, true), 0, ReturnMode::All, 1);
+    const ScanAir clear(sensor, {});
+    BeamReceiver next(sensor, planNoise(sensor, true), 0, ReturnMode::All, clear, 1);
     std::vector<double> places;
     std::vector<double> energies;
     std::vector<double> nextPlaces;
@@ -229,8 +245,7 @@ TEST(ReceiverNoise, FalseAlarmsLieAnywhereInTheirUnit)
           EXPECT_EQ(same[r].range, returns[r].range);
         }
       }
-      next.receive(beam, {}, sensor.backgroundRadiance);
-      for (const Return& one : next.returns())
+      for (const Return& one : inTheDark(next, clear, beam).returns)
       {
         nextPlaces.push_back(one.range - std::floor(one.range));
       }
@@ -278,15 +293,17 @@ TEST(ReceiverNoise, AReceiverThatIsNoLongerWantedStopsAndGoesOnLater)
   sensor.rangeGate = 50000.0;
   const NoisePlan plan = planNoise(sensor, true);
   int asked = 0;
-  BeamReceiver receiver(sensor, plan, 0, ReturnMode::All, 0, [&asked]() { return ++asked != 3; });
-  EXPECT_THROW(receiver.receive(0, {}, sensor.backgroundRadiance), WorkStopped);
+  const ScanAir clear(sensor, {});
+  BeamReceiver receiver(
+    sensor, plan, 0, ReturnMode::All, clear, 0, [&asked]() { return ++asked != 3; });
+  EXPECT_THROW(inTheDark(receiver, clear, 0), WorkStopped);
   EXPECT_EQ(asked, 3);
-  receiver.receive(0, {}, sensor.backgroundRadiance);
+  const std::vector<Return> later = inTheDark(receiver, clear, 0).returns;
   EXPECT_GT(asked, 6);
-  BeamReceiver whole(sensor, plan, 0, ReturnMode::All);
-  whole.receive(0, {}, sensor.backgroundRadiance);
-  ASSERT_EQ(receiver.returns().size(), whole.returns().size());
-  EXPECT_EQ(receiver.returns().back().range, whole.returns().back().range);
+  BeamReceiver whole(sensor, plan, 0, ReturnMode::All, clear);
+  const std::vector<Return> expected = inTheDark(whole, clear, 0).returns;
+  ASSERT_EQ(later.size(), expected.size());
+  EXPECT_EQ(later.back().range, expected.back().range);
 }
 
 TEST(ReceiverNoise, AddsToEchoesBeforeTheLimits)
@@ -302,7 +319,7 @@ TEST(ReceiverNoise, AddsToEchoesBeforeTheLimits)
   Bench bench(sensor, ReturnMode::All);
   const auto& returns = bench({ { 20.3, 1e5 * photon } });
   ASSERT_EQ(returns.size(), 1u);
-  const auto& units = bench.Receiver.units();
+  const auto& units = bench.Got.units;
   EXPECT_EQ(units.size(), 50u);
   EXPECT_EQ(units[returns[0].strongestUnit].index, 20);
   EXPECT_NEAR(returns[0].energyReceived / photon, 1.1e5, 600.0);
@@ -327,13 +344,13 @@ TEST(ReceiverNoise, AlarmsLieEvenlyInTheGate)
   for (const ReturnMode mode : { ReturnMode::All, ReturnMode::RangeUnits })
   {
     const NoisePlan plan = planNoise(sensor, true);
-    BeamReceiver receiver(sensor, plan, 0, mode);
+    const ScanAir clear(sensor, {});
+    BeamReceiver receiver(sensor, plan, 0, mode, clear);
     double sum = 0.0;
     double count = 0.0;
     for (std::uint64_t beam = 0; beam < 4000; ++beam)
     {
-      receiver.receive(beam, {}, sensor.backgroundRadiance);
-      for (const Return& one : receiver.returns())
+      for (const Return& one : inTheDark(receiver, clear, beam).returns)
       {
         ASSERT_GE(one.range, 9.7);
         ASSERT_LE(one.range, 10.0);
@@ -380,10 +397,10 @@ TEST(ReceiverNoise, AUnitsNoiseDoesNotDependOnItsEcho)
     faint.push_back({ unit + 0.5, 1e-40 });
   }
   full(faint);
-  EXPECT_EQ(full.Receiver.units().size(), 200u);
-  ASSERT_EQ(full.Receiver.returns().size(), empty.Receiver.returns().size());
-  for (std::size_t r = 0; r < full.Receiver.returns().size(); ++r)
+  EXPECT_EQ(full.Got.units.size(), 200u);
+  ASSERT_EQ(full.Got.returns.size(), empty.Got.returns.size());
+  for (std::size_t r = 0; r < full.Got.returns.size(); ++r)
   {
-    EXPECT_EQ(full.Receiver.returns()[r].returnEnergy, empty.Receiver.returns()[r].returnEnergy);
+    EXPECT_EQ(full.Got.returns[r].returnEnergy, empty.Got.returns[r].returnEnergy);
   }
 }

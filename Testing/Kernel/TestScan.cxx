@@ -195,7 +195,7 @@ TEST(Scan, ACacheThatIsTooSmallChangesNothing)
     {
       ASSERT_TRUE(simulateScan(setup, beams, 2, cache, bytes, {}, result));
       expectSame(result, runScan(setup, beams));
-      const std::size_t always = beams.size() * (sizeof(BeamTrace) + sizeof(BeamKey));
+      const std::size_t always = beams.size() * (sizeof(KeptBeam) + sizeof(BeamKey));
       EXPECT_GE(cache.bytes(), always);
       EXPECT_LE(cache.bytes(), bytes + always);
     }

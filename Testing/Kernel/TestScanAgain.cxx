@@ -46,7 +46,7 @@ struct ScanSeries
     const ScanResult fresh = runScan(this->setup, this->beams);
     expectSame(this->result, fresh);
     this->expectSameReports(fresh);
-    for (const BeamTrace& trace : this->cache.beams)
+    for (const KeptBeam& trace : this->cache.beams)
     {
       ASSERT_EQ(trace.held, trace.heldBytes());
     }
@@ -267,16 +267,16 @@ TEST(ScanAgain, KeptCellsServeASecondReflection)
   wide.halfBeamwidth = 0.03;
   ScanSeries series(wide, settings, townOf(3, random));
   std::vector<const CellSamples*> before;
-  for (const BeamTrace& trace : series.cache.beams)
+  for (const KeptBeam& trace : series.cache.beams)
   {
-    before.push_back(trace.cells());
+    before.push_back(trace.view.cells());
   }
   EXPECT_GT(before.size() - std::count(before.begin(), before.end(), nullptr), 10u);
   series.setup.settings.numberOfReflections = 2;
   series.check("two reflections");
   for (std::size_t b = 0; b < before.size(); ++b)
   {
-    EXPECT_EQ(series.cache.beams[b].cells(), before[b]) << b;
+    EXPECT_EQ(series.cache.beams[b].view.cells(), before[b]) << b;
   }
 }
 

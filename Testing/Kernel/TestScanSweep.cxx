@@ -86,7 +86,7 @@ TEST(ScanSweep, BeamsThatAreAwayGiveWayWhereMemoryIsShort)
   sweep.maximum = needed / 4;
   sweep.show(0, 8);
   EXPECT_TRUE(sweep.cache.absent.empty());
-  EXPECT_LE(sweep.cache.bytes(), sweep.maximum + 8 * sizeof(BeamTrace));
+  EXPECT_LE(sweep.cache.bytes(), sweep.maximum + 8 * sizeof(KeptBeam));
   sweep.maximum = needed * 2;
   EXPECT_GT(sweep.show(0, all), 0u);
   sweep.show(0, 8);

@@ -13,9 +13,9 @@ import sys
 import tempfile
 
 # Header, struct, and the files that must not compile with a member more.
-GUARDED = [("Receiver/Sensor.h", "Sensor", ["Receiver/Sensor.cxx", "Scan/TraceCache.cxx"]),
-           ("Beam/Light/EchoSettings.h", "EchoSettings", ["Beam/Light/EchoSettings.cxx"]),
-           ("Beam/Light/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]), ("Beam/Light/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
+GUARDED = [("Sensor/Sensor.h", "Sensor", ["Sensor/Sensor.cxx", "Scan/TraceCache.cxx"]),
+           ("Setup/EchoSettings.h", "EchoSettings", ["Setup/EchoSettings.cxx"]),
+           ("Setup/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]), ("Setup/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
 
 
 def compiles(entry, folder, text):

@@ -96,7 +96,7 @@ TEST(StabilityPhotons, FalseAlarmsAreThoseAskedFor)
       double alarms = 0.0;
       for (std::uint64_t beam = 0; beam < static_cast<std::uint64_t>(beams); ++beam)
       {
-        noise.begin(plan, number, beam);
+        noise.begin(plan, { number, static_cast<std::uint64_t>(beam) });
         for (const std::int64_t unit : noise.alarms())
         {
           alarms += 1.0;

@@ -31,35 +31,41 @@ constexpr double MostCellsOfEllipse = 4.0;
 
 /// Least widening of the space in which leaves are drawn, over the range.
 constexpr double LeastGrowth = 1e-9;
+
+/// Bits of the rays whose light a leaf stops on its way back from a range, m.
+std::uint64_t shadedAt(const std::vector<DrawnLeaves::Shadow>& shadows, double range)
+{
+  std::uint64_t shaded = 0;
+  for (const DrawnLeaves::Shadow& shadow : shadows)
+  {
+    const bool isIn = range > shadow.from && range < shadow.to;
+    shaded |= std::uint64_t{ isIn } << shadow.ray;
+  }
+  return shaded;
+}
 }
 
-bool LeafGaps::begin(BeamAir& along)
+DrawnLeaves LeafGaps::draw(const BeamAir& air, const std::vector<BeamAir::Leaves>& leaves,
+  std::int32_t seed, std::uint64_t beam, std::int32_t revolution, std::vector<Sample>& samples)
 {
-  this->clear();
-  this->Along = &along;
-  along.findLeaves(this->Leaves);
-  return !this->Leaves.empty();
-}
-
-void LeafGaps::draw(double solidAngle, std::int32_t seed, std::uint64_t beam,
-  std::int32_t revolution, std::vector<Sample>& samples)
-{
+  this->Leaves = leaves;
+  this->Grid = 0;
   const auto pairOf = [=](std::uint64_t number, std::int32_t scan)
   { return uniformPair(seed, beam, number, RandomPurpose::Leaves, scan); };
   const auto isBefore = [](const Sample& a, const Sample& b)
   { return a.object != b.object ? a.object < b.object : a.unit < b.unit; };
   std::stable_sort(samples.begin(), samples.end(), isBefore);
-  const auto [slopeX, slopeY] = this->Along->halfWidths();
+  const auto [slopeX, slopeY] = air.scan().halfWidths();
   this->Rays.clear();
   this->Going.clear();
   this->Shadows.clear();
   this->Targets.clear();
-  this->makeStreams(0.5 * (slopeX + slopeY), solidAngle, 0, revolution);
+  this->makeStreams(air, 0.5 * (slopeX + slopeY), air.scan().solidAngle(), 0, revolution);
   const bool isDivided = !this->Streams.empty();
   if (isDivided)
   {
     const auto [turn, shift] = pairOf(0, revolution);
-    this->makeRays(turn, shift);
+    this->makeRays(air, turn, shift);
   }
   for (std::size_t first = 0, last = 0; first < samples.size(); first = last)
   {
@@ -69,7 +75,7 @@ void LeafGaps::draw(double solidAngle, std::int32_t seed, std::uint64_t beam,
       ++last;
     }
     const std::uint64_t number = static_cast<std::uint64_t>(object & MostObjects) << DigitsOfObject;
-    this->addTargets(samples, first, last,
+    this->addTargets(air, samples, first, last,
       [&](std::uint64_t k) { return pairOf(number + FirstOfTargets + k, revolution); });
     if (isDivided)
     {
@@ -86,10 +92,10 @@ void LeafGaps::draw(double solidAngle, std::int32_t seed, std::uint64_t beam,
       }
     }
     const std::array<double, 2> half{ 0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1]) };
-    this->makeStreams(0.5 * (half[0] + half[1]), 4.0 * half[0] * half[1], number, revolution);
+    this->makeStreams(air, 0.5 * (half[0] + half[1]), 4.0 * half[0] * half[1], number, revolution);
     if (!this->Streams.empty())
     {
-      this->place({ 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]) }, half, pairOf);
+      this->place(air, { 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]) }, half, pairOf);
       this->open(first, samples);
     }
     this->Rays.clear();
@@ -98,9 +104,14 @@ void LeafGaps::draw(double solidAngle, std::int32_t seed, std::uint64_t beam,
   }
   if (isDivided)
   {
-    this->place({ 0.0, 0.0 }, { slopeX, slopeY }, pairOf);
+    this->place(air, { 0.0, 0.0 }, { slopeX, slopeY }, pairOf);
     this->open(0, samples);
   }
+  DrawnLeaves drawn;
+  drawn.Rays.assign(
+    this->Rays.begin(), this->Rays.begin() + static_cast<std::ptrdiff_t>(this->Grid));
+  drawn.Shadows = this->Shadows;
+  return drawn;
 }
 
 namespace
@@ -119,9 +130,9 @@ std::array<double, 2> pointOf(const LeafGaps::Sample& sample, double u, double v
     {
       before -= cells[cell] ? 1.0 : 0.0;
     }
-    constexpr double width = 2.0 / BeamAir::Across;
-    point = { width * (static_cast<double>(cell % BeamAir::Across) + before) - 1.0,
-      width * (static_cast<double>(cell / BeamAir::Across) + v) - 1.0 };
+    constexpr double width = 2.0 / AirColumn::Across;
+    point = { width * (static_cast<double>(cell % AirColumn::Across) + before) - 1.0,
+      width * (static_cast<double>(cell / AirColumn::Across) + v) - 1.0 };
   }
   else
   {
@@ -136,15 +147,15 @@ std::array<double, 2> pointOf(const LeafGaps::Sample& sample, double u, double v
 
 /// Add rays to the targets of an object. @param draw gives pairs of random numbers
 template <class F>
-void LeafGaps::addTargets(
-  const std::vector<Sample>& samples, std::size_t first, std::size_t last, F draw)
+void LeafGaps::addTargets(const BeamAir& air, const std::vector<Sample>& samples, std::size_t first,
+  std::size_t last, F draw)
 {
   const auto energyOf = [&](std::size_t from, std::size_t to)
   {
     return std::accumulate(samples.data() + from, samples.data() + to, 0.0,
       [](double sum, const Sample& one) { return sum + one.energy; });
   };
-  const auto [slopeX, slopeY] = this->Along->halfWidths();
+  const auto [slopeX, slopeY] = air.scan().halfWidths();
   const double all = energyOf(first, last);
   for (std::uint64_t number = 0; first < last;)
   {
@@ -167,14 +178,16 @@ void LeafGaps::addTargets(
       const auto [away, turn] = draw(number);
       const auto [nearer, angle] = draw(number + 1);
       const auto [x, y] = pointOf(sample, away, turn);
-      const std::uint64_t cell = BeamAir::columnAt(x, y) & sample.bits;
-      const BeamAir::Column& column = this->Along->columnOf(cell != 0 ? cell : sample.bits);
-      const double aperture = this->Along->apertureRadius() * std::sqrt(nearer);
-      const double left = this->Along->leftByLeaves(column, sample.range);
+      const std::uint64_t cell = AirColumn::at(x, y) & sample.bits;
+      const AirColumn& column = air.columnOf(cell != 0 ? cell : sample.bits);
+      const double aperture = air.scan().apertureRadius() * std::sqrt(nearer);
+      const double left = air.leftByLeaves(column, sample.range);
       this->Going.push_back(this->Rays.size());
-      this->Rays.push_back({ { slopeX * x, slopeY * y },
+      this->Rays.push_back({ { left > 0.0 ? 1.0 / (left * count) : 0.0, air.numberOf(column),
+                               { 0, Never, 0.0 }, true },
+        { slopeX * x, slopeY * y },
         { aperture * std::cos(2.0 * Pi * angle), aperture * std::sin(2.0 * Pi * angle) },
-        left > 0.0 ? 1.0 / (left * count) : 0.0, &column, { 0, Never, 0.0 }, true, sample.range });
+        sample.range });
     }
     first = end;
     this->Targets.push_back({ end, this->Rays.size() });
@@ -202,7 +215,8 @@ void LeafGaps::open(std::size_t first, std::vector<Sample>& samples)
 /// Place the leaves of all streams in a pyramid about the rays. @param middle, half tangents
 /// @param draw gives a pair of random numbers by number and scan
 template <class F>
-void LeafGaps::place(const std::array<double, 2>& middle, const std::array<double, 2>& half, F draw)
+void LeafGaps::place(const BeamAir& air, const std::array<double, 2>& middle,
+  const std::array<double, 2>& half, F draw)
 {
   // Leaves are drawn in a rectangle about all ways, as large as a square of this half side.
   const double growth = std::max(LeastGrowth, 0.5 * (half[0] + half[1]));
@@ -233,30 +247,31 @@ void LeafGaps::place(const std::array<double, 2>& middle, const std::array<doubl
     const double v = place - std::floor(place);
     const double high = next.rim + half[1] * next.range;
     const double wide = halfSide(next) * halfSide(next) / high;
-    this->placeOne({ middle[0] * next.range + (2.0 * u - 1.0) * wide,
-                     middle[1] * next.range + (2.0 * v - 1.0) * high },
+    this->placeOne(air,
+      { middle[0] * next.range + (2.0 * u - 1.0) * wide,
+        middle[1] * next.range + (2.0 * v - 1.0) * high },
       next, [&](std::uint64_t number) { return draw(next.number + number, next.scan); });
     advance(next);
   }
   for (std::size_t k = 0; k < this->Grid; ++k)
   {
-    this->Rays[k].isSeen = (this->shadedAt(this->Rays[k].leaf.range) >> k & 1) == 0;
+    this->Rays[k].isSeen = (shadedAt(this->Shadows, this->Rays[k].leaf.range) >> k & 1) == 0;
   }
 }
 
 /// Make two streams for each medium of leaves that the beam meets. Make no streams if the rays are
 /// too far apart. @param growth half width of the rays, tangent @param solidAngle solid angle that
 /// contains the rays, sr @param first number before the random numbers
-void LeafGaps::makeStreams(
-  double growth, double solidAngle, std::uint64_t first, std::int32_t revolution)
+void LeafGaps::makeStreams(const BeamAir& air, double growth, double solidAngle,
+  std::uint64_t first, std::int32_t revolution)
 {
   this->Streams.clear();
   for (const BeamAir::Leaves& leaves : this->Leaves)
   {
-    const Medium& medium = this->Along->mediumAt(leaves.medium);
+    const Medium& medium = air.mediumAt(leaves.medium);
     const double seenArea = medium.extinction / medium.drops;
     const double radius = std::sqrt(2.0 * seenArea / Pi);
-    const double rim = radius + this->Along->apertureRadius();
+    const double rim = radius + air.scan().apertureRadius();
     const double across = 2.0 * (rim + growth * leaves.begin);
     const double section = solidAngle * leaves.begin * leaves.begin / seenArea; // section in leaves
     const bool isFirst = this->Streams.empty();
@@ -278,21 +293,22 @@ void LeafGaps::makeStreams(
 /// Make rays that no leaf has stopped yet. @param turn turn of the rays' points about the middle of
 /// the aperture, in whole turns @param shift shift of the share of the aperture's area that is
 /// nearer to the middle
-void LeafGaps::makeRays(double turn, double shift)
+void LeafGaps::makeRays(const BeamAir& air, double turn, double shift)
 {
-  const auto [slopeX, slopeY] = this->Along->halfWidths();
+  const auto [slopeX, slopeY] = air.scan().halfWidths();
   const double cosine = std::cos(2.0 * Pi * turn);
   const double sine = std::sin(2.0 * Pi * turn);
-  for (const BeamAir::Column& cell : this->Along->grid())
+  for (const AirColumn& cell : air.scan().grid())
   {
     const double nearer = cell.nearer + shift;
     const double away =
-      this->Along->apertureRadius() * std::sqrt(nearer < 1.0 ? nearer : nearer - 1.0);
+      air.scan().apertureRadius() * std::sqrt(nearer < 1.0 ? nearer : nearer - 1.0);
     const auto [x, y] = cell.towards;
     this->Going.push_back(this->Rays.size());
-    this->Rays.push_back({ { slopeX * cell.x, slopeY * cell.y },
-      { away * (cosine * x - sine * y), away * (cosine * y + sine * x) }, cell.weight,
-      &this->Along->columnOf(cell.bits), { 0, Never, 0.0 }, true, Never });
+    this->Rays.push_back(
+      { { cell.weight, air.numberOf(air.columnOf(cell.bits)), { 0, Never, 0.0 }, true },
+        { slopeX * cell.x, slopeY * cell.y },
+        { away * (cosine * x - sine * y), away * (cosine * y + sine * x) }, Never });
   }
   this->Grid = this->Rays.size();
 }
@@ -301,7 +317,8 @@ void LeafGaps::makeRays(double turn, double shift)
 /// the way back. @param centre position across the beam, m @param draw gives pair 1 or 2 of the
 /// leaf's random numbers
 template <class F>
-void LeafGaps::placeOne(const std::array<double, 2>& centre, const Stream& of, F draw)
+void LeafGaps::placeOne(
+  const BeamAir& air, const std::array<double, 2>& centre, const Stream& of, F draw)
 {
   bool isDrawn = false;
   double least = 0.0; // density of the medium above which the leaf exists
@@ -350,7 +367,7 @@ void LeafGaps::placeOne(const std::array<double, 2>& centre, const Stream& of, F
     const double s = 1.0 - of.range / ray.end;
     const bool isMet = c < 0.0 || (ray.end < Never && s * (a * s + 2.0 * b) + c < 0.0);
     if ((!isMet && ray.end < Never) || (!isMet && (b >= 0.0 || root <= 0.0)) ||
-      !(least < this->Along->densityAt(*ray.column, of.leaves.medium, of.range)))
+      !(least < air.densityAt(air.columns()[ray.column], of.leaves.medium, of.range)))
     {
       continue;
     }
@@ -371,38 +388,26 @@ void LeafGaps::placeOne(const std::array<double, 2>& centre, const Stream& of, F
   }
 }
 
-/// Bits of the rays whose light a leaf stops on its way back from a range, m.
-std::uint64_t LeafGaps::shadedAt(double range) const
+double DrawnLeaves::openAt(const BeamAir& air, double range) const
 {
-  std::uint64_t shaded = 0;
-  for (const Shadow& shadow : this->Shadows)
-  {
-    const bool isIn = range > shadow.from && range < shadow.to;
-    shaded |= std::uint64_t{ isIn } << shadow.ray;
-  }
-  return shaded;
-}
-
-double LeafGaps::openAt(double range) const
-{
-  const std::uint64_t shaded = this->shadedAt(range);
+  const std::uint64_t shaded = shadedAt(this->Shadows, range);
   double open = 0.0;
-  for (std::size_t k = 0; k < this->Grid; ++k)
+  for (std::size_t k = 0; k < this->Rays.size(); ++k)
   {
     open += this->Rays[k].leaf.range > range && (shaded >> k & 1) == 0 ? this->Rays[k].share : 0.0;
   }
-  return open > 0.0 ? open / this->Along->leftByLeaves(range) : 0.0;
+  return open > 0.0 ? open / air.leftByLeaves(range) : 0.0;
 }
 
-double LeafGaps::returnedBetween(double from, double to, std::uint32_t medium) const
+double DrawnLeaves::returnedBetween(
+  const BeamAir& air, const AirLight& light, double from, double to, std::uint32_t medium) const
 {
   double sum = 0.0;
-  for (std::size_t k = 0; k < this->Grid; ++k)
+  for (const Ray& ray : this->Rays)
   {
-    const Ray& ray = this->Rays[k];
     const MetLeaf& leaf = ray.leaf;
     sum += ray.isSeen && leaf.medium == medium && leaf.range >= from && leaf.range < to
-      ? this->Along->returnedBy(leaf, *ray.column, ray.share)
+      ? light.returnedBy(leaf, air.columns()[ray.column], ray.share)
       : 0.0;
   }
   return sum;

@@ -28,7 +28,7 @@
 #ifndef avianlidar_LeafGaps_h
 #define avianlidar_LeafGaps_h
 
-#include "BeamAir.h"
+#include "AirLight.h"
 
 #include <array>
 #include <cstddef>
@@ -36,7 +36,45 @@
 #include <vector>
 
 namespace avianlidar
+{ /// The leaves drawn in a beam that is divided into rays; no rays in any other beam.
+class DrawnLeaves
 {
+public:
+  /// True if the beam is divided.
+  bool any() const { return !this->Rays.empty(); }
+
+  /// Transmission of the leaves to a range, m, and back, divided by the mean transmission. @param
+  /// air air of the beam
+  double openAt(const BeamAir& air, double range) const;
+
+  /// Energy, J, that the leaves of a medium return from ranges [from, to), m. @param light light of
+  /// the beam's air, whose surfaces take their shares of the pulse as in AirLight::returnedBy()
+  double returnedBetween(
+    const BeamAir& air, const AirLight& light, double from, double to, std::uint32_t medium) const;
+
+  struct Ray
+  {
+    double share; ///< share of the pulse in the ray; to a target, share of the target's mean light
+    std::size_t column; ///< number of the column in BeamAir::columns()
+    MetLeaf leaf; ///< leaf at which the ray ends, with an infinite range if there is no such leaf
+    bool isSeen;  ///< true if no leaf stops the light that `leaf` or the target returns
+  };
+  /// Ranges, m, from which a leaf stops the light of a ray on its way back.
+  struct Shadow
+  {
+    std::size_t ray;
+    double from, to;
+  };
+
+private:
+  friend class LeafGaps;
+
+  std::vector<Ray> Rays; ///< one ray for each cell of the beam's grid
+  std::vector<Shadow> Shadows;
+};
+
+/// Draws the leaves of one beam after the other. Each thread needs its own object.
+
 class LeafGaps
 {
 public:
@@ -53,27 +91,11 @@ public:
     double open = 1.0;                  ///< light that leaves let through, over its mean
   };
 
-  /// Begin a beam without leaves.
-  void clear() { this->Grid = 0; }
-
-  /// Begin a beam. @return true if the beam meets leaves. @param along air of the beam, which must
-  /// not be destroyed before the next beam
-  bool begin(BeamAir& along);
-
-  /// Draw the leaves of a beam that meets leaves. @param solidAngle solid angle of the beam, sr
-  /// @param samples samples of surfaces, which are sorted and get `open`
-  void draw(double solidAngle, std::int32_t seed, std::uint64_t beam, std::int32_t revolution,
-    std::vector<Sample>& samples);
-
-  /// True if the beam is divided.
-  bool any() const { return this->Grid > 0; }
-
-  /// Transmission of the leaves to a range, m, and back, divided by the mean transmission.
-  double openAt(double range) const;
-
-  /// Energy, J, that the leaves of a medium return from ranges [from, to), m. Surfaces take their
-  /// shares of the pulse as in BeamAir::returnedBy().
-  double returnedBetween(double from, double to, std::uint32_t medium) const;
+  /// Draw the leaves of a beam that meets leaves. @param leaves result of BeamAir::leaves()
+  /// @param solidAngle solid angle of the beam, sr @param samples samples of surfaces, which are
+  /// sorted and get `open`
+  DrawnLeaves draw(const BeamAir& air, const std::vector<BeamAir::Leaves>& leaves,
+    std::int32_t seed, std::uint64_t beam, std::int32_t revolution, std::vector<Sample>& samples);
 
   /// Largest cross-section of a divided beam where its first leaves begin, in projected leaf areas.
   static constexpr double MostLeaves = 64.0;
@@ -88,26 +110,16 @@ public:
   static constexpr double LeastRaysToTarget = 8.0;
 
 private:
-  struct Ray
+  struct Ray : DrawnLeaves::Ray
   {
     std::array<double, 2> slope;    ///< tangents across the beam
     std::array<double, 2> aperture; ///< point of the aperture to which the ray's light returns, m
-    double share; ///< share of the pulse in the ray; to a target, share of the target's mean light
-    const BeamAir::Column* column;
-    MetLeaf leaf; ///< leaf at which the ray ends, with an infinite range if there is no such leaf
-    bool isSeen;  ///< true if no leaf stops the light that `leaf` or the target returns
-    double end;   ///< range of the target, m; infinite if the ray has no target
+    double end;                     ///< range of the target, m; infinite if the ray has no target
   };
   /// Samples of a target, up to `sample`, and the target's rays, up to `ray`.
   struct Target
   {
     std::size_t sample, ray;
-  };
-  /// Ranges, m, from which a leaf stops the light of a ray on its way back.
-  struct Shadow
-  {
-    std::size_t ray;
-    double from, to;
   };
   /// Leaves of a medium, by range: either all leaves that are the same in every scan, or all leaves
   /// that are drawn anew in each scan.
@@ -121,25 +133,26 @@ private:
     std::uint64_t number; ///< number of the first draw of the next leaf
     double range;         ///< range of the next leaf, m
   };
-  void makeStreams(double growth, double solidAngle, std::uint64_t first, std::int32_t revolution);
-  void makeRays(double turn, double shift);
+  void makeStreams(const BeamAir& air, double growth, double solidAngle, std::uint64_t first,
+    std::int32_t revolution);
+  void makeRays(const BeamAir& air, double turn, double shift);
   template <class F>
-  void addTargets(const std::vector<Sample>& samples, std::size_t first, std::size_t last, F draw);
+  void addTargets(const BeamAir& air, const std::vector<Sample>& samples, std::size_t first,
+    std::size_t last, F draw);
   template <class F>
-  void place(const std::array<double, 2>& middle, const std::array<double, 2>& half, F draw);
+  void place(const BeamAir& air, const std::array<double, 2>& middle,
+    const std::array<double, 2>& half, F draw);
   void open(std::size_t first, std::vector<Sample>& samples);
   template <class F>
-  void placeOne(const std::array<double, 2>& centre, const Stream& of, F draw);
-  std::uint64_t shadedAt(double range) const;
+  void placeOne(const BeamAir& air, const std::array<double, 2>& centre, const Stream& of, F draw);
 
   std::vector<Ray> Rays; ///< rays of the grid, then rays to targets
   std::size_t Grid = 0;  ///< number of rays of the grid
   std::vector<Target> Targets;
   std::vector<std::size_t> Going; ///< rays that no leaf has stopped so far
-  std::vector<Shadow> Shadows;
+  std::vector<DrawnLeaves::Shadow> Shadows;
   std::vector<BeamAir::Leaves> Leaves;
   std::vector<Stream> Streams;
-  BeamAir* Along = nullptr;
 };
 }
 

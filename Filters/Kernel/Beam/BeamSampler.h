@@ -39,6 +39,8 @@ public:
   /// Draws the rays of a beam.
   void draw(std::int32_t seed, std::uint64_t beam, BeamRays& rays);
 
+  bool isStratified() const { return this->Method == Sampling::Stratified; }
+
   StrataPartition strata;
   StandardErrorEstimator error;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Coverage.h"
 
+#include "AirFinder.h"
+#include "AirLight.h"
 #include "Hash.h"
 #include "PhotonReceiver.h"
 
@@ -280,10 +282,12 @@ Coverage::PlacedTarget Coverage::placed(const CoverageTarget& target, const Vec3
   double air = 0.0;
   if (!this->Setup.media.empty())
   {
-    BeamAir along = this->Air;
-    along.beginRay(this->Beams.origins[0], to / range, 0.0);
+    const BeamAir along = AirFinder(this->Air).alongRay(this->Beams.origins[0], to / range, 0.0);
     filling *= along.transmission(range);
-    air = along.followed(unit);
+    const std::vector<MetSurface> none;
+    AirLight light(this->Air);
+    light.begin(along, none);
+    air = light.followed(unit);
   }
   double growth = 1.0;
   if (air > 0.0 && sensor.followsAir())

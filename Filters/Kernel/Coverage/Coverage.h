@@ -25,11 +25,11 @@
 #ifndef avianlidar_Coverage_h
 #define avianlidar_Coverage_h
 
-#include "BeamAir.h"
 #include "BeamDirections.h"
 #include "BeamShape.h"
 #include "DetectionLaw.h"
 #include "Scan.h"
+#include "ScanAir.h"
 
 #include <cstdint>
 #include <functional>
@@ -150,7 +150,7 @@ private:
   const Vec3 Up;
   const BeamShape Shape;
   std::shared_ptr<const BeamDirections> Directions;
-  BeamAir Air; ///< air along a ray; copied for each place
+  ScanAir Air;
   int Most;
   double ElectronsPerJoule;               ///< 0 without a photon receiver
   double CosineHeld;                      ///< cosine of the half-beamwidth

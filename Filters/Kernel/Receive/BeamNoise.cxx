@@ -13,15 +13,30 @@ namespace
 /// Share of units with a common deviate, below CommonDeviate, among the units without a false
 /// alarm. Among all units, P(z < 3) = 0.99865.
 constexpr double CommonShare = 0.9986;
+
+/// Uniform random numbers that belong to a unit or to another index.
+std::array<double, 2> draw(const NoiseKey& key, std::int64_t unit, RandomPurpose purpose)
+{
+  return uniformPair(key.seed, key.beam, static_cast<std::uint64_t>(unit), purpose, key.revolution);
+}
 }
 
-void BeamNoise::begin(
-  const NoisePlan& plan, std::int32_t seed, std::uint64_t beam, std::int32_t revolution)
+double rangeDeviate(const NoiseKey& key, std::int64_t unit)
+{
+  const double u = draw(key, unit, RandomPurpose::RangeNoise)[0];
+  return normalDeviate(u, 1.0 - u);
+}
+
+double placeOfNoise(const NoiseKey& key, std::int64_t unit)
+{
+  // BeamNoise::energy() uses the first number of the pair.
+  return draw(key, unit, RandomPurpose::Noise)[1];
+}
+
+void BeamNoise::begin(const NoisePlan& plan, const NoiseKey& key)
 {
   this->Plan = plan;
-  this->Seed = seed;
-  this->Beam = beam;
-  this->Revolution = revolution;
+  this->Key = key;
   this->Alarms.clear();
   this->RareBegin = -1;
   if (!plan.active || !(plan.alarmProbability > 0.0))
@@ -35,13 +50,6 @@ void BeamNoise::begin(
     [&](std::int64_t unit) { this->Alarms.push_back(unit); });
 }
 
-/// Uniform random numbers that belong to a unit or to another index.
-std::array<double, 2> BeamNoise::draw(std::int64_t unit, RandomPurpose purpose) const
-{
-  return uniformPair(
-    this->Seed, this->Beam, static_cast<std::uint64_t>(unit), purpose, this->Revolution);
-}
-
 /// Calls f(unit) for units drawn independently. The number of units between two of them is
 /// geometric, floor(ln u/ln(1 - p)).
 template <class F>
@@ -50,7 +58,7 @@ void BeamNoise::forEachInGaps(
 {
   for (std::int64_t number = begin; begin < end; ++number)
   {
-    const double gap = std::floor(std::log(this->draw(number, purpose)[0]) / logOthers);
+    const double gap = std::floor(std::log(draw(this->Key, number, purpose)[0]) / logOthers);
     if (!(gap < static_cast<double>(end - begin)))
     {
       return;
@@ -90,18 +98,6 @@ double BeamNoise::photons(double u, bool alarm) const
     plan.alarmPhotons, poissonQuantile(plan.meanPhotons, u * plan.quietProbability, q));
 }
 
-double BeamNoise::rangeDeviate(std::int64_t unit) const
-{
-  const double u = this->draw(unit, RandomPurpose::RangeNoise)[0];
-  return normalDeviate(u, 1.0 - u);
-}
-
-double BeamNoise::place(std::int64_t unit) const
-{
-  // energy() uses the first number of the pair.
-  return this->draw(unit, RandomPurpose::Noise)[1];
-}
-
 double BeamNoise::energy(std::int64_t unit, double light)
 {
   const NoisePlan& plan = this->Plan;
@@ -109,7 +105,7 @@ double BeamNoise::energy(std::int64_t unit, double light)
   {
     return 0.0;
   }
-  const double u = this->draw(unit, RandomPurpose::Noise)[0];
+  const double u = draw(this->Key, unit, RandomPurpose::Noise)[0];
   const bool alarm = this->isAlarm(unit);
   if (!plan.gaussian)
   {
@@ -127,6 +123,7 @@ double BeamNoise::energy(std::int64_t unit, double light)
   const double rest =
     rare ? (1.0 - CommonShare) * (1.0 - u) : (1.0 - CommonShare) + CommonShare * (1.0 - u);
   return deviation *
-    normalDeviate(below * plan.quietProbability, plan.alarmProbability + rest * plan.quietProbability);
+    normalDeviate(
+      below * plan.quietProbability, plan.alarmProbability + rest * plan.quietProbability);
 }
 }

@@ -40,15 +40,27 @@
 
 namespace avianlidar
 {
+/// Key of the random numbers of a beam's noise.
+struct NoiseKey
+{
+  std::int32_t seed = 0;
+  std::uint64_t beam = 0;
+  std::int32_t revolution = 0; ///< number of the revolution
+};
+
+/// A standard normal deviate for the range of the return whose strongest unit is `unit`.
+double rangeDeviate(const NoiseKey& key, std::int64_t unit);
+
+/// Place of the noise in a unit, as a share of the unit, uniform in (0, 1).
+double placeOfNoise(const NoiseKey& key, std::int64_t unit);
+
 /// Draws the noise of one beam after the other. An object is reused without allocation. Each thread
 /// needs its own object.
 class BeamNoise
 {
 public:
   /// Draw the false alarms of a beam. An inactive plan has no alarms.
-  /// @param revolution number of the revolution, any int, on which the noise depends
-  void begin(
-    const NoisePlan& plan, std::int32_t seed, std::uint64_t beam, std::int32_t revolution = 0);
+  void begin(const NoisePlan& plan, const NoiseKey& key);
 
   /// Numbers of the range units whose noise exceeds Qlow without light, ascending.
   const std::vector<std::int64_t>& alarms() const { return this->Alarms; }
@@ -60,15 +72,7 @@ public:
   /// Noise energy of a unit, J; 0 outside the gate. @param light energy that the unit receives, J
   double energy(std::int64_t unit, double light = 0.0);
 
-  /// A standard normal deviate for the range of the return whose strongest unit is `unit`.
-  double rangeDeviate(std::int64_t unit) const;
-
-  /// Place of the noise in a unit, as a share of the unit, uniform in (0, 1).
-  double place(std::int64_t unit) const;
-
 private:
-  std::array<double, 2> draw(std::int64_t unit, RandomPurpose purpose) const;
-
   /// Number of units for which rare deviates are drawn together.
   static constexpr std::int64_t UnitsOfBlock = 4096;
 
@@ -82,9 +86,7 @@ private:
   }
 
   NoisePlan Plan;
-  std::int32_t Seed = 0;
-  std::uint64_t Beam = 0;
-  std::int32_t Revolution = 0;
+  NoiseKey Key;
   std::vector<std::int64_t> Alarms;
   std::bitset<UnitsOfBlock> Rare; ///< bits of the rare units from RareBegin on
   std::int64_t RareBegin = -1;    ///< first unit of `Rare`; -1: no unit drawn

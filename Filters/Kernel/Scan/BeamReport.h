@@ -12,31 +12,14 @@
 #define avianlidar_BeamReport_h
 
 #include "BeamTracer.h"
+#include "BeamView.h"
+#include "Echo.h"
 
 #include <cstddef>
 #include <cstdint>
 
 namespace avianlidar
 {
-/// Method that gives the direct echo of a beam.
-enum class DirectEcho : std::uint8_t
-{
-  Unknown = 0,  ///< the beam has not been traced yet
-  Nothing = 1,  ///< no surface enters the beam within the range gate
-  Polygons = 2, ///< integral over the polygons that the beam sees
-  Cells = 3,    ///< sum over the strips of the beam's cells
-  Rays = 4      ///< sum over the beam's N rays
-};
-
-enum class BeamStatus
-{
-  Echo = 0,
-  NoSurface = 1,
-  BelowLimit = 2,
-  Saturated = 3,
-  OutsideGate = 4 ///< surfaces are met, all of them outside the range gate
-};
-
 struct BeamReport
 {
   DirectEcho direct = DirectEcho::Unknown;

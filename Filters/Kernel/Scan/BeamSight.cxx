@@ -93,39 +93,39 @@ void cut(const Vec3& inward, double least, std::vector<Vec3>& polygon)
   polygon.swap(kept);
 }
 
-/// Light a single beam, and call f(simulator).
+/// Light a single beam, and call f(light, scene).
 template <class F>
 void light(
   const ScanSetup& setup, const ScanBeams& one, const std::function<bool()>& wanted, const F& f)
 {
   BeamSampler sampler(setup.sensor, setup.settings.sampling, tracedRaysOf(setup.settings));
+  const ScanAir air(setup.sensor, setup.air());
   std::vector<Echo> echoes;
   BeamReport report;
   if (setup.movers && !setup.movers->empty())
   {
-    MovedBeams moved(setup, one, sampler, wanted, true);
+    MovedBeams moved(setup, air, one, sampler, wanted, true);
     moved.find(0, 1);
     if (moved.isTouched(0))
     {
       std::vector<MoverSight> sights;
-      moved.simulate(0, echoes, report, sights);
-      f(moved.simulator());
+      const MovedBeams::Followed followed =
+        moved.simulate(0, echoes, report, sights, BeamLight(setup.sensor));
+      f(followed.light, moved.scene());
       return;
     }
   }
-  std::vector<BeamTrace> traces(1);
-  BeamSimulator simulator(setup, one, false, sampler, wanted);
-  simulator.lightAll();
-  simulator.trace(0, 1, traces);
-  simulator.light(0, traces[0], echoes, report);
-  f(simulator);
+  std::vector<KeptBeam> kept(1);
+  BeamSimulator simulator(setup, air, one, { false, true }, sampler, wanted);
+  const TraceCounters cost = simulator.trace(0, 1, kept).costs[0];
+  f(simulator.follow(0, cost, kept[0], echoes, report, BeamLight(setup.sensor)), simulator.scene());
 }
 
-/// Add the samples of the beam lit last: shares, energies with ranges and angles, or both.
-void addSamples(const ScanSetup& setup, const BeamLighting& lighting, bool shares, bool energies,
-  SurfaceSums& sums)
+/// Add the samples of a beam: shares, energies with ranges and angles, or both.
+void addSamples(
+  const ScanSetup& setup, const BeamLight& light, bool shares, bool energies, SurfaceSums& sums)
 {
-  const BeamSamples* samples = lighting.samples();
+  const BeamSamples* samples = light.samples();
   if (!samples)
   {
     return;
@@ -141,7 +141,7 @@ void addSamples(const ScanSetup& setup, const BeamLighting& lighting, bool share
         if (energies)
         {
           surface.weight += weight;
-          surface.energy += lighting.energies().empty() ? 0.0 : lighting.energies()[i];
+          surface.energy += light.energies.empty() ? 0.0 : light.energies[i];
           surface.range += weight * samples->range[i];
           surface.cosine += weight * samples->cosine[i];
           surface.nearest = std::min(surface.nearest, samples->range[i]);
@@ -163,12 +163,12 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
   SurfaceSums sums;
   const bool uniform = setup.sensor.beamProfile == BeamProfile::Uniform;
   light(setup, one, wanted,
-    [&](const BeamSimulator& lit)
+    [&](const BeamLight& lit, const SceneTriangles& scene)
     {
-      addSamples(setup, lit.lighting(), uniform, true, sums);
+      addSamples(setup, lit, uniform, true, sums);
       for (auto& [triangle, surface] : sums)
       {
-        surface.corners = cornersOf(setup, lit.scene(), triangle, sums);
+        surface.corners = cornersOf(setup, scene, triangle, sums);
       }
     });
   if (!uniform)
@@ -176,7 +176,8 @@ std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& bea
     ScanSetup even = setup;
     even.sensor.beamProfile = BeamProfile::Uniform;
     light(even, one, wanted,
-      [&](const BeamSimulator& lit) { addSamples(setup, lit.lighting(), true, false, sums); });
+      [&](const BeamLight& lit, const SceneTriangles&)
+      { addSamples(setup, lit, true, false, sums); });
   }
   std::vector<SeenSurface> seen;
   double all = 0.0;

@@ -1,72 +1,143 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamSimulator.h"
 
+#include "BeamShape.h"
+
 #include <limits>
+#include <utility>
 
 namespace avianlidar
 {
-BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
-  BeamSampler& sampler, std::function<bool()> wanted)
+BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams,
+  const ScanOptions& options, BeamSampler& sampler, std::function<bool()> wanted)
   : Scene(*setup.tree)
+  , Setup(setup)
+  , Air(air)
   , Beams(beams)
-  , KeepsLight(keepsLight && (setup.noise.active || setup.movers) && !haveVolumes(setup.media))
-  , Block(setup, this->Scene, beams, sampler)
-  , Tracing(setup, this->Scene, beams, this->Block)
-  , Air(setup.sensor, setup.air())
-  , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode,
-      setup.revolution, wanted, &this->Air, &this->Gaps)
-  , Lighting(setup, this->Scene, beams, this->Block, sampler, this->Receiver, this->Air, this->Gaps,
-      std::move(wanted))
-  , Echoes(setup, this->Lighting, this->Receiver, sampler.error)
+  , Width(BeamShape(setup.sensor).width())
+  , KeepsLight(
+      options.keepsLight && (setup.noise.active || setup.movers) && !haveVolumes(setup.media))
+  , Rays(sampler, setup.settings.seed)
+  , Tracing(setup, this->Scene, beams, this->Rays, options.lightsAll)
+  , Hits(setup, this->Scene)
+  , AirAlong(air)
+  , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, air,
+      setup.revolution, wanted)
+  , Lighting(setup, this->Scene, this->Receiver.mayAlarm(), options.lightsAll, std::move(wanted))
+  , Echoes(setup, this->Receiver, sampler.error)
 {
 }
 
-void BeamSimulator::light(
-  std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
+BeamSimulator::Traced BeamSimulator::trace(std::size_t begin, std::size_t end,
+  std::vector<KeptBeam>& kept, const std::function<bool(std::size_t)>& leaveOut)
 {
-  this->Block.takeHits(beam, trace);
-  report.range = std::numeric_limits<double>::quiet_NaN();
-  const bool meets = trace.polygons() ||
-    (trace.cells() ? trace.cells()->samples.size() > 0 : trace.hits && trace.hits->size() > 0);
-  report.direct = trace.direct();
-  report.isCrowded = trace.cells() && trace.cells()->isCrowded;
-  report.status = meets ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  const bool isLit =
-    !trace.lit || !this->Echoes.receiveAgain(this->Beams.ids[beam], *trace.lit, echoes, report);
-  if (isLit)
+  this->Rays.begin(this->Beams.ids, begin, end);
+  std::vector<BeamToSee> beams;
+  for (std::size_t beam = begin; beam < end; ++beam)
   {
-    this->lightBeam(beam, trace, echoes, report);
+    const BeamView& view = kept[beam].view;
+    const bool isKnown = view.direct() != DirectEcho::Unknown;
+    if ((!isKnown || this->Tracing.lacksHits(view)) && !(leaveOut && leaveOut(beam)))
+    {
+      beams.push_back({ beam, isKnown });
+    }
   }
-  if (report.status == BeamStatus::NoSurface && trace.isBehindGate())
+  Traced traced{ std::vector<TraceCounters>(end - begin), beams.size() };
+  std::vector<SeenBeam> seen = this->Tracing.see(beams);
+  for (std::size_t k = 0; k < beams.size(); ++k)
+  {
+    BeamView& view = kept[beams[k].beam].view;
+    if (beams[k].onlyRays)
+    {
+      view.hits = std::move(seen[k].view.hits);
+    }
+    else
+    {
+      view = std::move(seen[k].view);
+    }
+    traced.costs[beams[k].beam - begin] = seen[k].cost;
+  }
+  return traced;
+}
+
+BeamLight BeamSimulator::follow(std::size_t beam, TraceCounters cost, KeptBeam& kept,
+  std::vector<Echo>& echoes, BeamReport& report, BeamLight memory)
+{
+  BeamLight light = std::move(memory);
+  light.clear(this->Setup.sensor.backgroundRadiance);
+  report.range = std::numeric_limits<double>::quiet_NaN();
+  report.direct = kept.view.direct();
+  report.isCrowded = kept.view.cells() && kept.view.cells()->isCrowded;
+  report.status = kept.view.meetsSurfaces() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
+  const bool isKnown = kept.lit && this->followKnown(beam, *kept.lit, echoes, report);
+  if (!isKnown)
+  {
+    const BeamFrame frame =
+      makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
+    const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
+    light = this->lightOf(beam, frame, air, kept, cost, std::move(light));
+    if (light.isPerceivable)
+    {
+      if (light.samples() && this->KeepsLight && !kept.lit)
+      {
+        kept.lit = std::make_unique<LitBeam>(light);
+      }
+      const Received received =
+        this->Receiver.receive(this->Beams.ids[beam], light.arriving(), air, light.leaves);
+      const BeamEchoes::Report echo = this->Echoes.add(received, light, kept.lit.get(), echoes);
+      report.status = echo.status;
+      report.range = echo.range;
+    }
+    report.lost = light.lost;
+    report.skipped = light.skipped;
+  }
+  if (report.status == BeamStatus::NoSurface && kept.view.isBehindGate())
   {
     report.status = BeamStatus::OutsideGate;
   }
-  addCounters(this->Block.counters(beam), trace.counters);
-  trace.held = isLit ? trace.heldBytes() : trace.held;
-  report.counters = trace.counters;
-  report.raysTracedNow = this->Block.counters(beam).raysTraced;
+  addCounters(cost, kept.counters);
+  kept.held = isKnown ? kept.held : kept.heldBytes();
+  report.counters = kept.counters;
+  report.raysTracedNow = cost.raysTraced;
+  return light;
 }
 
-/// Light a beam, and keep the result for scans that differ in noise or movers elsewhere.
-void BeamSimulator::lightBeam(
-  std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report)
+/// Make the echoes of a beam whose light was kept. @return false if the light must be computed
+/// again
+bool BeamSimulator::followKnown(
+  std::size_t beam, const LitBeam& lit, std::vector<Echo>& echoes, BeamReport& report)
 {
-  const bool perceivable = this->Lighting.light(beam, trace);
-  if (perceivable && this->Lighting.samples() && this->KeepsLight && !trace.lit)
+  const Received received = this->Receiver.receive(
+    this->Beams.ids[beam], lit.arriving(), BeamAir(this->Air), DrawnLeaves());
+  const std::optional<BeamEchoes::Report> echo = this->Echoes.addKnown(received, lit, echoes);
+  if (echo)
   {
-    trace.lit = std::make_unique<LitBeam>();
-    trace.lit->units = this->Lighting.units().units();
-    trace.lit->radiance = this->Lighting.radiance();
-    trace.lit->surfaces = this->Air.surfaces();
-    trace.lit->outsideGate = this->Lighting.isOutsideGate();
-    trace.lit->lost = this->Lighting.lost();
-    trace.lit->skipped = this->Lighting.skipped();
+    report.status = echo->status;
+    report.range = echo->range;
+    report.lost = lit.lost;
+    report.skipped = lit.skipped;
   }
-  if (perceivable)
+  return echo.has_value();
+}
+
+/// The light of a beam. @param cost cost of tracing the beam in this run, increased
+BeamLight BeamSimulator::lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air,
+  KeptBeam& kept, TraceCounters& cost, BeamLight memory)
+{
+  const BeamLighting::Beam lit{ this->Beams.ids[beam], frame, kept.view, air };
+  BeamLight light = this->Lighting.direct(lit, std::move(memory));
+  if (light.hasPaths)
   {
-    this->Echoes.receive(this->Beams.ids[beam], trace.lit.get(), echoes, report);
+    const PathStarts starts = light.pathsNeedStarts
+      ? this->Hits.startsOf(beam, frame, this->Rays, kept.view, this->Geometry)
+      : PathStarts::nowhere();
+    if (!kept.paths)
+    {
+      kept.paths = std::make_unique<SecondaryTrace>();
+    }
+    light = this->Lighting.withPaths(
+      lit, std::move(light), starts, this->Rays.strata(), *kept.paths, cost);
   }
-  report.lost = this->Lighting.lost();
-  report.skipped = this->Lighting.skipped();
+  return this->Lighting.summed(lit, std::move(light));
 }
 }

@@ -1,87 +1,96 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BeamSimulator.h
- * @brief Simulates a block of beams, from rays to returns, in three stages.
+ * @brief Follows beams from their axes to their echoes.
  *
- * 1. Tracing (ScanBlock.h) finds the surfaces that each beam of the block sees, unless the surfaces
- *    are kept from an earlier run.
- * 2. Lighting (BeamLighting.h) sums the energies of all paths of one beam in range units. Lighting
- *    is skipped where a scan differs from the scan before only in noise (LitBeam.h).
- * 3. BeamEchoes.h adds noise and makes returns. A beam without hits skips this stage unless noise
- *    may cause a false alarm.
+ * Neighbouring beams are traced together (ViewTracer.h). Then each beam passes the other stages
+ * alone: the air along it (AirFinder.h), its light (BeamLighting.h), and what the receiver makes of
+ * the light (BeamReceiver.h, BeamEchoes.h). What is kept from an earlier scan is not computed
+ * again. Light is not computed where a scan differs from the scan before only in noise (LitBeam.h).
  *
  * Source: paper, Algorithm 2.
- * Differs: the beams of a block are traced together, and lit from kept hits.
- * Valid: see the headers of the three stages.
+ * Differs: neighbouring beams are traced together, and lit from kept views.
+ * Valid: see the headers of the stages.
  * Test: TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamSimulator_h
 #define avianlidar_BeamSimulator_h
 
+#include "AirFinder.h"
 #include "BeamEchoes.h"
-#include "ScanBlock.h"
+#include "BeamLighting.h"
+#include "BeamReport.h"
+#include "KeptBeam.h"
+#include "ViewTracer.h"
 
 #include <functional>
 #include <vector>
 
 namespace avianlidar
 {
-/// Each thread needs its own object. Setup and beams must outlive the object. The setup must not
-/// change. A beam may change until it is traced.
+/// How a scan is simulated.
+struct ScanOptions
+{
+  bool keepsLight = false; ///< whether light is kept where noise matters or surfaces move
+  bool lightsAll = false;  ///< whether light is computed that is surely not perceived
+};
+
+/// Each thread needs its own object. Setup, air, beams and sampler must outlive the object. The
+/// setup must not change. A beam may change until it is traced.
 class BeamSimulator
 {
 public:
-  /// @param keepsLight true: keep lit beams where noise matters or surfaces move
+  /// @param air air of the setup
   /// @param wanted function called every 4096 steps within a beam, and every 512 units for which
   /// noise is drawn; WorkStopped is thrown if it returns false
-  /// @param sampler sampler for the sensor, sampling and N of the setup; must outlive the object
-  BeamSimulator(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight,
-    BeamSampler& sampler, std::function<bool()> wanted = {});
+  /// @param sampler sampler for the sensor, sampling and N of the setup
+  BeamSimulator(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams,
+    const ScanOptions& options, BeamSampler& sampler, std::function<bool()> wanted = {});
   BeamSimulator(const BeamSimulator&) = delete;
   BeamSimulator& operator=(const BeamSimulator&) = delete;
 
-  /// Triangles that beams may meet. Movers are added to the triangles before a block of one beam is
+  /// Triangles that beams may meet. Movers are added to the triangles before a single beam is
   /// traced.
   SceneTriangles& scene() { return this->Scene; }
   const SceneTriangles& scene() const { return this->Scene; }
 
-  /// See ScanBlock::trace().
-  std::size_t trace(std::size_t begin, std::size_t end, std::vector<BeamTrace>& traces,
-    const std::function<bool(std::size_t)>& leaveOut = {})
+  /// Find what each beam in [begin, end) sees, unless `kept` (of all beams) already holds it.
+  /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped @return
+  /// costs of the beams in this run, and the number of beams for which something was traced
+  struct Traced
   {
-    return this->Tracing.trace(begin, end, traces, leaveOut);
-  }
+    std::vector<TraceCounters> costs;
+    std::size_t beams;
+  };
+  Traced trace(std::size_t begin, std::size_t end, std::vector<KeptBeam>& kept,
+    const std::function<bool(std::size_t)>& leaveOut = {});
 
-  /// Sums the energies of beam `beam` of the block traced last, adds new hits and paths to the
-  /// beam's trace, appends the beam's echoes, and fills the beam's report.
-  void light(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
-
-  /// See BeamLighting::lightAll().
-  void lightAll()
-  {
-    this->Tracing.lightAll();
-    this->Lighting.lightAll();
-  }
-
-  /// Mean light from the air, J, that a threshold may follow in a unit of the beam lit last.
-  double followedIn(std::int64_t unit) { return this->Air.followed(unit); }
-
-  /// Results for the beam lit last.
-  const BeamLighting& lighting() const { return this->Lighting; }
+  /// Follow a traced beam to its echoes: add new geometry of paths to `kept`, append the echoes,
+  /// and fill the report. @param cost cost of tracing the beam in this run @param memory light
+  /// whose memory is used again @return light of the beam; without samples if kept light was used
+  BeamLight follow(std::size_t beam, TraceCounters cost, KeptBeam& kept, std::vector<Echo>& echoes,
+    BeamReport& report, BeamLight memory);
 
 private:
-  void lightBeam(std::size_t beam, BeamTrace& trace, std::vector<Echo>& echoes, BeamReport& report);
+  bool followKnown(
+    std::size_t beam, const LitBeam& lit, std::vector<Echo>& echoes, BeamReport& report);
+  BeamLight lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air, KeptBeam& kept,
+    TraceCounters& cost, BeamLight memory);
 
   SceneTriangles Scene;
+  const ScanSetup& Setup;
+  const ScanAir& Air;
   const ScanBeams& Beams;
+  const BeamWidth Width;
   const bool KeepsLight;
-  BlockBeams Block;
-  ScanBlock Tracing;
-  BeamAir Air;
-  LeafGaps Gaps;
+  DrawnRays Rays;
+  ViewTracer Tracing;
+  HitFinder Hits;
+  AirFinder AirAlong;
   BeamReceiver Receiver;
   BeamLighting Lighting;
   BeamEchoes Echoes;
+  SampleGeometry Geometry; ///< memory of lightOf()
 };
 }
 

@@ -13,8 +13,8 @@ namespace
 constexpr std::size_t MostRaysOfPlane = 1000;
 }
 
-void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_t beam,
-  std::vector<SeenPlane>& planes)
+void addSeenPlanes(
+  const CollisionTree& tree, const BeamView& view, std::size_t beam, std::vector<SeenPlane>& planes)
 {
   const auto add = [&](std::uint32_t triangle)
   {
@@ -23,7 +23,7 @@ void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_
       planes.push_back({ tree.planeOwner(triangle), beam });
     }
   };
-  if (const VisiblePolygons* const polygons = trace.polygons())
+  if (const VisiblePolygons* const polygons = view.polygons())
   {
     for (const PlaneSurface& surface : polygons->surfaces)
     {
@@ -31,8 +31,8 @@ void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_
     }
     return;
   }
-  const CellSamples* const cells = trace.cells();
-  if (const BeamSamples* const samples = cells ? &cells->samples : trace.hits.get())
+  const CellSamples* const cells = view.cells();
+  if (const BeamSamples* const samples = cells ? &cells->samples : view.hits.get())
   {
     for (const BeamSamples::Surface& surface : samples->surfaces)
     {

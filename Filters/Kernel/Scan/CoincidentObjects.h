@@ -15,7 +15,8 @@
 #ifndef avianlidar_CoincidentObjects_h
 #define avianlidar_CoincidentObjects_h
 
-#include "BeamTrace.h"
+#include "BeamView.h"
+#include "ScanBeams.h"
 #include "ScanSetup.h"
 
 #include <cstdint>
@@ -36,7 +37,7 @@ struct SeenPlane
 };
 
 /// Append the planes of coincident faces that a beam sees.
-void addSeenPlanes(const CollisionTree& tree, const BeamTrace& trace, std::size_t beam,
+void addSeenPlanes(const CollisionTree& tree, const BeamView& view, std::size_t beam,
   std::vector<SeenPlane>& planes);
 
 /// Sort planes, and keep only the first beam of each plane.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace avianlidar
 {
@@ -82,27 +83,24 @@ struct BlockCone
 };
 }
 
-MovedBeams::MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
-  std::function<bool()> wanted, bool sights)
+MovedBeams::MovedBeams(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams,
+  BeamSampler& sampler, std::function<bool()> wanted, bool sights)
   : Setup(setup)
   , Beams(beams)
   , Width(BeamShape(setup.sensor).width())
   , Sights(sights)
   , All(setup.movers->size())
-  , Simulator(setup, this->CurrentBeam, false, sampler, std::move(wanted))
+  , Simulator(setup, air, this->CurrentBeam, { false, sights }, sampler, std::move(wanted))
+  , AirAlong(air)
+  , LightOfAir(air)
   , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
       setup.sensor.minimumRange)
-  , Trace(1)
 {
   this->CurrentBeam.ids.resize(1);
   this->CurrentBeam.origins.resize(1);
   this->CurrentBeam.directions.resize(1);
   this->CurrentBeam.times.resize(1);
   std::iota(this->All.begin(), this->All.end(), 0u);
-  if (sights)
-  {
-    this->Simulator.lightAll(); // the mover report includes light that is not perceived
-  }
 }
 
 void MovedBeams::findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin,
@@ -158,15 +156,15 @@ void MovedBeams::find(std::size_t begin, std::size_t end)
   }
 }
 
-/// Add the energies of the samples on triangles [begin, end) for the beam lit last.
-void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLighting& lighting)
+/// Add the energies of the samples on triangles [begin, end).
+void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLight& light)
 {
-  const std::vector<double>& energies = lighting.meanEnergies();
-  if (!lighting.samples() || energies.empty())
+  const std::vector<double>& energies = light.meanEnergies();
+  if (!light.samples() || energies.empty())
   {
     return;
   }
-  const BeamSamples& samples = *lighting.samples();
+  const BeamSamples& samples = *light.samples();
   samples.forEachSurface(
     [&](std::uint32_t triangle, std::uint32_t first, std::uint32_t last)
     {
@@ -177,8 +175,9 @@ void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLi
     });
 }
 
+/// @param air light of the air along the beam
 MoverSight MovedBeams::sightOf(
-  const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting)
+  const Touch& touch, const BeamFrame& frame, const BeamLight& light, AirLight& air)
 {
   const Mover& mover = (*this->Setup.movers)[touch.mover];
   const std::uint32_t first = this->Setup.firstTriangles[touch.mover];
@@ -188,26 +187,23 @@ MoverSight MovedBeams::sightOf(
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)), false };
   sight.held = this->Width.isRound ? sight.offAxis <= this->Width.half : frame.contains(to);
   this->Units.clear();
-  this->addLightOf(first, end, lighting);
+  this->addLightOf(first, end, light);
   this->Units.accumulate();
-  const Sensor sensor = lookingAt(this->Setup.sensor, lighting.radiance());
+  const Sensor sensor = lookingAt(this->Setup.sensor, light.radiance);
   const PhotonReceiver receiver(sensor);
   double missed = 1.0;
   for (const RangeUnit& unit : this->Units.units())
   {
     sight.energy = std::max(sight.energy, unit.energy);
-    missed *= 1.0 -
-      perceptionProbability(sensor, receiver, unit.energy, this->Simulator.followedIn(unit.index));
+    missed *= 1.0 - perceptionProbability(sensor, receiver, unit.energy, air.followed(unit.index));
   }
   sight.probability = 1.0 - missed;
   return sight;
 }
 
-void MovedBeams::simulate(
-  std::size_t beam, std::vector<Echo>& echoes, BeamReport& report, std::vector<MoverSight>& sights)
+MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes,
+  BeamReport& report, std::vector<MoverSight>& sights, BeamLight memory)
 {
-  const BeamFrame frame =
-    makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
   const std::vector<Touch>& touching = this->Touching[beam - this->First];
   SceneTriangles& scene = this->Simulator.scene();
   scene.clear();
@@ -223,13 +219,21 @@ void MovedBeams::simulate(
   this->CurrentBeam.origins[0] = this->Beams.origins[beam];
   this->CurrentBeam.directions[0] = this->Beams.directions[beam];
   this->CurrentBeam.times[0] = this->Beams.timeOf(beam);
-  this->Trace[0] = BeamTrace{};
-  this->Simulator.trace(0, 1, this->Trace);
-  this->Simulator.light(0, this->Trace[0], echoes, report);
-  for (std::size_t k = 0; this->Sights && k < touching.size(); ++k)
+  std::vector<KeptBeam> kept(1);
+  const TraceCounters cost = this->Simulator.trace(0, 1, kept).costs[0];
+  BeamLight light = this->Simulator.follow(0, cost, kept[0], echoes, report, std::move(memory));
+  if (this->Sights)
   {
-    sights.push_back(this->sightOf(touching[k], frame, this->Simulator.lighting()));
-    sights.back().beam = beam;
+    const BeamFrame frame =
+      makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
+    const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
+    this->LightOfAir.begin(air, light.surfaces);
+    for (const Touch& touch : touching)
+    {
+      sights.push_back(this->sightOf(touch, frame, light, this->LightOfAir));
+      sights.back().beam = beam;
+    }
   }
+  return { std::move(kept[0].view), std::move(light) };
 }
 }

@@ -38,8 +38,8 @@ class MovedBeams
 public:
   /// @param setup setup with movers @param beams beams with times @param sights true: find the
   /// light that each mover returns
-  MovedBeams(const ScanSetup& setup, const ScanBeams& beams, BeamSampler& sampler,
-    std::function<bool()> wanted, bool sights);
+  MovedBeams(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams,
+    BeamSampler& sampler, std::function<bool()> wanted, bool sights);
 
   /// Find the movers that beams [begin, end) may touch.
   void find(std::size_t begin, std::size_t end);
@@ -47,16 +47,19 @@ public:
   /// True if a beam of the block may touch a mover.
   bool isTouched(std::size_t beam) const { return !this->Touching[beam - this->First].empty(); }
 
+  /// What a beam with movers sees, and its light.
+  struct Followed
+  {
+    BeamView view;
+    BeamLight light;
+  };
   /// Append the echoes of a beam with movers, append the light that the beam receives from each
-  /// mover, and fill the beam's report.
-  void simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
-    std::vector<MoverSight>& sights);
+  /// mover, and fill the beam's report. @param memory light whose memory is used again
+  Followed simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
+    std::vector<MoverSight>& sights, BeamLight memory);
 
-  /// The simulator, with the results for the beam simulated last.
-  const BeamSimulator& simulator() const { return this->Simulator; }
-
-  /// What the beam simulated last sees.
-  const BeamTrace& trace() const { return this->Trace.front(); }
+  /// Static triangles, and the triangles of the movers that the beam simulated last may touch.
+  const SceneTriangles& scene() const { return this->Simulator.scene(); }
 
 private:
   struct Touch
@@ -66,8 +69,9 @@ private:
   };
   void findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin, std::size_t end,
     std::vector<std::uint32_t>& found) const;
-  MoverSight sightOf(const Touch& touch, const BeamFrame& frame, const BeamLighting& lighting);
-  void addLightOf(std::uint32_t first, std::uint32_t end, const BeamLighting& lighting);
+  MoverSight sightOf(
+    const Touch& touch, const BeamFrame& frame, const BeamLight& light, AirLight& air);
+  void addLightOf(std::uint32_t first, std::uint32_t end, const BeamLight& light);
 
   const ScanSetup& Setup;
   const ScanBeams& Beams;
@@ -81,12 +85,13 @@ private:
   std::vector<std::uint32_t> NearBlock;     ///< movers that may touch the block
   std::vector<std::vector<Touch>> Touching; ///< movers that may touch each beam of the block
 
-  // The beam being simulated.
-  ScanBeams CurrentBeam;
+  // Memory of simulate().
+  ScanBeams CurrentBeam; ///< the beam alone
   BeamSimulator Simulator;
+  AirFinder AirAlong;
+  AirLight LightOfAir;
   RangeUnitAccumulator Units; ///< energies that one mover returns
-  std::vector<BeamTrace> Trace;
-  TriangleMesh Mesh; ///< triangles of one mover, placed
+  TriangleMesh Mesh;          ///< triangles of one mover, placed
 };
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 namespace avianlidar
 {
@@ -36,14 +37,16 @@ struct Worker
 {
   BeamSimulator simulator;
   std::unique_ptr<MovedBeams> moved; ///< null if nothing moves
+  BeamLight light;                   ///< light of the last beam, for its memory
 
-  Worker(const ScanSetup& setup, const ScanBeams& beams, bool keepsLight, BeamSampler& sampler,
-    const std::function<bool()>& wanted, bool sights)
-    : simulator(setup, beams, keepsLight, sampler, wanted)
+  Worker(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams, bool keepsLight,
+    BeamSampler& sampler, const std::function<bool()>& wanted, bool sights)
+    : simulator(setup, air, beams, { keepsLight, false }, sampler, wanted)
+    , light(setup.sensor)
   {
     if (setup.movers && !setup.movers->empty())
     {
-      this->moved = std::make_unique<MovedBeams>(setup, beams, sampler, wanted, sights);
+      this->moved = std::make_unique<MovedBeams>(setup, air, beams, sampler, wanted, sights);
     }
   }
 };
@@ -100,6 +103,7 @@ public:
   Run(const ScanSetup& setup, const ScanBeams& beams, int threads, TraceCache& cache,
     std::size_t maximumBytes, const KeepGoing& keepGoing, ScanResult& result, bool sights)
     : Setup(setup)
+    , Air(setup.sensor, setup.air())
     , Beams(beams)
     , Threads(threads)
     , Cache(cache)
@@ -112,7 +116,7 @@ public:
     , Progress(beams.size(), keepGoing)
     , Blocks((beams.size() + this->Size - 1) / this->Size)
     , Workers(loopThreads(threads))
-    , BytesHeld(cache.bytes() - beams.size() * sizeof(BeamTrace))
+    , BytesHeld(cache.bytes() - beams.size() * sizeof(KeptBeam))
   {
     this->Result.reports.resize(beams.size());
     const std::uint32_t rays = tracedRaysOf(setup.settings);
@@ -132,7 +136,7 @@ public:
       if (!worker)
       {
         worker = std::make_unique<Worker>(
-          this->Setup, this->Beams, this->Cache.stays, *this->Cache.samplers[thread],
+          this->Setup, this->Air, this->Beams, this->Cache.stays, *this->Cache.samplers[thread],
           [this, thread] { return this->Progress.shouldContinue(thread); }, this->Sights);
       }
       this->scan(begin, end, *worker, this->Blocks[begin / this->Size], thread);
@@ -161,11 +165,11 @@ private:
   /// Trace the beams of a block that are not kept, and light all of them.
   void scan(std::size_t begin, std::size_t end, Worker& worker, Block& block, int thread)
   {
-    std::vector<BeamTrace>& traces = this->Cache.beams;
+    std::vector<KeptBeam>& kept = this->Cache.beams;
     std::size_t heldBefore = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
-      heldBefore += traces[b].held;
+      heldBefore += kept[b].held;
     }
     this->BytesHeld -= heldBefore;
     if (worker.moved)
@@ -174,47 +178,51 @@ private:
     }
     const auto isTouched = [&](std::size_t b)
     { return worker.moved && worker.moved->isTouched(b); };
-    block.beamsTraced += worker.simulator.trace(begin, end, traces, isTouched);
+    const BeamSimulator::Traced traced = worker.simulator.trace(begin, end, kept, isTouched);
+    block.beamsTraced += traced.beams;
     std::size_t raysSince = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
       BeamReport& report = this->Result.reports[b];
+      BeamView moved; // what another run has kept of a touched beam must not count
       if (isTouched(b))
       {
         ++block.beamsTouched;
-        worker.moved->simulate(b, block.echoes, report, block.sights);
+        MovedBeams::Followed followed =
+          worker.moved->simulate(b, block.echoes, report, block.sights, std::move(worker.light));
+        moved = std::move(followed.view);
+        worker.light = std::move(followed.light);
       }
       else
       {
-        worker.simulator.light(b, traces[b], block.echoes, report);
+        worker.light = worker.simulator.follow(
+          b, traced.costs[b - begin], kept[b], block.echoes, report, std::move(worker.light));
       }
       block.beamOfEcho.resize(block.echoes.size(), b);
       if (!this->Setup.tree->planeOwners.empty())
       {
-        // What another run has kept of a touched beam must not count.
-        addSeenPlanes(
-          *this->Setup.tree, isTouched(b) ? worker.moved->trace() : traces[b], b, block.planes);
+        addSeenPlanes(*this->Setup.tree, isTouched(b) ? moved : kept[b].view, b, block.planes);
       }
       block.raysTraced += report.raysTracedNow;
       this->Progress.beamDone();
       this->checkForAbort(b, thread, raysSince);
-      this->keep(traces[b]);
+      this->keep(kept[b]);
     }
     sortSeenPlanes(block.planes);
   }
 
   /// Keep a beam only as far as memory allows.
-  void keep(BeamTrace& trace)
+  void keep(KeptBeam& beam)
   {
-    if (trace.lit && this->BytesHeld + trace.held > this->Maximum)
+    if (beam.lit && this->BytesHeld + beam.held > this->Maximum)
     {
-      trace.lit.reset(); // hits save more time than light
-      trace.held = trace.heldBytes();
+      beam.lit.reset(); // hits save more time than light
+      beam.held = beam.heldBytes();
     }
-    const std::size_t bytes = trace.held;
+    const std::size_t bytes = beam.held;
     if (bytes > 0 && this->BytesHeld.fetch_add(bytes) + bytes > this->Maximum)
     {
-      trace = BeamTrace{};
+      beam = KeptBeam{};
       this->BytesHeld -= bytes;
     }
   }
@@ -222,10 +230,10 @@ private:
   /// Check for an abort once `rays`, the cost since the last check, is large enough.
   void checkForAbort(std::size_t b, int thread, std::size_t& rays)
   {
-    const BeamTrace& trace = this->Cache.beams[b];
-    rays += trace.hits ? this->Result.reports[b].counters.raysTraced
-                       : (trace.polygons() ? CostOfPolygonsInRays : 0);
-    rays += trace.cells() ? this->CostOfCellsInRays : 0;
+    const BeamView& view = this->Cache.beams[b].view;
+    rays += view.hits ? this->Result.reports[b].counters.raysTraced
+                      : (view.polygons() ? CostOfPolygonsInRays : 0);
+    rays += view.cells() ? this->CostOfCellsInRays : 0;
     if (rays > RaysBetweenChecks)
     {
       rays = 0;
@@ -261,6 +269,7 @@ private:
   }
 
   const ScanSetup& Setup;
+  const ScanAir Air;
   const ScanBeams& Beams;
   const int Threads;
   TraceCache& Cache;

@@ -25,12 +25,12 @@ struct HashOfKey
   }
 };
 
-std::size_t bytesOf(const std::vector<BeamTrace>& traces)
+std::size_t bytesOf(const std::vector<KeptBeam>& traces)
 {
   std::size_t sum = 0;
-  for (const BeamTrace& trace : traces)
+  for (const KeptBeam& trace : traces)
   {
-    sum += sizeof(BeamTrace) + trace.held;
+    sum += sizeof(KeptBeam) + trace.held;
   }
   return sum;
 }
@@ -46,9 +46,9 @@ void TraceCache::clear()
 {
   this->key = 0;
   this->scan = 0;
-  std::vector<BeamTrace>().swap(this->beams);
+  std::vector<KeptBeam>().swap(this->beams);
   std::vector<BeamKey>().swap(this->keys);
-  std::vector<BeamTrace>().swap(this->absent);
+  std::vector<KeptBeam>().swap(this->absent);
   std::vector<BeamKey>().swap(this->absentKeys);
   this->samplers.clear();
 }
@@ -74,7 +74,7 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
     this->take(scanned);
     if (this->bytes() > maximumBytes)
     {
-      std::vector<BeamTrace>().swap(this->absent);
+      std::vector<KeptBeam>().swap(this->absent);
       std::vector<BeamKey>().swap(this->absentKeys);
     }
   }
@@ -90,7 +90,7 @@ void TraceCache::follow(const ScanSetup& setup, const ScanBeams& scanned, std::s
 
 void TraceCache::forgetLight()
 {
-  for (BeamTrace& trace : this->beams)
+  for (KeptBeam& trace : this->beams)
   {
     if (trace.lit)
     {
@@ -104,14 +104,14 @@ void TraceCache::forgetLight()
 /// Surfaces behind the gate matter in daylight.
 void TraceCache::forgetCrowds()
 {
-  for (std::vector<BeamTrace>* traces : { &this->beams, &this->absent })
+  for (std::vector<KeptBeam>* traces : { &this->beams, &this->absent })
   {
-    for (BeamTrace& trace : *traces)
+    for (KeptBeam& trace : *traces)
     {
-      if (trace.direct() == DirectEcho::Rays || trace.isBehindGate() ||
-        (trace.cells() && trace.cells()->isCrowded))
+      if (trace.view.direct() == DirectEcho::Rays || trace.view.isBehindGate() ||
+        (trace.view.cells() && trace.view.cells()->isCrowded))
       {
-        trace = BeamTrace{};
+        trace = KeptBeam{};
       }
     }
   }
@@ -120,7 +120,7 @@ void TraceCache::forgetCrowds()
 void TraceCache::take(const ScanBeams& scanned)
 {
   this->forgetLight();
-  std::unordered_map<BeamKey, BeamTrace*, HashOfKey> known;
+  std::unordered_map<BeamKey, KeptBeam*, HashOfKey> known;
   known.reserve(this->keys.size() + this->absentKeys.size());
   for (std::size_t b = 0; b < this->keys.size(); ++b)
   {
@@ -131,7 +131,7 @@ void TraceCache::take(const ScanBeams& scanned)
     known.emplace(this->absentKeys[b], &this->absent[b]);
   }
   const std::size_t before = known.size();
-  std::vector<BeamTrace> traces(scanned.size());
+  std::vector<KeptBeam> traces(scanned.size());
   std::vector<BeamKey> names(scanned.size());
   for (std::size_t b = 0; b < scanned.size(); ++b)
   {
@@ -143,7 +143,7 @@ void TraceCache::take(const ScanBeams& scanned)
       known.erase(found);
     }
   }
-  std::vector<BeamTrace> rest;
+  std::vector<KeptBeam> rest;
   std::vector<BeamKey> restKeys;
   if (known.size() < before || scanned.size() == 0) // else no beam is in common
   {

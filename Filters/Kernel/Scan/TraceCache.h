@@ -36,11 +36,11 @@ struct TraceCache
   std::uint64_t key = 0;  ///< traceKey() of the setup
   std::uint64_t scan = 0; ///< checksumOf() of the beams
   bool stays = false;     ///< whether the beams are the same as in the run before
-  std::vector<BeamTrace> beams;
+  std::vector<KeptBeam> beams;
   std::vector<BeamKey> keys; ///< keys of `beams`
   /// Kept beams that are not in the present scan, such as beams of another part of a sweep. Absent
   /// beams are kept while each scan has a beam in common with the cache, and while memory allows.
-  std::vector<BeamTrace> absent;
+  std::vector<KeptBeam> absent;
   std::vector<BeamKey> absentKeys;
   std::vector<std::unique_ptr<BeamSampler>> samplers; ///< sampler of each thread
   std::uint64_t light = 0;                            ///< lightKey() of the last run

@@ -16,7 +16,7 @@
  *
  * Source: Gaussian noise of a direct-detection receiver with an avalanche photodiode, e.g.
  * R. D. Richmond and S. C. Cain, Direct-Detection LADAR Systems, SPIE, 2010.
- * Differs: the paper gives limits in joules and Poisson noise (Receiver.h, BeamNoise.h).
+ * Differs: the paper gives limits in joules and Poisson noise (BeamReceiver.h, BeamNoise.h).
  * Valid: Gaussian noise is right for many electrons. Noise of single electrons is skewed. If the
  * number of detected photons is Poisson distributed with the mean n_b/F, and each photon makes F
  * electrons, the skewness is g = F^2 n_b/sigma0^3. No avalanche with the excess noise factor F has

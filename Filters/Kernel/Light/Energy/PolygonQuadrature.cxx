@@ -21,37 +21,35 @@ PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup)
 {
 }
 
-void PolygonQuadrature::begin(const BeamFrame& frame, const VisiblePolygons& seen)
+void PolygonQuadrature::bound(const VisiblePolygons& seen, PolygonBounds& bounds)
 {
-  this->Frame = frame;
-  this->Seen = &seen;
-  this->Polygons.clear();
-  this->Whole = { std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0, 0.0 };
+  bounds.polygons.clear();
+  bounds.nearest = std::numeric_limits<double>::infinity();
+  bounds.farthest = bounds.returned = bounds.mostInUnit = bounds.mostAlbedo = 0.0;
   double largest = 0.0;
   seen.forEach(
     [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
-      const Bounds bounds = this->boundsOf(surface, ring);
-      this->Polygons.push_back(bounds);
-      this->Whole.nearest = std::min(this->Whole.nearest, (1.0 - 1e-9) / bounds.extent.mostInverse);
-      this->Whole.farthest = std::max(this->Whole.farthest,
-        Surely * std::sqrt(1.0 + this->Rule.tangent2()) / bounds.extent.leastInverse);
-      this->Whole.returnBound += bounds.returned * bounds.share;
-      this->Whole.mostInUnit += bounds.inUnit;
-      largest = std::max(largest, bounds.returned);
+      const PolygonBounds::One one = this->boundsOf(surface, ring);
+      bounds.polygons.push_back(one);
+      bounds.nearest = std::min(bounds.nearest, (1.0 - 1e-9) / one.extent.mostInverse);
+      bounds.farthest = std::max(
+        bounds.farthest, Surely * std::sqrt(1.0 + this->Rule.tangent2()) / one.extent.leastInverse);
+      bounds.returned += one.returned * one.share;
+      bounds.mostInUnit += one.inUnit;
+      largest = std::max(largest, one.returned);
       for (const std::uint32_t triangle : { surface.triangle, surface.other })
       {
-        this->Whole.mostAlbedo = std::max(this->Whole.mostAlbedo,
+        bounds.mostAlbedo = std::max(bounds.mostAlbedo,
           triangle == NoTriangle ? 0.0 : this->Setup.material(triangle).albedo());
       }
     });
   // The rules are exact only below the cap of throughAperture().
-  this->Gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;
-  this->Whole.returnBound = Surely * this->Setup.sensor.pulseEnergy *
-    std::min(this->Whole.returnBound, largest) *
-    transmission(this->Setup.attenuation(), 2.0 * this->Whole.nearest);
-  this->Whole.mostInUnit = std::min(this->Whole.returnBound, this->Whole.mostInUnit);
-  this->drop();
+  bounds.gathers = this->Setup.sensor.receiverAperture > 0.0 && largest >= 1.0 - 1e-9;
+  bounds.returned = Surely * this->Setup.sensor.pulseEnergy * std::min(bounds.returned, largest) *
+    transmission(this->Setup.attenuation(), 2.0 * bounds.nearest);
+  bounds.mostInUnit = std::min(bounds.returned, bounds.mostInUnit);
+  this->drop(bounds);
 }
 
 /// Bound of a triangle's reflectance through the aperture. @param mostInverse largest 1/z, 1/m
@@ -65,13 +63,13 @@ double PolygonQuadrature::mostReturnedBy(
     .total();
 }
 
-PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
+PolygonBounds::One PolygonQuadrature::boundsOf(
   const PlaneSurface& surface, const PlaneRing& ring) const
 {
   const Sensor& sensor = this->Setup.sensor;
   const PlaneLine& w = surface.inverse;
   const double slope = w.slope();
-  Bounds bounds{ PolygonRule::extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
+  PolygonBounds::One bounds{ PolygonRule::extentOf(surface, ring), 0.0, 0.0, 0.0, false, false };
   double least = 1.0; // lower end of the extent across the gradient, times the slope
   double most = -1.0;
   for (int i = 0; i < ring.size; ++i)
@@ -106,46 +104,47 @@ PolygonQuadrature::Bounds PolygonQuadrature::boundsOf(
 
 /// Mark the faintest polygons over many units as dropped, and the next polygons as faint, as long
 /// as no unit loses too much.
-void PolygonQuadrature::drop()
+void PolygonQuadrature::drop(PolygonBounds& bounds)
 {
-  this->Dropped = 0.0;
+  bounds.dropped = 0.0;
   // A surface that returns little laser light may be bright in the sun.
   if (!dropsFaintPaths(this->Setup.settings) || this->Setup.sensor.seesDaylight())
   {
     return;
   }
   this->Faint.clear();
-  for (std::uint32_t k = 0; k < this->Polygons.size(); ++k)
+  for (std::uint32_t k = 0; k < bounds.polygons.size(); ++k)
   {
-    const Bounds& bounds = this->Polygons[k];
-    if (1.0 / bounds.extent.leastInverse - 1.0 / bounds.extent.mostInverse >
+    const PolygonBounds::One& one = bounds.polygons[k];
+    if (1.0 / one.extent.leastInverse - 1.0 / one.extent.mostInverse >
       FewUnits * this->Rule.unitLength())
     {
-      this->Faint.emplace_back(bounds.inUnit, k);
+      this->Faint.emplace_back(one.inUnit, k);
     }
   }
   std::sort(this->Faint.begin(), this->Faint.end());
   const double most = 0.5 * lightEnergyTolerance(this->Setup);
   for (const auto& [energy, polygon] : this->Faint)
   {
-    Bounds& bounds = this->Polygons[polygon];
-    bounds.dropped = this->Dropped + energy <= most;
-    const double lacking = bounds.dropped ? energy : MostFaintStretch * energy;
-    bounds.faint = this->Dropped + lacking <= most;
-    this->Dropped += bounds.faint ? lacking : 0.0;
+    PolygonBounds::One& one = bounds.polygons[polygon];
+    one.dropped = bounds.dropped + energy <= most;
+    const double lacking = one.dropped ? energy : MostFaintStretch * energy;
+    one.faint = bounds.dropped + lacking <= most;
+    bounds.dropped += one.faint ? lacking : 0.0;
   }
 }
 
 /// Call f(surface, triangle, ring, bounds) for each polygon that is not dropped, and for each half
 /// of a quadrilateral separately if the halves differ in object or material.
 template <class F>
-void PolygonQuadrature::forEachPart(F f)
+void PolygonQuadrature::forEachPart(
+  const VisiblePolygons& seen, const PolygonBounds& all, F f) const
 {
   std::size_t number = 0;
-  this->Seen->forEach(
+  seen.forEach(
     [&](const PlaneSurface& surface, const PlaneRing& ring)
     {
-      const Bounds& bounds = this->Polygons[number++];
+      const PolygonBounds::One& bounds = all.polygons[number++];
       const std::uint32_t one = surface.triangle;
       const std::uint32_t two = surface.other;
       PlaneRing first;
@@ -180,32 +179,32 @@ void PolygonQuadrature::forEachPart(F f)
     });
 }
 
-const PolygonNodes& PolygonQuadrature::place()
+void PolygonQuadrature::place(const BeamFrame& frame, const VisiblePolygons& seen,
+  const PolygonBounds& bounds, PolygonNodes& nodes)
 {
-  BeamSamples& samples = this->Nodes.samples;
+  BeamSamples& samples = nodes.samples;
   samples.range.clear();
   samples.cosine.clear();
   samples.weight.clear();
   samples.surfaces.clear();
-  samples.nearest = this->Whole.nearest;
-  samples.farthest = this->Whole.farthest;
-  this->Nodes.uncertain.clear();
+  samples.nearest = bounds.nearest;
+  samples.farthest = bounds.farthest;
+  nodes.uncertain.clear();
   // Rounded corners move the sides, as seen from the apex.
-  this->Misplaced = this->Seen->lost + 64.0 * RoundOffDouble / this->Frame.tanHalf;
-  this->forEachPart(
+  nodes.misplaced = (seen.lost + 64.0 * RoundOffDouble / frame.tanHalf) * bounds.returned;
+  nodes.error = bounds.gathers ? ErrorOfGathered : ErrorOfUnit;
+  this->forEachPart(seen, bounds,
     [&](const PlaneSurface& surface, std::uint32_t triangle, const PlaneRing& ring,
-      const Bounds& bounds)
+      const PolygonBounds::One& one)
     {
-      this->Rule.set(surface, triangle, bounds.extent, bounds.faint);
-      this->Rule.place(surface, ring, this->Nodes);
+      this->Rule.set(surface, triangle, one.extent, one.faint);
+      this->Rule.place(surface, ring, nodes);
     });
-  return this->Nodes;
 }
 
-double PolygonQuadrature::boundOf(
-  const RangeShares& shares, const std::vector<double>& energies) const
+double boundOfNodes(
+  const PolygonNodes& nodes, const RangeShares& shares, const std::vector<double>& energies)
 {
-  const std::vector<double>& uncertain = this->Nodes.uncertain;
   double bound = 0.0;
   double energy = 0.0;
   std::size_t next = 0; // first node whose uncertainty is not yet counted
@@ -222,10 +221,9 @@ double PolygonQuadrature::boundOf(
     next = std::min(node + 3, energies.size());
     for (std::size_t k = first; k < next; ++k)
     {
-      bound += energies[k] * uncertain[k];
+      bound += energies[k] * nodes.uncertain[k];
     }
   }
-  return bound + (this->Gathers ? ErrorOfGathered : ErrorOfUnit) * energy +
-    this->Misplaced * this->Whole.returnBound;
+  return bound + nodes.error * energy + nodes.misplaced;
 }
 }

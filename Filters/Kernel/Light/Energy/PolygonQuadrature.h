@@ -12,7 +12,7 @@
  *
  * Source: paper, Eq. 4-9, and the light-energy constraint of Sec. 3.4.
  * Differs: the paper samples all beams with rays.
- * Valid: boundOf() bounds the error of a unit's energy. The bound is the sum of three parts:
+ * Valid: boundOfNodes() bounds the error of a unit's energy. The bound is the sum of three parts:
  * ErrorOfUnit times the energy, the energy that rules may put beyond borders of units, and the
  * energy that VisiblePolygons::lost may hide. Beyond the range gate, energies of single range units
  * are not valid. A beam does not fit if one of its polygons has no rule, or if it needs more than
@@ -25,7 +25,7 @@
 
 #include "BeamFrame.h"
 #include "PolygonRule.h"
-#include "RangeUnits.h"
+#include "RangeShares.h"
 #include "VisiblePolygons.h"
 
 #include <utility>
@@ -39,40 +39,19 @@ constexpr double FewUnits = 16.0;
 /// Relative error of a unit's energy where an aperture gathers all light that a surface returns.
 constexpr double ErrorOfGathered = 1e-2;
 
-/// Integrates one beam after the other. Each thread needs its own object. The setup must outlive
-/// the object.
-class PolygonQuadrature
+/// Extent and bounds of an integrated beam, found without placing nodes.
+struct PolygonBounds
 {
-public:
-  explicit PolygonQuadrature(const ScanSetup& setup);
+  double nearest = 0.0;    ///< lower bound of ranges, m
+  double farthest = 0.0;   ///< upper bound of ranges, m
+  double returned = 0.0;   ///< upper bound of the energy that returns, J
+  double mostInUnit = 0.0; ///< upper bound of the energy that returns in one range unit, J
+  double mostAlbedo = 0.0; ///< largest albedo of the visible surfaces
+  double dropped = 0.0;    ///< bound of the energy that a unit loses by dropped polygons, J
+  bool gathers = false;    ///< whether the aperture gathers nearly all light that returns
 
-  /// Begin a beam. The caller must keep the polygons until the next call of begin().
-  void begin(const BeamFrame& frame, const VisiblePolygons& seen);
-
-  /// Extent and bounds of a beam, found without placing nodes.
-  struct Extent
-  {
-    double nearest;     ///< lower bound of ranges, m
-    double farthest;    ///< upper bound of ranges, m
-    double returnBound; ///< upper bound of the energy that returns, J
-    double mostInUnit;  ///< upper bound of the energy that returns in one range unit, J
-    double mostAlbedo;  ///< largest albedo of the visible surfaces
-  };
-  const Extent& extent() const { return this->Whole; }
-
-  /// The nodes of a beam that fits. The nodes are valid until the next call.
-  const PolygonNodes& place();
-
-  /// Bound of the energy, J, that a range unit loses by dropped and faint polygons.
-  double dropped() const { return this->Dropped; }
-
-  /// Bound of the error, J, of the energy that the nodes placed last put into some range units.
-  /// @param energies energies of the nodes, J
-  double boundOf(const RangeShares& shares, const std::vector<double>& energies) const;
-
-private:
-  /// Bounds of a polygon, found before it is integrated.
-  struct Bounds
+  /// Bounds of one polygon.
+  struct One
   {
     PolygonRule::Extent extent;
     double returned; ///< largest share of the arriving energy that returns
@@ -81,27 +60,40 @@ private:
     bool dropped;
     bool faint; ///< whether one sample per part suffices
   };
-  Bounds boundsOf(const PlaneSurface& surface, const PlaneRing& ring) const;
+  std::vector<One> polygons; ///< in the order of VisiblePolygons::forEach()
+};
+
+/// Integrates one beam after the other. Each thread needs its own object. The setup must outlive
+/// the object.
+class PolygonQuadrature
+{
+public:
+  explicit PolygonQuadrature(const ScanSetup& setup);
+
+  /// Find the bounds of a beam that sees these polygons, and which polygons are dropped.
+  void bound(const VisiblePolygons& seen, PolygonBounds& bounds);
+
+  /// Place the nodes of a beam that fits (PolygonRule::fits()).
+  void place(const BeamFrame& frame, const VisiblePolygons& seen, const PolygonBounds& bounds,
+    PolygonNodes& nodes);
+
+private:
+  PolygonBounds::One boundsOf(const PlaneSurface& surface, const PlaneRing& ring) const;
   double mostReturnedBy(std::uint32_t triangle, double height, double mostInverse) const;
-  void drop();
+  void drop(PolygonBounds& bounds);
   template <class F>
-  void forEachPart(F f);
+  void forEachPart(const VisiblePolygons& seen, const PolygonBounds& all, F f) const;
 
   const ScanSetup& Setup;
   PolygonRule Rule;
-  std::vector<Bounds> Polygons;
   /// Energy in a range unit, J, and number, for each faint polygon.
   std::vector<std::pair<double, std::uint32_t>> Faint;
-  PolygonNodes Nodes;
-
-  // The current beam.
-  BeamFrame Frame;
-  const VisiblePolygons* Seen = nullptr;
-  Extent Whole{};
-  double Misplaced = 0.0; ///< bound of the share of the pulse that may miss its surface
-  double Dropped = 0.0;   ///< result of dropped(), J
-  bool Gathers = false;   ///< whether the aperture gathers nearly all light that returns
 };
+
+/// Bound of the error, J, of the energy that the nodes of a beam put into some range units. @param
+/// energies energies of the nodes, J
+double boundOfNodes(
+  const PolygonNodes& nodes, const RangeShares& shares, const std::vector<double>& energies);
 }
 
 #endif

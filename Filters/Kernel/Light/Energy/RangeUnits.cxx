@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
 
 namespace avianlidar
 {
@@ -15,11 +13,6 @@ namespace
 {
 /// Number of units of the table.
 constexpr double TableUnits = 16384.0;
-
-/// Number of requests for shares after which the contributions of a beam are sorted by their first
-/// units, so that a request costs what it returns. Without sorting, a scan of ground in ReturnMode
-/// RangeUnits, where a beam reaches hundreds of units, takes twenty times as long.
-constexpr int RequestsBeforeSorting = 8;
 
 /// First and last unit that pulses with energy meet. The last is below the first if no pulse has
 /// energy.
@@ -64,29 +57,6 @@ AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const dou
   }
   return { lowest, highest };
 }
-
-/// Energy of a pulse inside units [first, last).
-AVIANLIDAR_ALWAYS_INLINE double portionOfPulse(double energy, double begin, double width,
-  double pulseFirst, double pulseLast, double first, double last)
-{
-  const double from = pulseFirst >= first ? 0.0 : (first - begin) / width;
-  const double to = pulseLast < last ? 1.0 : (last - begin) / width;
-  const bool meets = (pulseFirst < last) & (pulseLast >= first);
-  return meets ? energy * (to - from) : 0.0;
-}
-
-/// portionOfPulse() of many pulses.
-AVIANLIDAR_MULTIVERSION void portionsOfPulses(const double* energies, const double* begins,
-  const double* widths, const double* firsts, const double* lasts, double first, double last,
-  double* portions, std::size_t count)
-{
-#pragma omp simd
-  for (std::size_t c = 0; c < count; ++c)
-  {
-    portions[c] =
-      portionOfPulse(energies[c], begins[c], widths[c], firsts[c], lasts[c], first, last);
-  }
-}
 }
 
 RangeUnitAccumulator::RangeUnitAccumulator(
@@ -107,7 +77,6 @@ void RangeUnitAccumulator::clear()
   this->EnergyBeforeGate = 0.0;
   this->EnergyBeyondGate = 0.0;
   this->LateEnergy = 0.0;
-  this->Requests = 0;
 }
 
 /// The energy of a path, or 0 if its range lies outside the gate.
@@ -166,17 +135,15 @@ void RangeUnitAccumulator::accumulate()
 {
   this->Units.clear();
   this->EnergyBeyondGate = this->LateEnergy;
-  this->Requests = 0;
   const std::size_t count = this->Lengths.size();
-  // Portions are not used until shares are requested.
   for (std::vector<double>* v :
-    { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts, &this->Portions })
+    { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts, &this->Heads })
   {
     v->resize(count);
   }
   const PulseExtent extent = placePulses(this->Lengths.data(), this->Energies.data(),
     this->UnitPathLength, this->RelativeWidth, this->Begins.data(), this->Widths.data(),
-    this->Firsts.data(), this->Lasts.data(), this->Portions.data(), count);
+    this->Firsts.data(), this->Lasts.data(), this->Heads.data(), count);
   const double gate = static_cast<double>(this->GateUnits);
   for (std::size_t c = 0; extent.highest >= gate && c < count; ++c)
   {
@@ -225,7 +192,7 @@ double RangeUnitAccumulator::addWindow(double from, double to)
     {
       const double after = !(unit < last) ? 1.0
         : unit > first                    ? shareUpTo(unit + 1.0)
-                                          : this->Portions[c]; // portion of the first unit
+                                          : this->Heads[c]; // portion of the first unit
       const bool hasShare = after > before;
       this->Table[place].energy += hasShare ? this->Energies[c] * (after - before) : 0.0;
       this->Table[place].paths += hasShare;
@@ -246,66 +213,5 @@ double RangeUnitAccumulator::addWindow(double from, double to)
     this->Marks[word] = 0;
   }
   return next;
-}
-
-RangeShares RangeUnitAccumulator::sharesOf(std::int64_t first, std::int64_t last)
-{
-  if (this->Requests == 0 || first != this->ShareFirst || last != this->ShareLast)
-  {
-    this->ShareFirst = first;
-    this->ShareLast = last;
-    this->findShares(static_cast<double>(first), static_cast<double>(last));
-  }
-  return { this->Portions.data(), this->Sharers.data(), this->ShareCount };
-}
-
-void RangeUnitAccumulator::findShares(double first, double last)
-{
-  const std::size_t count = this->Lengths.size();
-  this->Portions.resize(count);
-  this->Sharers.resize(count);
-  this->ShareCount = 0;
-  const auto add = [&](std::uint32_t c, double portion)
-  {
-    this->Portions[this->ShareCount] = portion;
-    this->Sharers[this->ShareCount] = c;
-    this->ShareCount += portion > 0.0;
-  };
-  if (++this->Requests <= RequestsBeforeSorting)
-  {
-    portionsOfPulses(this->Energies.data(), this->Begins.data(), this->Widths.data(),
-      this->Firsts.data(), this->Lasts.data(), first, last, this->Portions.data(), count);
-    for (std::size_t c = 0; c < count; ++c)
-    {
-      add(static_cast<std::uint32_t>(c), this->Portions[c]);
-    }
-    return;
-  }
-  for (const std::uint32_t c : this->contributionsNear(first, last))
-  {
-    add(c,
-      portionOfPulse(this->Energies[c], this->Begins[c], this->Widths[c], this->Firsts[c],
-        this->Lasts[c], first, last));
-  }
-}
-
-/// All contributions that may have a share in units [first, last), in the order of their numbers.
-const std::vector<std::uint32_t>& RangeUnitAccumulator::contributionsNear(double first, double last)
-{
-  if (this->Requests == RequestsBeforeSorting + 1)
-  {
-    this->ByFirst.resize(this->Lengths.size());
-    std::iota(this->ByFirst.begin(), this->ByFirst.end(), 0u);
-    std::sort(this->ByFirst.begin(), this->ByFirst.end(),
-      [this](std::uint32_t a, std::uint32_t b)
-      { return std::tie(this->Firsts[a], a) < std::tie(this->Firsts[b], b); });
-  }
-  // No pulse overlaps more than RelativeWidth + 2 units.
-  const auto isBelow = [this](std::uint32_t c, double unit) { return this->Firsts[c] < unit; };
-  const auto begin = std::lower_bound(this->ByFirst.begin(), this->ByFirst.end(),
-    first - std::ceil(this->RelativeWidth) - 2.0, isBelow);
-  this->Near.assign(begin, std::lower_bound(begin, this->ByFirst.end(), last, isBelow));
-  std::sort(this->Near.begin(), this->Near.end());
-  return this->Near;
 }
 }

@@ -36,35 +36,6 @@ struct Contribution
   double energy = 0.0;     ///< received energy, J; contributions of 0 J are left out
 };
 
-/// Energies that contributions put into some consecutive range units, in the order of the
-/// contributions. Contributions that put nothing into these units are left out.
-struct RangeShares
-{
-  const double* energies = nullptr;            ///< energies of the shares, J, above 0
-  const std::uint32_t* contribution = nullptr; ///< number of the contribution of each share
-  std::size_t count = 0;
-};
-
-/// Sums of energies, J, and of energies times a value.
-struct WeightedSum
-{
-  double energy = 0.0;
-  double moment = 0.0;
-};
-
-/// Sums over shares, in the order of the shares. @param value function of the number of a share
-template <class F>
-WeightedSum sumShares(const RangeShares& shares, F value)
-{
-  WeightedSum sum;
-  for (std::size_t s = 0; s < shares.count; ++s)
-  {
-    sum.energy += shares.energies[s];
-    sum.moment += shares.energies[s] * value(s);
-  }
-  return sum;
-}
-
 /// A range unit that received energy.
 struct RangeUnit
 {
@@ -104,9 +75,22 @@ public:
   /// Units with energy in ascending order of index, each unit once.
   const std::vector<RangeUnit>& units() const { return this->Units; }
 
-  /// Shares of the paths in units [first, last), which must lie inside the gate. Requires
-  /// accumulate(). The shares are valid until the next call, and empty after clear().
-  RangeShares sharesOf(std::int64_t first, std::int64_t last);
+  /// Pulses of the contributions, after accumulate(), one entry per contribution. Places and widths
+  /// are in units.
+  struct Pulses
+  {
+    const std::vector<double>& energies; ///< energies, J; 0: not recorded
+    const std::vector<double>& begins;
+    const std::vector<double>& widths;
+    const std::vector<double>& firsts; ///< first unit that the pulse meets
+    const std::vector<double>& lasts;  ///< last unit that the pulse meets
+    double width;                      ///< width of every pulse that is not a delta pulse
+  };
+  Pulses pulses() const
+  {
+    return { this->Energies, this->Begins, this->Widths, this->Firsts, this->Lasts,
+      this->RelativeWidth };
+  }
 
   /// Lengths (m) of the contributions, after accumulate().
   const std::vector<double>& pathLengths() const { return this->Lengths; }
@@ -129,8 +113,6 @@ public:
 private:
   double recorded(double length, double energy);
   double addWindow(double from, double to);
-  void findShares(double first, double last);
-  const std::vector<std::uint32_t>& contributionsNear(double first, double last);
 
   double UnitPathLength; // length of path in a unit, c tau_s, m
   double RelativeWidth;  // width of the pulse, tau_e/tau_s
@@ -149,20 +131,12 @@ private:
   std::vector<double> Widths;
   std::vector<double> Firsts;
   std::vector<double> Lasts;
+  std::vector<double> Heads; ///< share of each pulse in its first unit
 
   std::vector<RangeUnit> Units;
   std::vector<RangeUnit> Table; ///< sums of a window of units; zero between beams
   std::vector<std::uint64_t>
     Marks; ///< bits of the table's units, 1 for units with a share; 0 between beams
-  // The shares requested last, in units [ShareFirst, ShareLast).
-  std::vector<double> Portions;
-  std::vector<std::uint32_t> Sharers;
-  std::size_t ShareCount = 0;
-  std::int64_t ShareFirst = 0;
-  std::int64_t ShareLast = 0;
-  int Requests = 0;                   ///< number of requests since accumulate()
-  std::vector<std::uint32_t> ByFirst; ///< contributions sorted by first unit, after some requests
-  std::vector<std::uint32_t> Near;    ///< contributions near the requested units, by number
 };
 }
 

@@ -46,7 +46,7 @@ struct SecondaryBeam
   const VisiblePolygons* surfaces = nullptr;
   /// Samples of a beam in cells, which give the shares of `surfaces`; null for other beams.
   const BeamSamples* cells = nullptr;
-  BeamAir* air = nullptr; ///< air along the beam; null: all media fill the scene
+  const BeamAir* air = nullptr; ///< air along the beam; null: all media fill the scene
   /// Range units to which only the direct echoes have been added; null: all paths matter, however
   /// faint.
   RangeUnitAccumulator* units = nullptr;

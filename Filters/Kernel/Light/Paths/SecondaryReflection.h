@@ -45,7 +45,7 @@
  * all kinds of paths, the cosine in f at P2 is the cosine of the outgoing direction.
  *
  * Geometry is found only where energies depend on the geometry. The geometry is stored
- * (BeamTrace.h). Throughputs are computed anew each time energies are computed.
+ * (KeptBeam.h). Throughputs are computed anew each time energies are computed.
  *
  * Source: paper, Sec. 3.4 and Eq. 6. The sum of bounded connections and short paths: Kollig and
  * Keller, "Illumination in the Presence of Weak Singularities", MCQMC 2004.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RangeStrips.h"
 
-#include "BeamAir.h"
 #include "KeySort.h"
 #include "Multiversion.h"
+#include "ScanAir.h"
 
 #include <algorithm>
 #include <cmath>
@@ -309,7 +309,7 @@ bool RangeStrips::addWhole(
   sum.moment += weight * secant / inverse;
   if (this->HasPlaces)
   {
-    sum.place.add(BeamAir::columnsIn(middle.x, middle.y, half), weight, middle.x, middle.y, half);
+    sum.place.add(AirColumn::in(middle.x, middle.y, half), weight, middle.x, middle.y, half);
   }
   return true;
 }
@@ -335,7 +335,7 @@ namespace
 void addPlace(const Block& block, int ray, SamplePlace& place)
 {
   place.add(
-    BeamAir::columnAt(block.x[ray], block.y[ray]), block.weight[ray], block.x[ray], block.y[ray]);
+    AirColumn::at(block.x[ray], block.y[ray]), block.weight[ray], block.x[ray], block.y[ray]);
 }
 }
 

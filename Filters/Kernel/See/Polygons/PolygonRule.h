@@ -58,6 +58,8 @@ struct PolygonNodes
 {
   BeamSamples samples;
   std::vector<double> uncertain; ///< share of each node's energy that may lie in another unit
+  double misplaced = 0.0;        ///< bound of the energy that may miss its surface, J
+  double error = ErrorOfUnit;    ///< relative error of a unit's energy otherwise
 };
 
 /// Places the samples of one polygon after the other. Each thread needs its own object. The setup

@@ -39,7 +39,7 @@ constexpr std::uint32_t NoSample = 0xffffffffu;
 /// Place of a sample in the beam's plane. Sums are weighted with shares of the pulse.
 struct SamplePlace
 {
-  std::uint64_t columns = 0; ///< bits of the columns of air in which the rays lie (BeamAir.h)
+  std::uint64_t columns = 0; ///< bits of the columns of air in which the rays lie (ScanAir.h)
   double x = 0.0, y = 0.0;   ///< sums of coordinates
   double xx = 0.0, yy = 0.0; ///< sums of squared coordinates
 

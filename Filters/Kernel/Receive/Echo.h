@@ -16,6 +16,16 @@ namespace avianlidar
 /// Object id of echoes from the air.
 constexpr int ObjectOfAir = -2;
 
+/// What a beam reports.
+enum class BeamStatus
+{
+  Echo = 0,
+  NoSurface = 1,
+  BelowLimit = 2,
+  Saturated = 3,
+  OutsideGate = 4 ///< surfaces are met, all of them outside the range gate
+};
+
 // Echoes are compared as bytes, so padding is an error.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wpadded"

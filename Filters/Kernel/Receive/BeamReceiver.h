@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file Receiver.h
+ * @file BeamReceiver.h
  * @brief Makes returns from the energies in range units.
  *
- * Energies are sums over paths (RangeUnits.h) plus noise (BeamNoise.h), limited to the dynamic range. A
+ * Energies are sums over paths (RangeUnits.h) plus noise (BeamNoise.h), limited to the dynamic
+ * range. A
  * **return** is a maximal run of consecutive perceived range units. The range of a return is the
  * mean range (half the path length) of its paths, weighted with the energies that these paths put
  * into the run. A run of false alarms has no paths. In each unit of such a run the noise has a
  * random place (BeamNoise::place()). The range of the return is then the mean of these places,
  * weighted with the energies of the units.
  *
- * Where the air scatters (BeamAir.h), each unit receives light from the air. If the threshold
+ * Where the air scatters (AirLight.h), each unit receives light from the air. If the threshold
  * follows the air, the receiver subtracts the mean n_air of this light. The threshold is then as
  * many standard deviations of the noise as without air: n_T (1 + F n_air/sigma0^2)^(1/2)
  * (PhotonReceiver.h). So every unit has the same probability of a false alarm. Echoes of surfaces,
@@ -26,22 +27,24 @@
  * theta0.5^2/4, relative. A range unit is c tau_s/2 long.
  * Test: TestReceiver.cxx.
  */
-#ifndef avianlidar_Receiver_h
-#define avianlidar_Receiver_h
+#ifndef avianlidar_BeamReceiver_h
+#define avianlidar_BeamReceiver_h
 
-#include "BeamAir.h"
+#include "AirLight.h"
+#include "BeamLight.h"
+#include "BeamNoise.h"
 #include "Drops.h"
 #include "EchoSettings.h"
 #include "LeafGaps.h"
-#include "BeamNoise.h"
 #include "PhotonReceiver.h"
 #include "RangeErrors.h"
-#include "RangeUnits.h"
+#include "RangeShares.h"
 #include "Sensor.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace avianlidar
@@ -66,7 +69,7 @@ struct ReceivedUnit
 
 struct Return
 {
-  std::size_t firstUnit = 0; ///< units [firstUnit, lastUnit) of BeamReceiver::units()
+  std::size_t firstUnit = 0; ///< units [firstUnit, lastUnit) of Received::units
   std::size_t lastUnit = 0;
   std::size_t strongestUnit = 0; ///< nearest unit with the largest Qrec
   double energyReceived = 0.0;   ///< Qrec of the strongest unit (Eq. 10), J
@@ -83,91 +86,84 @@ struct Return
   int numberOfReturns = 1; ///< number of returns of the beam
 };
 
-/// Receives one beam after the other. An object is reused without allocation. Each thread needs its
-/// own object.
+/// What the receiver makes of the light in one beam.
+struct Received
+{
+  NoiseKey key;    ///< key of the beam's random numbers
+  double radiance; ///< spectral radiance in the beam, W/(m2 sr nm)
+  /// Units with light or false alarms, ascending, perceived or not. A unit that is perceived only
+  /// with rare noise is left out unless it has rare noise.
+  std::vector<ReceivedUnit> units;
+  std::vector<Return> returns;     ///< the returns that the mode selects, nearest first
+  std::optional<Return> strongest; ///< the strongest return of the beam, in every mode
+};
+
+/// Receives one beam after the other. Each thread needs its own object.
 class BeamReceiver
 {
 public:
+  /// @param air media of the scan; must outlive the object
   /// @param wanted function called every 512 units for which noise is drawn, counted over all
   /// beams; WorkStopped is thrown if it returns false
-  /// @param air media along each beam; must outlive the object; null: no light from the air
-  /// @param gaps leaves drawn along each beam; must outlive the object; null: no leaves
   BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::int32_t seed, ReturnMode mode,
-    std::int32_t revolution = 0, std::function<bool()> wanted = {}, BeamAir* air = nullptr,
-    const LeafGaps* gaps = nullptr);
+    const ScanAir& air, std::int32_t revolution = 0, std::function<bool()> wanted = {});
 
-  /// Receive a beam. @param units range units with light, ascending @param radiance spectral
-  /// radiance in the beam, W/(m2 sr nm)
-  void receive(std::uint64_t beam, const std::vector<RangeUnit>& units, double radiance);
-
-  /// Spectral radiance in the last beam, W/(m2 sr nm).
-  double radiance() const { return this->Radiance; }
+  /// Receive the light of a beam. @param air, leaves air along the beam, and leaves drawn in it
+  Received receive(
+    std::uint64_t beam, const ArrivingLight& light, const BeamAir& air, const DrawnLeaves& leaves);
 
   /// Range of a return, m. For returns without light, and for all returns in the mode RangeUnits,
-  /// the result is Return::range. @param accumulator range units of the beam's paths
-  double rangeOf(const Return& run, RangeUnitAccumulator& accumulator) const;
+  /// the result is Return::range. @param shares shares of the beam's paths in the return's units
+  /// @param lengths lengths of these paths, m
+  double rangeOf(const Received& received, const Return& run, const RangeShares& shares,
+    const std::vector<double>& lengths) const;
 
   /// The range that the receiver reports for a return at `range`, m: with noise, walk and quantum
   /// (RangeErrors.h), or `range` unchanged in the mode RangeUnits.
-  double measured(const Return& run, double range) const;
+  double measured(const Received& received, const Return& run, double range);
 
-  /// True if units without paths may be perceived. In this case no beam can be left out.
-  bool mayAlarm() const { return this->Plan.active || (this->Air && this->Air->fillsScene()); }
-
-  /// Units with light or false alarms, ascending, perceived or not. A unit that is perceived only
-  /// with rare noise is left out unless it has rare noise.
-  const std::vector<ReceivedUnit>& units() const { return this->Units; }
-
-  /// The returns that the mode selects, nearest first.
-  const std::vector<Return>& returns() const { return this->Returns; }
-
-  /// The strongest return of the beam, in every mode; null if the beam has no return.
-  const Return* strongest() const { return this->HasReturn ? &this->Strongest : nullptr; }
+  /// True if units without paths may be perceived in any beam. In this case no beam can be left
+  /// out.
+  bool mayAlarm() const { return this->Sky.plan.active || this->Scan.fillsScene(); }
 
 private:
-  void lookAt(double radiance);
-  void planAir();
-  double lowerIn(double air) const;
-  bool isLocal() const { return this->Air && this->Air->isLocal(); }
-  double varianceWith(const std::vector<BeamAir::Share>& shares) const;
-  std::uint64_t drawsOf(const BeamAir::Share& share, std::int64_t unit) const;
-  void drawDrops(std::int64_t unit, double* units);
-  double drawAir(std::int64_t unit, ReceivedUnit& received);
-  void collectUnits(const std::vector<RangeUnit>& units);
-  void addUnit(std::int64_t index, double light, std::uint32_t paths, bool alarm);
-  double noiseOf(std::int64_t unit, double light);
-  void formReturns();
-  void select();
-  double rangeOfNoise(const Return& run) const;
-  double openAt(std::int64_t unit) const;
-  double placeIn(std::int64_t unit, double place) const;
-  double centreOf(std::int64_t unit) const;
+  /// Limits, noise and errors of ranges in a background.
+  struct Exposure
+  {
+    Exposure(const Sensor& sensor, const NoisePlan& noise);
 
-  Sensor Instrument; ///< sensor with the sky as background
-  double Radiance;
-  RangeErrors Errors;
-  double UnitLength;
-  double Gate[2]; // least and greatest recorded range, m
-  double Lower;
-  double Upper;
-  NoisePlan Plan;
-  BeamAir* Air;
-  bool FollowsAir;
-  PhotonReceiver Photons;
-  std::uint64_t Beam = 0;
-  const LeafGaps* Gaps; ///< gaps between leaves along a narrow beam; null: no leaves
-  PulseShares Pulse;
+    double radiance;
+    double lower, upper; ///< limits, J
+    NoisePlan plan;
+    RangeErrors errors;
+    PhotonReceiver photons;
+  };
+  /// Reception of one beam.
+  class Reception;
+
+  const Exposure& exposureTo(double radiance);
+  void planAir();
+  double varianceWith(const Exposure& exposure, const std::vector<AirLight::Share>& shares) const;
+  double rangeOfNoise(const Received& received, const Return& run) const;
+  double placeIn(std::int64_t unit, double place) const;
+
+  const Sensor Instrument;
+  const ScanAir& Scan;
+  const double UnitLength;
+  const bool FollowsAir;
+  const std::int32_t Seed;
+  const std::int32_t Revolution;
+  const ReturnMode Mode;
+  const std::function<bool()> Wanted;
+  const PulseShares Pulse;
+  const Exposure Sky;            ///< exposure to the sensor's background
+  std::optional<Exposure> Other; ///< exposure to the last other background
+  std::int64_t Looked = 0;       ///< number of units in which the air alone may be perceived
+  std::uint64_t Drawn = 0;       ///< number of units for which noise was drawn
+  // Memory that receptions use in turn.
+  AirLight Light;
   SharedDrops Drops; ///< light of drops, divided among range units
-  std::int32_t Seed;
-  std::int32_t Revolution;
-  ReturnMode Mode;
-  std::function<bool()> Wanted;
-  std::uint64_t Drawn = 0; ///< number of units for which noise was drawn
   BeamNoise Noise;
-  std::vector<ReceivedUnit> Units;
-  std::vector<Return> Returns;
-  Return Strongest;
-  bool HasReturn = false;
 };
 }
 

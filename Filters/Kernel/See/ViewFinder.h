@@ -20,7 +20,8 @@
 #define avianlidar_ViewFinder_h
 
 #include "BeamCells.h"
-#include "BeamTrace.h"
+#include "BeamTracer.h"
+#include "BeamView.h"
 #include "PolygonRule.h"
 #include "ScanSetup.h"
 
@@ -39,7 +40,7 @@ public:
   /// @param candidates all triangles that may enter the beam in the ranges that matter, each once,
   /// in any order
   /// @param cost counters, increased by the cost of traced rays
-  BeamView find(std::uint64_t beam, const BeamFrame& frame,
+  SeenSurfaces find(std::uint64_t beam, const BeamFrame& frame,
     const std::vector<std::uint32_t>& candidates, TraceCounters& cost);
 
 private:

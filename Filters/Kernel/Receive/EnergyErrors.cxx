@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EnergyErrors.h"
 
+#include "PolygonQuadrature.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -55,75 +57,34 @@ double errorOfCells(const CellSamples& cells, const RangeShares& shares, const S
   }
   return std::sqrt(sum);
 }
-}
-
-EnergyErrors::EnergyErrors(
-  const ScanSetup& setup, const BeamLighting& lighting, StandardErrorEstimator& ofRays)
-  : Setup(setup)
-  , Lighting(lighting)
-  , OfRays(ofRays)
-{
-}
-
-double EnergyErrors::of(const RangeShares& shares, std::uint32_t paths) const
-{
-  if (paths == 0)
-  {
-    return 0.0; // a false alarm: no sample has a share in it
-  }
-  const double sampling = this->ofSamples(shares, paths);
-  const double lobes = this->ofLobes(shares);
-  return lobes > 0.0 ? std::hypot(sampling, lobes) : sampling;
-}
 
 /// Error of the energy that mirror paths put into a unit, by the width of the mirrors' lobes, J.
-double EnergyErrors::ofLobes(const RangeShares& shares) const
+double errorOfLobes(const BeamLight& light, const RangeShares& shares)
 {
-  const std::size_t direct = this->Lighting.samples()->size();
+  const std::size_t direct = light.samples()->size();
   double sum = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
     const std::size_t contribution = shares.contribution[s];
-    sum += contribution < direct
-      ? 0.0
-      : shares.energies[s] * this->Lighting.paths()[contribution - direct].unsure;
+    sum +=
+      contribution < direct ? 0.0 : shares.energies[s] * light.paths[contribution - direct].unsure;
   }
   return sum;
-}
-
-/// Sampling error of the energy in a unit, J.
-double EnergyErrors::ofSamples(const RangeShares& shares, std::uint32_t paths) const
-{
-  if (this->Lighting.raysAreLit())
-  {
-    return this->ofRays(
-      shares, paths >= this->Lighting.samples()->rays && this->Lighting.samples()->onOnePlane());
-  }
-  const bool pathsArrive = !this->Lighting.paths().empty();
-  const bool fromRays = pathsArrive && this->Lighting.paths().back().one != NoSample;
-  const double ofPaths =
-    std::hypot(fromRays ? this->ofRays(shares, false) : 0.0, this->ofMirrors(shares));
-  if (this->Lighting.cells())
-  {
-    const double ofCells = errorOfCells(*this->Lighting.cells(), shares, this->Setup);
-    return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
-  }
-  return ofPaths + this->Lighting.quadrature().boundOf(shares, this->Lighting.energies());
 }
 
 /// Standard error of the energy that mirror paths by regions put into a unit, J. A stratum is two
 /// neighbouring samples, one of which may not arrive. Few samples that all arrive do not show that
 /// every sample would arrive, so the square of the largest energy is added, as in StandardError.h.
-double EnergyErrors::ofMirrors(const RangeShares& shares) const
+double errorOfMirrors(const BeamLight& light, const RangeShares& shares)
 {
-  const std::size_t direct = this->Lighting.samples()->size();
+  const std::size_t direct = light.samples()->size();
   const auto isMirror = [&](std::size_t s)
   {
     const std::size_t contribution = shares.contribution[s];
-    return contribution >= direct && this->Lighting.paths()[contribution - direct].one == NoSample;
+    return contribution >= direct && light.paths[contribution - direct].one == NoSample;
   };
   const auto sampleOf = [&](std::size_t s)
-  { return this->Lighting.paths()[shares.contribution[s] - direct].two; };
+  { return light.paths[shares.contribution[s] - direct].two; };
   double variance = 0.0;
   double most = 0.0; // largest energy of a sample, J
   std::uint32_t last = NoSample;
@@ -155,14 +116,48 @@ double EnergyErrors::ofMirrors(const RangeShares& shares) const
   }
   return std::sqrt(std::max(0.0, variance) + most * most);
 }
+}
+
+double EnergyErrors::of(
+  const BeamLight& light, const RangeShares& shares, std::uint32_t paths) const
+{
+  if (paths == 0)
+  {
+    return 0.0; // a false alarm: no sample has a share in it
+  }
+  const double sampling = this->ofSamples(light, shares, paths);
+  const double lobes = errorOfLobes(light, shares);
+  return lobes > 0.0 ? std::hypot(sampling, lobes) : sampling;
+}
+
+/// Sampling error of the energy in a unit, J.
+double EnergyErrors::ofSamples(
+  const BeamLight& light, const RangeShares& shares, std::uint32_t paths) const
+{
+  if (light.raysAreLit())
+  {
+    return this->ofRays(
+      light, shares, paths >= light.samples()->rays && light.samples()->onOnePlane());
+  }
+  const bool pathsArrive = !light.paths.empty();
+  const bool fromRays = pathsArrive && light.paths.back().one != NoSample;
+  const double ofPaths =
+    std::hypot(fromRays ? this->ofRays(light, shares, false) : 0.0, errorOfMirrors(light, shares));
+  if (light.cells)
+  {
+    const double ofCells = errorOfCells(*light.cells, shares, this->Setup);
+    return pathsArrive ? std::sqrt(ofCells * ofCells + ofPaths * ofPaths) : ofCells;
+  }
+  return ofPaths + boundOfNodes(light.nodes, shares, light.energies);
+}
 
 /// Standard error of the energy that rays put into a unit, J: on paths with two reflections and, if
 /// the rays are the samples, as direct echoes. @param filled true if every ray put energy into the
 /// unit and one plane fills the beam, so that no ray puts less
-double EnergyErrors::ofRays(const RangeShares& shares, bool filled) const
+double EnergyErrors::ofRays(const BeamLight& light, const RangeShares& shares, bool filled) const
 {
-  const std::size_t direct = this->Lighting.samples()->size();
-  const std::vector<std::uint32_t>& rays = this->Lighting.starts()->ray;
+  const std::size_t direct = light.samples()->size();
+  const std::vector<std::uint32_t>& rays = light.starts->ray;
   StandardErrorEstimator& error = this->OfRays;
   error.begin();
   for (std::size_t s = 0; s < shares.count; ++s)
@@ -170,14 +165,14 @@ double EnergyErrors::ofRays(const RangeShares& shares, bool filled) const
     const std::size_t contribution = shares.contribution[s];
     if (contribution < direct)
     {
-      if (this->Lighting.raysAreLit())
+      if (light.raysAreLit())
       {
         error.add(rays[contribution], shares.energies[s]);
       }
       continue;
     }
     // A connection depends on both its rays.
-    const SecondaryPath& path = this->Lighting.paths()[contribution - direct];
+    const SecondaryPath& path = light.paths[contribution - direct];
     if (path.one == NoSample)
     {
       continue;

@@ -16,7 +16,7 @@ ViewFinder::ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, Beam
 {
 }
 
-BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
+SeenSurfaces ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
   const std::vector<std::uint32_t>& candidates, TraceCounters& cost)
 {
   this->Polygons.begin(frame);
@@ -25,17 +25,16 @@ BeamView ViewFinder::find(std::uint64_t beam, const BeamFrame& frame,
   const SeenByBeam seen = this->Polygons.find(polygons);
   if (seen == SeenByBeam::Nothing)
   {
-    return EmptyView{};
+    return NothingSeen{};
   }
-  if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) &&
-    this->Rule.fits(*polygons))
+  if (seen == SeenByBeam::Polygons && !this->meetsBorders(frame) && this->Rule.fits(*polygons))
   {
-    return BeamView(std::move(polygons));
+    return SeenSurfaces(std::move(polygons));
   }
   const std::vector<const BeamSurface*>& entering = this->Polygons.candidates();
   std::unique_ptr<CellSamples> cells = entering.empty() ? this->findCrowded(beam, frame, cost)
                                                         : this->Cells.find(beam, frame, entering);
-  return cells ? BeamView(std::move(cells)) : BeamView(RayView{});
+  return cells ? SeenSurfaces(std::move(cells)) : SeenSurfaces(SeenByRays{});
 }
 
 /// Cells of a beam that meets too many triangles for lists. @return null if there are too many

@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file BeamEchoes.h
- * @brief Third stage of a beam: makes returns, with standard errors and labels.
+ * @file EchoLabels.h
+ * @brief Finds object, material, angle of incidence and share of secondary paths of an echo.
  *
  * The labels of a return are computed from all paths with a share in the return. The labels are the
  * object and material with the most energy, the mean angle of incidence, and the share of the
  * energy from paths with two reflections.
  *
- * Source: paper, Eq. 10-12.
- * Differs: the paper gives one point per perceived range unit, without labels. Returns are defined
- * in Receiver.h.
- * Valid: a false alarm has no object, no material and no angle. The standard error is NaN where
- * StandardError.h gives no error. For an integrated beam the standard error includes the bound of
- * PolygonQuadrature.h.
- * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
+ * Source: none.
+ * Valid: a false alarm has no object, no material and no angle.
+ * Test: TestScanReport.cxx, TestScan.cxx.
  */
-#ifndef avianlidar_BeamEchoes_h
-#define avianlidar_BeamEchoes_h
+#ifndef avianlidar_EchoLabels_h
+#define avianlidar_EchoLabels_h
 
-#include "BeamLighting.h"
-#include "EnergyErrors.h"
-#include "LitBeam.h"
+#include "BeamLight.h"
+#include "Echo.h"
+#include "RangeShares.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -103,10 +99,9 @@ public:
   {
   }
 
-  /// Set the labels of an echo. @param samples samples of the beam, or null @param paths paths with
-  /// two reflections, whose contributions are numbered after the contributions of the samples
-  void label(const RangeShares& shares, const BeamSamples* samples,
-    const std::vector<SecondaryPath>& paths, Echo& echo);
+  /// Set the labels of an echo. @param shares shares of the light's contributions in the return:
+  /// first the samples, then the paths with two reflections
+  void label(const BeamLight& light, const RangeShares& shares, Echo& echo);
 
 private:
   void findAngles(
@@ -118,39 +113,6 @@ private:
   const ScanSetup& Setup;
   LabelSums Sums;
   std::vector<double> Angles; ///< angles of incidence of the shares, rad
-};
-
-/// Receives one beam after the other. Each thread needs its own object. The constructor's arguments
-/// must outlive the object.
-class BeamEchoes
-{
-public:
-  BeamEchoes(const ScanSetup& setup, BeamLighting& lighting, BeamReceiver& receiver,
-    StandardErrorEstimator& ofRays);
-
-  /// Append the echoes of the beam lit last. @param keep output: those values of the returns that
-  /// do not depend on noise; may be null @param report output: status and range
-  void receive(std::uint64_t beam, LitBeam* keep, std::vector<Echo>& echoes, BeamReport& report);
-
-  /// Append the echoes of a beam lit in an earlier scan. @param report output: status, range, lost
-  /// and skipped @return false, with echoes and report unchanged, if `known` lacks a return
-  bool receiveAgain(
-    std::uint64_t beam, const LitBeam& known, std::vector<Echo>& echoes, BeamReport& report);
-
-private:
-  template <class F>
-  void finish(
-    F echoOf, bool outsideGate, bool meets, std::vector<Echo>& echoes, BeamReport& report);
-  Echo echoOfLight(const Return& ret);
-  void addLeaves(const Return& ret, Echo& echo) const;
-  LitBeam::KnownReturn unitsOf(const Return& ret) const;
-  const LitBeam::KnownReturn* find(const LitBeam& known, const Return& ret) const;
-
-  const ScanSetup& Setup;
-  BeamLighting& Lighting;
-  BeamReceiver& Receiver;
-  EchoLabels Labels;
-  EnergyErrors Errors;
 };
 }
 

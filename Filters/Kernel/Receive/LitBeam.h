@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LitBeam.h
- * @brief Energies in range units and returns of a lit beam, kept for scans that have the same beams
- * and differ only in noise, or in movers that touch other beams.
+ * @brief The part of a beam's light that is kept, with known returns, for scans that have the same
+ * beams and differ only in noise, or in movers that touch other beams.
  *
  * The units that form a return depend on noise. Range, labels and standard error of a return follow
  * from its first, last and strongest unit. The values of the first MostReturns returns with
@@ -16,10 +16,8 @@
 #ifndef avianlidar_LitBeam_h
 #define avianlidar_LitBeam_h
 
-#include "BeamAir.h"
+#include "BeamLight.h"
 #include "Echo.h"
-#include "RangeUnits.h"
-#include "ScanSetup.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -40,10 +38,22 @@ struct LitBeam
   std::vector<RangeUnit> units;
   std::vector<KnownReturn> returns;
   std::vector<MetSurface> surfaces; ///< samples of surfaces, which shadow the air
-  double radiance = 0.0;            ///< BeamLighting::radiance(), W/(m2 sr nm)
-  bool outsideGate = false;         ///< BeamLighting::isOutsideGate()
-  double lost = 0.0;                ///< BeamReport::lost, J
-  std::uint32_t skipped = 0;        ///< BeamReport::skipped
+  double radiance;                  ///< BeamLight::radiance, W/(m2 sr nm)
+  bool outsideGate;                 ///< BeamLight::isOutsideGate()
+  double lost;                      ///< BeamReport::lost, J
+  std::uint32_t skipped;            ///< BeamReport::skipped
+
+  explicit LitBeam(const BeamLight& light)
+    : units(light.units.units())
+    , surfaces(light.surfaces)
+    , radiance(light.radiance)
+    , outsideGate(light.isOutsideGate())
+    , lost(light.lost)
+    , skipped(light.skipped)
+  {
+  }
+
+  ArrivingLight arriving() const { return { this->units, this->surfaces, this->radiance }; }
 
   std::size_t bytes() const
   {
