@@ -161,8 +161,8 @@ std::pair<double, double> workOf(const CollisionTree& tree, const Workload& work
   std::pair<double, double> sum{ 0.0, 0.0 };
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
-    const BeamBlock block{ &work.frames[b], 1, rays,
-      [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
+    DrawnRays given(&work.rays[b]);
+    const BeamBlock block{ &work.frames[b], 1, rays, &given };
     const TraceCounters& counters = tracer.traceBlock(block, TraceMode::Beams).counters[0];
     sum.first += static_cast<double>(counters.nodesVisited);
     sum.second += static_cast<double>(counters.candidates) / packets;

@@ -51,8 +51,8 @@ Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
       {
         tracers[thread] = std::make_unique<BeamTracer>(scene);
       }
-      const BeamBlock block{ &work.frames[begin], end - begin, rays,
-        [&](std::size_t b) -> const BeamRays& { return work.rays[begin + b]; } };
+      DrawnRays given(&work.rays[begin]);
+      const BeamBlock block{ &work.frames[begin], end - begin, rays, &given };
       const BlockHits& found = tracers[thread]->traceBlock(block, mode);
       for (std::size_t b = begin; consumer && b < end; ++b)
       {

@@ -84,8 +84,10 @@ std::string faultOfBlock(const GeometryCase& one, const BeamFrame& frame, const 
     frames.push_back(
       makeBeamFrame(one.apex, frame.direction(aside, 0.3 * aside), one.halfBeamwidth));
   }
+  const std::vector<BeamRays> rays(Beams, one.rays);
+  DrawnRays given(rays.data());
   const BeamBlock block{ frames.data(), Beams, static_cast<std::uint32_t>(one.rays.size()),
-    [&](std::size_t) -> const BeamRays& { return one.rays; } };
+    &given };
   OneBeamTracer tracer(tree);
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
   for (std::size_t b = 0; b < Beams; ++b)

@@ -65,8 +65,8 @@ public:
   void trace(const BeamRays& rays, TraceMode mode, std::vector<Hit>& hits)
   {
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const BeamBlock block{ &this->Frame, 1, count,
-      [&rays](std::size_t) -> const BeamRays& { return rays; } };
+    DrawnRays given(&rays);
+    const BeamBlock block{ &this->Frame, 1, count, &given };
     const BlockHits& found = this->traceBlock(block, mode);
     hits = hitsOf(this->Descended, this->Frame, rays, found.triangles[0]);
     this->OfRays.nodesVisited += found.counters[0].nodesVisited;

@@ -87,8 +87,8 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
     {
       drawn.push_back(raysInDisc(random, rays));
     }
-    const BeamBlock block{ frames.data(), frames.size(), rays,
-      [&](std::size_t b) -> const BeamRays& { return drawn[b]; } };
+    DrawnRays given(drawn.data());
+    const BeamBlock block{ frames.data(), frames.size(), rays, &given };
     const auto check = [&]()
     {
       for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams })
@@ -151,24 +151,25 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
   addTriangle(wall, { -1, 10, -1 }, { 1, 10, -1 }, { 0, 10, 2 });
   const auto tree = buildCollisionTree(std::make_shared<TriangleMesh>(wall), TreeOptions());
   Numbers random(24);
-  const BeamRays some = raysInDisc(random, 50);
   std::vector<BeamFrame> frames;
+  std::vector<std::uint64_t> ids;
   for (int i = 0; i < 32; ++i)
   {
+    ids.push_back(static_cast<std::uint64_t>(i));
     frames.push_back(
       makeBeamFrame(Vec3(0.0), { std::sin(Pi / 16.0 * i), std::cos(Pi / 16.0 * i), 0.0 }, 0.005));
   }
-  std::set<std::size_t> asked;
-  const BeamBlock block{ frames.data(), frames.size(), 50,
-    [&](std::size_t b) -> const BeamRays&
-    {
-      asked.insert(b);
-      return some;
-    } };
+  BeamSampler sampler(Sensor(), Sampling::Stratified, 50);
+  DrawnRays drawn(sampler, 0);
+  drawn.begin(ids, 0, ids.size());
+  const BeamBlock block{ frames.data(), frames.size(), 50, &drawn };
   OneBeamTracer tracer(*tree);
   const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
   EXPECT_NE(found.triangles[0], nullptr);
-  EXPECT_EQ(asked, std::set<std::size_t>{ 0 });
+  for (std::size_t b = 0; b < ids.size(); ++b)
+  {
+    EXPECT_EQ(drawn.has(b), b == 0) << b;
+  }
 }
 
 TEST(BeamGroup, TreesWithoutWideFormAreDescendedOnceABeam)

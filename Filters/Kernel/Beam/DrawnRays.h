@@ -25,10 +25,16 @@ namespace avianlidar
 class DrawnRays
 {
 public:
-  /// The sampler must outlive the object.
+  /// Rays that the sampler draws. The sampler must outlive the object.
   DrawnRays(BeamSampler& sampler, std::int32_t seed)
-    : Sampler(sampler)
+    : Sampler(&sampler)
     , Seed(seed)
+  {
+  }
+
+  /// Given rays, which must outlive the object. @param rays rays of beam 0, 1, ...
+  explicit DrawnRays(const BeamRays* rays)
+    : Given(rays)
   {
   }
 
@@ -47,23 +53,31 @@ public:
   /// Rays of a beam, valid until begin().
   const BeamRays& of(std::size_t beam)
   {
+    if (this->Given)
+    {
+      return this->Given[beam];
+    }
     BeamRays& rays = this->Rays[beam - this->First];
     if (rays.size() == 0)
     {
-      this->Sampler.draw(this->Seed, (*this->Ids)[beam], rays);
+      this->Sampler->draw(this->Seed, (*this->Ids)[beam], rays);
     }
     return rays;
   }
 
-  /// Strata of the rays of every beam; null for Monte Carlo.
+  /// True if the rays of a beam are drawn.
+  bool has(std::size_t beam) const { return this->Rays[beam - this->First].size() > 0; }
+
+  /// Strata of the drawn rays of every beam; null for Monte Carlo.
   const StrataPartition* strata() const
   {
-    return this->Sampler.isStratified() ? &this->Sampler.strata : nullptr;
+    return this->Sampler->isStratified() ? &this->Sampler->strata : nullptr;
   }
 
 private:
-  BeamSampler& Sampler;
-  const std::int32_t Seed;
+  BeamSampler* const Sampler = nullptr;
+  const std::int32_t Seed = 0;
+  const BeamRays* const Given = nullptr;
   const std::vector<std::uint64_t>* Ids = nullptr;
   std::size_t First = 0;
   std::vector<BeamRays> Rays;

@@ -104,9 +104,13 @@ SeenSurfaces ViewTracer::findSurfaces(std::size_t beam, const BeamFrame& frame, 
 void ViewTracer::traceRays(const std::vector<BeamToSee>& beams, std::vector<SeenBeam>& seen)
 {
   const std::uint32_t count = tracedRaysOf(this->Setup.settings);
-  const BeamBlock block{ this->FramesOfRays.data(), this->FramesOfRays.size(), count,
-    [&](std::size_t n) -> const BeamRays&
-    { return this->Rays.of(beams[this->TracedRays[n]].beam); } };
+  this->Numbers.clear();
+  for (const std::size_t k : this->TracedRays)
+  {
+    this->Numbers.push_back(beams[k].beam);
+  }
+  const BeamBlock block{ this->FramesOfRays.data(), this->FramesOfRays.size(), count, &this->Rays,
+    this->Numbers.data() };
   const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
   for (std::size_t n = 0; n < this->TracedRays.size(); ++n)
   {

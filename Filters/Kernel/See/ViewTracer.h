@@ -81,6 +81,7 @@ private:
   std::vector<std::size_t> Searched;
   std::vector<BeamFrame> FramesOfRays;
   std::vector<std::size_t> TracedRays;
+  std::vector<std::size_t> Numbers;
   std::vector<std::uint32_t> Triangles;
   SampleGeometry Geometry;
 };

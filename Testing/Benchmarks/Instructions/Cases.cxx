@@ -34,8 +34,8 @@ std::size_t countTracing(const Scene& scene, std::size_t mostRays)
       BeamTracer tracer(tracerScene);
       for (std::size_t b = 0; b < work.beams(); ++b)
       {
-        const BeamBlock block{ &work.frames[b], 1, 100,
-          [&](std::size_t) -> const BeamRays& { return work.rays[b]; } };
+        DrawnRays given(&work.rays[b]);
+        const BeamBlock block{ &work.frames[b], 1, 100, &given };
         const BlockHits& hits = tracer.traceBlock(block, TraceMode::Automatic);
         if (const std::uint32_t* const triangles = hits.triangles[0])
         {

@@ -99,6 +99,23 @@ private:
   std::size_t Most;
   EntryPoints& Points;
 };
+
+/// Find the entry points of the beams in `work.cones`. @return number of boxes tested; -1 if the
+/// beams lie too far apart
+std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work)
+{
+  for (int b = 0; b < work.cones.count; ++b)
+  {
+    work.entryPoints[b].clear();
+  }
+  if (!work.cones.setFrustum(tree, apex))
+  {
+    return -1;
+  }
+  EntryPointSearch search(tree, work);
+  const DescentStart start{ nullptr, (1u << work.cones.count) - 1u };
+  return static_cast<std::int64_t>(descendWide(tree, start, search, work.stack));
+}
 }
 
 void orderBeams(
@@ -134,21 +151,6 @@ void orderBeams(
     [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
 }
 
-std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work)
-{
-  for (int b = 0; b < work.cones.count; ++b)
-  {
-    work.entryPoints[b].clear();
-  }
-  if (!work.cones.setFrustum(tree, apex))
-  {
-    return -1;
-  }
-  EntryPointSearch search(tree, work);
-  const DescentStart start{ nullptr, (1u << work.cones.count) - 1u };
-  return static_cast<std::int64_t>(descendWide(tree, start, search, work.stack));
-}
-
 PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& frame,
   std::size_t most, EntryPoints& entryPoints, TraversalStack& stack)
 {
@@ -156,5 +158,98 @@ PotentialTriangles findPotential(const CollisionTree& tree, const BeamFrame& fra
   LeafVisitor visitor(tree.order, most, entryPoints);
   const std::uint64_t visited = descendCone(tree, frame, visitor, stack);
   return { visited, visitor.triangles };
+}
+
+void BeamGroups::begin(
+  const CollisionTree& tree, const BeamFrame* frames, std::size_t count, const GroupRule& rule)
+{
+  this->Tree = &tree;
+  this->Frames = frames;
+  this->Rule = rule;
+  this->Order.clear();
+  this->Groups.clear();
+  this->Now = { 0, 0 };
+  const std::size_t size =
+    rule.beamsOfCluster * (rule.together && !tree.other ? ConeLanes::Width : 1);
+  for (std::size_t first = 0; first < count;)
+  {
+    this->Stretch.clear();
+    const BeamFrame& begun = frames[first];
+    for (; first < count && areTogether(begun, frames[first]); ++first)
+    {
+      this->Stretch.push_back(static_cast<std::uint32_t>(first));
+    }
+    if (rule.sorts)
+    {
+      orderBeams(frames, this->Stretch, this->Keys);
+    }
+    for (std::size_t k = 0; k < this->Stretch.size(); k += size)
+    {
+      this->Groups.push_back({ this->Order.size() + k, std::min(size, this->Stretch.size() - k) });
+    }
+    this->Order.insert(this->Order.end(), this->Stretch.begin(), this->Stretch.end());
+  }
+  std::reverse(this->Groups.begin(), this->Groups.end());
+}
+
+bool BeamGroups::next(BeamCluster& cluster)
+{
+  while (this->Now.count == 0)
+  {
+    if (!this->descend())
+    {
+      return false;
+    }
+  }
+  const std::size_t count = std::min(this->Rule.beamsOfCluster, this->Now.count);
+  cluster = { &this->Order[this->Now.first], count,
+    this->HasEntries ? &this->Work.entryPoints[this->Member] : nullptr, this->Share };
+  ++this->Member;
+  this->Now.first += count;
+  this->Now.count -= count;
+  return true;
+}
+
+/// Descend with the next group, or halve it if its beams lie too far apart. @return false after the
+/// last group
+bool BeamGroups::descend()
+{
+  if (this->Groups.empty())
+  {
+    return false;
+  }
+  this->Now = this->Groups.back();
+  this->Groups.pop_back();
+  this->Member = 0;
+  this->Share = 0;
+  this->HasEntries = false;
+  const std::size_t wide = this->Rule.beamsOfCluster;
+  const std::size_t clusters = (this->Now.count + wide - 1) / wide;
+  if (!this->Rule.together || this->Tree->other || (clusters == 1 && !this->Rule.evenAlone))
+  {
+    return true;
+  }
+  const std::uint32_t* const beams = &this->Order[this->Now.first];
+  this->Work.cones.count = 0;
+  for (std::size_t k = 0; k < this->Now.count; k += wide)
+  {
+    this->Work.cones.add(this->Frames, beams + k, std::min(wide, this->Now.count - k));
+  }
+  this->Work.cones.close();
+  const std::int64_t visited =
+    findEntryPoints(this->Tree->wide, this->Frames[beams[0]].origin, this->Work);
+  if (visited >= 0)
+  {
+    this->HasEntries = true;
+    this->Share = static_cast<std::uint64_t>(visited) / this->Now.count;
+  }
+  else if (clusters > 1)
+  {
+    const std::size_t half = clusters / 2 * wide;
+    this->Groups.push_back({ this->Now.first + half, this->Now.count - half });
+    this->Groups.push_back({ this->Now.first, half });
+    this->Now.count = 0;
+  }
+  return true;
 }
 }

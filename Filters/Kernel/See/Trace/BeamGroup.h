@@ -2,7 +2,8 @@
 /**
  * @file BeamGroup.h
  * @brief Up to sixteen neighbouring beams of one apex descend the wide tree together. The descent
- * ends at boxes, called entry points, from which packets of rays descend further (RayPacket.h).
+ * ends at boxes, called entry points, from which single beams (Candidates.h) or packets of rays
+ * (RayPacket.h) descend further.
  *
  * Eight boxes are tested against the planes about the group. Each box that is left is then tested
  * against sixteen cones (BoxTests.h). The descent ends at a box that is a leaf, at a box whose half
@@ -53,9 +54,60 @@ struct GroupWorkspace
   TraversalStack stack;
 };
 
-/// Find the entry points of the beams in `work.cones`.
-/// @return number of boxes tested; -1 if the beams lie too far apart
-std::int64_t findEntryPoints(const WideTree& tree, const Vec3& apex, GroupWorkspace& work);
+/// Neighbouring beams of one apex that share entry points.
+struct BeamCluster
+{
+  const std::uint32_t* beams = nullptr; ///< numbers of the beams
+  std::size_t count = 0;
+  const EntryPoints* entries = nullptr; ///< entry points; null: the whole tree
+  std::uint64_t nodesVisited = 0;       ///< number of nodes visited for each beam
+};
+
+/// How beams are grouped.
+struct GroupRule
+{
+  std::size_t beamsOfCluster = 1;
+  bool sorts = true;      ///< whether neighbours are found; otherwise they follow each other
+  bool together = true;   ///< whether groups descend; otherwise no cluster has entry points
+  bool evenAlone = false; ///< whether a group of one cluster descends
+};
+
+/// Divides beams into groups, and descends with one group after the other. Each thread needs its
+/// own object.
+class BeamGroups
+{
+public:
+  /// Begin with beams. The caller must keep tree and frames until the last cluster.
+  void begin(
+    const CollisionTree& tree, const BeamFrame* frames, std::size_t count, const GroupRule& rule);
+
+  /// The next cluster, valid until the next call. Its entry points may be none: then its beams meet
+  /// no triangle. The order of clusters is not fixed. @return false after the last cluster
+  bool next(BeamCluster& cluster);
+
+  TraversalStack& stack() { return this->Work.stack; }
+
+private:
+  /// Neighbouring beams, given by places in Order.
+  struct Group
+  {
+    std::size_t first, count;
+  };
+  bool descend();
+
+  const CollisionTree* Tree = nullptr;
+  const BeamFrame* Frames = nullptr;
+  GroupRule Rule;
+  std::vector<std::uint32_t> Order; ///< numbers of the beams, neighbours together
+  std::vector<Group> Groups;        ///< groups that have not descended yet, the next group last
+  Group Now{ 0, 0 };                ///< rest of the group that descended last
+  std::size_t Member = 0;           ///< next cluster of this group
+  bool HasEntries = false;          ///< whether the clusters of this group have entry points
+  std::uint64_t Share = 0;          ///< number of nodes visited for each beam of this group
+  GroupWorkspace Work;
+  std::vector<std::uint32_t> Stretch; ///< beams of one apex and width
+  std::vector<std::uint64_t> Keys;
+};
 
 /// Result of the descent of one cone.
 struct PotentialTriangles

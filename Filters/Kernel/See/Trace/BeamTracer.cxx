@@ -71,7 +71,7 @@ void BeamTracer::traceMoved(const BeamBlock& block)
 {
   BlockRaysWorkspace& work = this->Work->block.rays;
   const BeamFrame& frame = block.frames[0];
-  const BeamRays& rays = block.source(0);
+  const BeamRays& rays = block.raysOf(0);
   const BeamPlaneMap map(frame);
   BeamRayVisitor visitor(this->Scene, frame, map);
   std::uint32_t* const triangles = work.triangles.data();

@@ -19,14 +19,13 @@
 #define avianlidar_BeamTracer_h
 
 #include "BeamFrame.h"
-#include "BeamRays.h"
+#include "DrawnRays.h"
 #include "EchoSettings.h"
 #include "SceneTriangles.h"
 #include "TriangleTest.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -60,11 +59,15 @@ struct BeamBlock
   const BeamFrame* frames = nullptr;
   std::size_t size = 0;   ///< number of beams
   std::uint32_t rays = 0; ///< rays per beam, at least 1
-  /// Function that draws the rays of a beam. The rays must be kept until the block is done. The
-  /// function is called only if a triangle may meet the beam. The function may be called twice.
-  /// Most beams of an airport meet no triangle. Drawing rays costs more than a descent.
-  std::function<const BeamRays&(std::size_t beam)> source;
+  /// Rays of the beams. Rays are drawn only if a triangle may meet the beam.
+  DrawnRays* drawn = nullptr;
+  const std::size_t* numbers = nullptr; ///< numbers of the beams in `drawn`; null: 0, 1, ...
   bool inOrder = false; ///< whether packets take the rays in the order in which the rays come
+
+  const BeamRays& raysOf(std::size_t beam) const
+  {
+    return this->drawn->of(this->numbers ? this->numbers[beam] : beam);
+  }
 };
 
 /// Number of beams in a block, 1 to 1024: enough neighbours to be traced together, and few enough

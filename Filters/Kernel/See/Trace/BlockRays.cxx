@@ -19,7 +19,7 @@ BlockRays::BlockRays(const SceneTriangles& scene, const BeamBlock& block, BlockR
 void BlockRays::rayByRay(std::uint32_t b)
 {
   const BeamFrame& frame = this->Block.frames[b];
-  const BeamRays& rays = this->Block.source(b);
+  const BeamRays& rays = this->Block.raysOf(b);
   std::uint32_t* const triangles = this->nextHits();
   const BeamPlaneMap map(frame);
   BeamRayVisitor visitor(this->Scene, frame, map);
@@ -40,21 +40,21 @@ void BlockRays::rayByRay(std::uint32_t b)
   }
 }
 
-void BlockRays::packets(const BeamCluster& cluster, const EntryPoints* entryPoints)
+void BlockRays::packets(const BeamCluster& cluster)
 {
   if (cluster.count == 1)
   {
-    this->packetsOfBeam(cluster.beams[0], entryPoints);
+    this->packetsOfBeam(cluster.beams[0], cluster.entries);
   }
   else
   {
-    this->packetOfBeams(cluster, entryPoints);
+    this->packetOfBeams(cluster);
   }
 }
 
 void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
 {
-  const BeamRays& rays = this->Block.source(b);
+  const BeamRays& rays = this->Block.raysOf(b);
   const std::size_t count = rays.size();
   const std::vector<std::uint32_t>& order =
     this->Block.inOrder ? this->Work.order.asTheyCome(count) : this->Work.order.of(count);
@@ -90,7 +90,7 @@ void BlockRays::packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints)
 }
 
 /// Trace beams of few rays, which fit into one packet.
-void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints)
+void BlockRays::packetOfBeams(const BeamCluster& cluster)
 {
   RayPacket& packet = this->Work.packet;
   packet.beam = nullptr;
@@ -98,7 +98,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
   for (std::size_t k = 0; k < cluster.count; ++k)
   {
     const std::uint32_t b = cluster.beams[k];
-    const BeamRays& rays = this->Block.source(b);
+    const BeamRays& rays = this->Block.raysOf(b);
     for (std::size_t i = 0; i < rays.size(); ++i)
     {
       packet.frame[packet.count] = &this->Block.frames[b];
@@ -106,7 +106,7 @@ void BlockRays::packetOfBeams(const BeamCluster& cluster, const EntryPoints* ent
       packet.y[packet.count++] = rays.y[i];
     }
   }
-  this->trace(entryPoints, cluster.beams[0]);
+  this->trace(cluster.entries, cluster.beams[0]);
   const std::uint32_t* triangles = packet.triangle;
   for (std::size_t k = 0; k < cluster.count; ++k)
   {

@@ -10,6 +10,7 @@
 #ifndef avianlidar_BlockRays_h
 #define avianlidar_BlockRays_h
 
+#include "BeamGroup.h"
 #include "BeamTracer.h"
 #include "PacketOrder.h"
 #include "RayPacket.h"
@@ -32,13 +33,6 @@ struct BlockRaysWorkspace
   std::size_t used = 0;                 ///< entries of `triangles` in use
 };
 
-/// Neighbouring beams of one apex, by their numbers in the block.
-struct BeamCluster
-{
-  const std::uint32_t* beams = nullptr;
-  std::size_t count = 0;
-};
-
 /// Traces the rays of one block, and puts hits and costs into `work.found`. The constructor's
 /// arguments must outlive the object.
 class BlockRays
@@ -51,12 +45,11 @@ public:
 
   /// Trace all rays of a cluster in packets. If the cluster has several beams, the rays of all
   /// beams must fit into one packet.
-  /// @param entryPoints entry points of the cluster; null: the whole tree
-  void packets(const BeamCluster& cluster, const EntryPoints* entryPoints);
+  void packets(const BeamCluster& cluster);
 
 private:
   void packetsOfBeam(std::uint32_t b, const EntryPoints* entryPoints);
-  void packetOfBeams(const BeamCluster& cluster, const EntryPoints* entryPoints);
+  void packetOfBeams(const BeamCluster& cluster);
   void trace(const EntryPoints* entryPoints, std::uint32_t beam);
 
   /// Memory for the hits of the next beam, which commitHits() assigns to a beam.

@@ -29,137 +29,45 @@ public:
 
   void run()
   {
-    this->Work.beams.clear();
-    this->BeamsOfPacket = std::max<std::size_t>(1, RayPacket::Width / this->Block.rays);
-    const BeamFrame* before = nullptr;
-    for (std::uint32_t b = 0; b < this->Block.size; ++b)
+    const std::uint32_t rays = this->Block.rays;
+    if (this->Mode != TraceMode::Automatic)
     {
-      if (this->Mode == TraceMode::SingleRays)
+      for (std::uint32_t b = 0; b < this->Block.size; ++b)
       {
-        this->Rays.rayByRay(b);
-        continue;
+        this->Mode == TraceMode::SingleRays ? this->Rays.rayByRay(b) : this->traceAlone(b);
       }
-      if (this->Mode == TraceMode::Beams)
-      {
-        this->traceAlone(b);
-        continue;
-      }
-      const BeamFrame& frame = this->Block.frames[b];
-      if (before && !areTogether(*before, frame))
-      {
-        this->traceCollected();
-      }
-      before = &frame;
-      this->Work.beams.push_back(b);
+      return;
     }
-    this->traceCollected();
+    GroupRule rule;
+    rule.beamsOfCluster = std::max<std::size_t>(1, RayPacket::Width / rays);
+    rule.sorts = rule.together = rays >= FewestRaysInGroup;
+    rule.evenAlone = true;
+    this->Work.groups.begin(this->Tree, this->Block.frames, this->Block.size, rule);
+    BeamCluster cluster;
+    while (this->Work.groups.next(cluster))
+    {
+      for (std::size_t k = 0; k < cluster.count; ++k)
+      {
+        this->Work.rays.found.counters[cluster.beams[k]].nodesVisited += cluster.nodesVisited;
+      }
+      if (this->Tree.other && cluster.count == 1 && rule.together)
+      {
+        this->traceAlone(cluster.beams[0]);
+      }
+      else if (!cluster.entries || !cluster.entries->nodes.empty())
+      {
+        this->Rays.packets(cluster);
+      }
+    }
   }
 
 private:
-  /// Trace the collected beams, which have one apex and width.
-  void traceCollected()
-  {
-    this->Block.rays < FewestRaysInGroup ? this->consecutive() : this->inGroups();
-    this->Work.beams.clear();
-  }
-
-  void inGroups()
-  {
-    std::vector<std::uint32_t>& beams = this->Work.beams;
-    orderBeams(this->Block.frames, beams, this->Work.keys);
-    const std::size_t size = ConeLanes::Width * this->BeamsOfPacket;
-    for (std::size_t first = 0; first < beams.size(); first += size)
-    {
-      this->group({ &beams[first], std::min(size, beams.size() - first) });
-    }
-  }
-
-  /// Fill packets in the order of the scan, where neighbours follow each other. With so few rays
-  /// the order of the scan is faster than sorting.
-  void consecutive()
-  {
-    const std::vector<std::uint32_t>& beams = this->Work.beams;
-    for (std::size_t first = 0; first < beams.size(); first += this->BeamsOfPacket)
-    {
-      this->Rays.packets(
-        { &beams[first], std::min(this->BeamsOfPacket, beams.size() - first) }, nullptr);
-    }
-  }
-
-  void group(const BeamCluster& all)
-  {
-    BeamCluster clusters[ConeLanes::Width];
-    ConeLanes& cones = this->Work.group.cones;
-    cones.count = 0;
-    for (std::size_t first = 0; first < all.count; first += this->BeamsOfPacket)
-    {
-      BeamCluster& cluster = clusters[cones.count];
-      cluster = { all.beams + first, std::min(this->BeamsOfPacket, all.count - first) };
-      cones.add(this->Block.frames, cluster.beams, cluster.count);
-    }
-    cones.close();
-    if (this->Tree.other)
-    {
-      for (int k = 0; k < cones.count; ++k)
-      {
-        this->withoutWideTree(clusters[k]);
-      }
-      return;
-    }
-    const int number = cones.count;
-    const Vec3& apex = this->Block.frames[all.beams[0]].origin;
-    const std::int64_t visited = findEntryPoints(this->Tree.wide, apex, this->Work.group);
-    if (visited < 0)
-    {
-      this->halveGroup(all, number);
-      return;
-    }
-    const auto share = static_cast<std::uint64_t>(visited) / all.count;
-    for (std::size_t k = 0; k < all.count; ++k)
-    {
-      this->Work.rays.found.counters[all.beams[k]].nodesVisited += share;
-    }
-    for (int k = 0; k < number; ++k)
-    {
-      const EntryPoints& entryPoints = this->Work.group.entryPoints[k];
-      if (!entryPoints.nodes.empty())
-      {
-        this->Rays.packets(clusters[k], &entryPoints);
-      }
-    }
-  }
-
-  /// Halve a group whose beams lie too far apart.
-  void halveGroup(const BeamCluster& all, int clusters)
-  {
-    if (clusters == 1)
-    {
-      this->Rays.packets(all, nullptr);
-      return;
-    }
-    const std::size_t half = static_cast<std::size_t>(clusters / 2) * this->BeamsOfPacket;
-    this->group({ all.beams, half });
-    this->group({ all.beams + half, all.count - half });
-  }
-
-  void withoutWideTree(const BeamCluster& cluster)
-  {
-    if (cluster.count > 1)
-    {
-      this->Rays.packets(cluster, nullptr);
-    }
-    else
-    {
-      this->traceAlone(cluster.beams[0]);
-    }
-  }
-
   /// Find the triangles that one beam may meet, then trace its rays against all of them.
   void traceAlone(std::uint32_t b)
   {
-    EntryPoints& entryPoints = this->Work.group.entryPoints[0];
+    EntryPoints& entryPoints = this->Work.potential;
     const PotentialTriangles found = findPotential(
-      this->Tree, this->Block.frames[b], MostPotential, entryPoints, this->Work.group.stack);
+      this->Tree, this->Block.frames[b], MostPotential, entryPoints, this->Work.groups.stack());
     this->Work.rays.found.counters[b].nodesVisited += found.nodesVisited;
     if (found.count > MostPotential)
     {
@@ -167,7 +75,7 @@ private:
     }
     else if (found.count > 0)
     {
-      this->Rays.packets({ &b, 1 }, &entryPoints);
+      this->Rays.packets({ &b, 1, &entryPoints, 0 });
     }
   }
 
@@ -176,7 +84,6 @@ private:
   TraceMode Mode;
   BlockWorkspace& Work;
   BlockRays Rays;
-  std::size_t BeamsOfPacket = 1;
 };
 }
 

@@ -30,9 +30,8 @@ namespace avianlidar
 /// Workspace kept between blocks, so that no beam allocates.
 struct BlockWorkspace
 {
-  GroupWorkspace group;
-  std::vector<std::uint32_t> beams; ///< beams of one apex and width
-  std::vector<std::uint64_t> keys;
+  BeamGroups groups;
+  EntryPoints potential; ///< triangles that one beam may meet
   BlockRaysWorkspace rays;
 };
 

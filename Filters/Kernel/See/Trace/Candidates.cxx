@@ -59,88 +59,29 @@ bool isFarther(const Corners& t, double range)
 void BeamCandidates::begin(
   const SceneTriangles& scene, const BeamFrame* frames, std::size_t count, bool together)
 {
-  const CollisionTree& tree = scene.tree();
   this->Scene = &scene;
-  this->Tree = &tree;
+  this->Tree = &scene.tree();
   this->Frames = frames;
-  this->Order.clear();
-  this->Groups.clear();
-  this->Now = { 0, 0 };
-  const std::size_t beams = tree.empty() && scene.moved().empty() ? 0 : count;
-  for (std::size_t first = 0; first < beams;)
-  {
-    this->Stretch.clear();
-    const BeamFrame& begun = frames[first];
-    for (; first < beams && areTogether(begun, frames[first]); ++first)
-    {
-      this->Stretch.push_back(static_cast<std::uint32_t>(first));
-    }
-    orderBeams(frames, this->Stretch, this->Keys);
-    const std::size_t size = together && !tree.other ? ConeLanes::Width : 1;
-    for (std::size_t k = 0; k < this->Stretch.size(); k += size)
-    {
-      this->Groups.push_back({ this->Order.size() + k, std::min(size, this->Stretch.size() - k) });
-    }
-    this->Order.insert(this->Order.end(), this->Stretch.begin(), this->Stretch.end());
-  }
-  std::reverse(this->Groups.begin(), this->Groups.end());
+  GroupRule rule;
+  rule.together = together;
+  const bool isEmpty = this->Tree->empty() && scene.moved().empty();
+  this->Groups.begin(*this->Tree, frames, isEmpty ? 0 : count, rule);
 }
 
 bool BeamCandidates::next()
 {
-  do
+  BeamCluster cluster;
+  while (this->Groups.next(cluster))
   {
-    while (this->Now.count > 0)
+    this->Beam = cluster.beams[0];
+    this->Entries = cluster.entries;
+    this->NodesVisited = cluster.nodesVisited;
+    if (!this->Entries || !this->Entries->nodes.empty() || !this->Scene->moved().empty())
     {
-      this->Beam = this->Order[this->Now.first++];
-      --this->Now.count;
-      this->Entries = this->FromRoot ? nullptr : &this->Work.entryPoints[this->Member++];
-      this->NodesVisited = this->Share;
-      if (this->FromRoot || !this->Entries->nodes.empty() || !this->Scene->moved().empty())
-      {
-        return true;
-      }
+      return true;
     }
-  } while (this->descendNextGroup());
+  }
   return false;
-}
-
-/// Descend with the next group. @return false after the last one
-bool BeamCandidates::descendNextGroup()
-{
-  if (this->Groups.empty())
-  {
-    return false;
-  }
-  this->Now = this->Groups.back();
-  this->Groups.pop_back();
-  this->Member = 0;
-  this->Share = 0;
-  this->FromRoot = this->Now.count == 1;
-  if (this->FromRoot)
-  {
-    return true;
-  }
-  const std::uint32_t* const beams = &this->Order[this->Now.first];
-  this->Work.cones.count = 0;
-  for (std::size_t k = 0; k < this->Now.count; ++k)
-  {
-    this->Work.cones.add(this->Frames, beams + k, 1);
-  }
-  this->Work.cones.close();
-  const std::int64_t visited =
-    findEntryPoints(this->Tree->wide, this->Frames[beams[0]].origin, this->Work);
-  if (visited < 0)
-  {
-    // The beams lie too far apart: halve the group.
-    const std::size_t half = this->Now.count / 2;
-    this->Groups.push_back({ this->Now.first + half, this->Now.count - half });
-    this->Groups.push_back({ this->Now.first, half });
-    this->Now.count = 0;
-    return true;
-  }
-  this->Share = static_cast<std::uint64_t>(visited) / this->Now.count;
-  return true;
 }
 
 const std::vector<std::uint32_t>& BeamCandidates::collect(double range)
@@ -153,7 +94,8 @@ const std::vector<std::uint32_t>& BeamCandidates::collect(double range)
     const BeamFrame& frame = this->Frames[this->Beam];
     const double most = Margin * limitOf(*this->Tree, range);
     LeafCollector leaves{ this->Triangles, Margin * most };
-    this->NodesVisited += descendCone(*this->Tree, frame, leaves, this->Work.stack, this->Entries);
+    this->NodesVisited +=
+      descendCone(*this->Tree, frame, leaves, this->Groups.stack(), this->Entries);
     if (most < std::numeric_limits<double>::infinity())
     {
       this->Triangles.erase(

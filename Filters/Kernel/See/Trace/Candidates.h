@@ -54,29 +54,14 @@ public:
   std::uint64_t nodesVisited() const { return this->NodesVisited; }
 
 private:
-  /// Neighbouring beams, given by places in Order.
-  struct Group
-  {
-    std::size_t first, count;
-  };
-  bool descendNextGroup();
-
   const SceneTriangles* Scene = nullptr;
   const CollisionTree* Tree = nullptr;
   const BeamFrame* Frames = nullptr;
-  std::vector<std::uint32_t> Order; ///< numbers of the beams, neighbours together
-  std::vector<Group> Groups;        ///< groups that have not descended yet, the next group last
-  Group Now{ 0, 0 };                ///< rest of the group that descended last
-  int Member = 0;                   ///< next member of the group that descended last
-  bool FromRoot = false;            ///< whether the beams of `Now` descend from the root
-  std::uint64_t Share = 0;          ///< number of nodes visited for each member
+  BeamGroups Groups;
   std::size_t Beam = 0;
   const EntryPoints* Entries = nullptr; ///< entry points of the beam; null: the root
   std::vector<std::uint32_t> Triangles;
   std::uint64_t NodesVisited = 0;
-  GroupWorkspace Work;
-  std::vector<std::uint32_t> Stretch; ///< beams of one apex and width
-  std::vector<std::uint64_t> Keys;
 };
 }
 
