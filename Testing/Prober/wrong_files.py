@@ -49,14 +49,14 @@ def mesh_files(folder):
     surfaces and unstructured grids (VTK)."""
     c, t, q = box.CORNERS, box.TRIANGLES, box.QUADS
     ply = box.ply(c, q)
-    head, body = ply.split("end_header\n")
+    head = ply.split("end_header\n")[0]
     triangles = b"".join(struct.pack("<12fH", 0, 0, 0, *c[list(face)].ravel(), 0) for face in t)
     quads = b"".join(struct.pack("<B4i", 4, *face) for face in q)
     head = head.replace("ascii", "binary_little_endian") + "end_header\n"
     gltf = box.gltf(c, t).encode()
     gltf += b" " * (-len(gltf) % 4)
     files = {"box.obj": box.obj(c, t), "box.stl": box.stl(c, t), "box.ply": ply, "box.gltf": gltf, "box.dae": box.collada(c, t, "Z_UP"),
-             "box.3ds": box.three_ds(c, t), "box.ac": box.ac3d(c, q), "box.off": f"OFF\n8 {len(q)} 0\n" + body,
+             "box.3ds": box.three_ds(c, t), "box.ac": box.ac3d(c, q),
              "binary.stl": b"box".ljust(80) + struct.pack("<I", len(t)) + triangles, "binary.ply": head.encode() + c.astype("<f4").tobytes() + quads,
              "box.glb": b"glTF" + struct.pack("<IIII", 2, 20 + len(gltf), len(gltf), 0x4E4F534A) + gltf}
     files["box.obj.gz"] = gzip.compress(files["box.obj"].encode(), mtime=0)
