@@ -12,7 +12,7 @@ from avianlidar import vtkAvianLidar as al
 from avianlidar._paraview import Advisor
 from cloudtools import add_field, cloud
 from echotools import RAYS, InFolder, Messages, assert_same_bits, group, scan, sensor, town
-from faulttools import algorithms, copy_of, make, writer
+from faulttools import algorithms, copy_of, error_of, make, outputs, size_of, writer
 from scenetools import SHIPPED
 
 SETTINGS = {"RaysPerBeam": 20, "NumberOfThreads": 1}
@@ -95,20 +95,6 @@ def update(algorithm):
     return algorithm.GetExecutive().Update(0)
 
 
-def outputs(algorithm):
-    return [algorithm.GetOutputDataObject(port) for port in range(algorithm.GetNumberOfOutputPorts())]
-
-
-def elements(data):
-    return sum(data.GetNumberOfElements(kind) for kind in (vtk.vtkDataObject.POINT, vtk.vtkDataObject.CELL, vtk.vtkDataObject.ROW))
-
-
-def error_of(data):
-    """The field data `error`, or nothing."""
-    array = data.GetFieldData().GetAbstractArray("error")
-    return array.GetValue(0) if array else ""
-
-
 def content(name):
     with open(name, "rb") as file:
         return file.read()
@@ -126,13 +112,13 @@ class Producers(InFolder):
             if data.IsA("vtkImageData") and filter_.GetErrorsAsData():
                 self.assertTrue(np.isnan(numpy_support.vtk_to_numpy(data.GetPointData().GetScalars())).all())
             else:
-                self.assertEqual(elements(data), 0)
+                self.assertEqual(size_of(data), 0)
             self.assertEqual((error_of(data), data.GetFieldData().GetNumberOfArrays()), (said, 1))
 
     def assert_emptied(self, filter_, *words):
         """Every output is empty, and its field data say why."""
         for data in outputs(filter_):
-            self.assertEqual((elements(data), data.GetFieldData().GetNumberOfArrays()), (0, 1))
+            self.assertEqual((size_of(data), data.GetFieldData().GetNumberOfArrays()), (0, 1))
             for text in words:
                 self.assertIn(text, error_of(data))
 
@@ -144,7 +130,7 @@ class Producers(InFolder):
                 with self.subTest(name, port=port):
                     filter_, producers = pipeline(name)
                     self.assertEqual(update(filter_), 1)
-                    self.assertGreater(elements(outputs(filter_)[0]), 0)
+                    self.assertGreater(size_of(outputs(filter_)[0]), 0)
                     Messages(filter_)  # also what the executive says
                     for spoil in (lambda: filter_.RemoveAllInputConnections(port), lambda: filter_.SetInputDataObject(port, vtk.vtkTable())):
                         spoil()
@@ -153,7 +139,7 @@ class Producers(InFolder):
                         self.assert_emptied(filter_)
                         filter_.SetInputConnection(port, producers[port].port)
                         self.assertEqual(update(filter_), 1)
-                        self.assertGreater(elements(outputs(filter_)[0]), 0)
+                        self.assertGreater(size_of(outputs(filter_)[0]), 0)
         first, source = surfaces(), beams()
         between = vtk.vtkTransformFilter()
         between.SetTransform(vtk.vtkTransform())
@@ -176,7 +162,7 @@ class Producers(InFolder):
         first.set(0.3)
         for one in (names, other):
             self.assertEqual(update(one), 1)
-            self.assertGreater(elements(outputs(one)[0]), 0)
+            self.assertGreater(size_of(outputs(one)[0]), 0)
         for reader in (make("PointCloudReader"), make("SceneReader"), make("SequenceReader")):
             heard = Messages(reader)
             reader.SetFileName("no.such.file")
@@ -218,7 +204,7 @@ class Producers(InFolder):
             filter_, producers = pipeline(name)
             self.assertEqual(update(filter_), 1)
             expected = [copy_of(data) for data in outputs(filter_)]
-            self.assertGreater(elements(expected[0]), 0)
+            self.assertGreater(size_of(expected[0]), 0)
             messages = Messages(filter_)
             for as_data in (False, True):
                 for algorithm in (filter_, *(producer.algorithm for producer in producers)):
@@ -240,7 +226,7 @@ class Producers(InFolder):
                         producers[port].set(producers[port].good)
                         self.assertEqual(update(filter_), 1)
                         for data, before in zip(outputs(filter_), expected):
-                            self.assertEqual((error_of(data), elements(data)), ("", elements(before)))
+                            self.assertEqual((error_of(data), size_of(data)), ("", size_of(before)))
                             if data.IsA("vtkPolyData"):
                                 assert_same_bits(data, before)
                         self.assertEqual(messages.errors, [])
@@ -396,7 +382,7 @@ class Producers(InFolder):
                     algorithm.Modified()
                     algorithm.Update()
                     self.assertEqual(heard.errors, [])
-                    found.append([elements(data) for data in outputs(algorithm)])
+                    found.append([size_of(data) for data in outputs(algorithm)])
                 self.assertFalse(any(found[0]))
                 self.assertTrue(any(found[1]))
                 self.assertIn(found[2], (found[0], found[1]))

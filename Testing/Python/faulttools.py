@@ -20,6 +20,20 @@ def writer(name, file="echoes", **properties):
     return make(name + "Writer", FileName=file + WRITERS[name], **properties)
 
 
+def outputs(algorithm):
+    return [algorithm.GetOutputDataObject(port) for port in range(algorithm.GetNumberOfOutputPorts())]
+
+
+def size_of(data):
+    return sum(data.GetNumberOfElements(kind) for kind in (vtk.vtkDataObject.POINT, vtk.vtkDataObject.CELL, vtk.vtkDataObject.ROW))
+
+
+def error_of(data):
+    """The field data `error`, or nothing."""
+    array = data.GetFieldData().GetAbstractArray("error")
+    return array.GetValue(0) if array else ""
+
+
 def beams(piece=0, pieces=1):
     source = sensor(36, 2)
     source.SetSwayAmplitude(0.01)

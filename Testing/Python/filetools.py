@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables of files and of what must be said of them. A process with limits opens each file, as files may crash libraries, never end or
+take all memory. An error must hold in all ways: of the reader, of the reader with errors as data, of the filter behind it, and of the
+Python package; then the same reader reads a good file."""
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import unittest
+
+import helpertools
+import scenetools as st
+from echotools import InFolder, Messages, given
+
+ADDRESSES = 4 << 30  # bytes, of the process that reads
+MESH_GIGABYTES = "0.5"
+STACK = 8 << 20
+SECONDS = 240  # for all files of one process; then the file that is being read counts as one that never ends
+GOOD = {"good.lidarscene.json": json.dumps({"version": 1, "objects": [{"file": "good.obj", "material": "Wall"}]}),
+        "good.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        "good.pcd": "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n"}
+
+
+def words_of(message):
+    """Without the place in the code and addresses."""
+    return re.sub("0x[0-9a-f]+", "0x", message.split("): ", 1)[-1].strip())
+
+
+def said_of(item):
+    """Errors, the size of the output without them, and what does not hold beside. @param item a file that is read, or a command"""
+    if isinstance(item, list):
+        status, _, error = helpertools.run(*item)
+        return error.splitlines(), int(status != 2), []
+    import avianlidar
+    from faulttools import error_of, make, outputs, size_of
+    is_scene = item.endswith(".json")
+    reader = make("SceneReader" if is_scene else "PointCloudReader")
+    behind = make("CollisionTree" if is_scene else "UnitNames")
+    behind.SetInputConnection(reader.GetOutputPort())
+    heard, wrong = Messages(reader), []
+    can = 0 if is_scene else reader.CanReadFile(item)
+    given(reader, FileName=item).Update()
+    data = outputs(reader)[0]
+    size, first = data.GetNumberOfElements(0 if data.IsA("vtkPolyData") else 1) + can, list(heard.errors)
+    if not first:
+        return first, size, wrong
+    if size_of(data) or not error_of(data) or error_of(data) not in first[0]:
+        wrong.append(f"its field data: {error_of(data)}")
+    reader.SetErrorsAsData(True)
+    behind.SetErrorsAsData(True)
+    later = Messages(behind)
+    behind.Update()
+    texts = [words_of(text) for text in heard.errors]
+    if len(texts) != 2 or [words_of(error_of(data)) for data in outputs(reader)] != texts[1:] or any(map(size_of, outputs(behind))):
+        wrong.append(f"as data: {texts}, {[error_of(data) for data in outputs(reader)]}")
+    if [words_of(text).partition("its producer failed: ")[2] for text in later.errors] != texts[1:]:
+        wrong.append(f"behind it: {later.errors}")
+    try:
+        (avianlidar.Scene if is_scene else avianlidar.load_cloud)(item)
+        wrong.append("the package takes it")
+    except Exception as error:  # noqa: B902
+        wrong += [] if texts[0] in words_of(str(error)) else [f"the package: {error}"]
+    del later.errors[:]
+    reader.SetFileName("good.lidarscene.json" if is_scene else "good.pcd")
+    behind.Update()
+    if len(heard.errors) > 2 or later.errors or not size_of(outputs(behind)[0]):
+        wrong.append(f"the next good file: {heard.errors[2:]} {later.errors}")
+    return first, size, wrong
+
+
+class Table(unittest.TestCase):
+    def read(self, items):
+        """What was said of each, by processes with limits; nothing of one that ended its process or was waited for."""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+            resource.setrlimit(resource.RLIMIT_STACK, (STACK, STACK))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        said = []
+        while len(said) < len(items):
+            try:
+                text = subprocess.run([sys.executable, os.path.abspath(__file__)], preexec_fn=limit, text=True, errors="replace", check=False,
+                                      input="".join(json.dumps(item) + "\n" for item in items[len(said):]), stdout=subprocess.PIPE,
+                                      env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES}, stderr=subprocess.DEVNULL, timeout=SECONDS).stdout
+            except subprocess.TimeoutExpired as late:
+                text = (late.stdout or b"").decode()
+            said += [json.loads(line) for line in text.splitlines() if line.startswith("[")]
+            said += [None] if len(said) < len(items) else []
+        return said
+
+    def assert_said(self, table):
+        """@param table rows of a file and the words of the one error, which names the file, or of a command (a list) and their pattern;
+        None: any error, or one triangle; True: it is sound"""
+        for (item, words), answer in zip(table, self.read([item for item, _ in table])):
+            with self.subTest(item if isinstance(item, list) else os.path.basename(item), words=words):
+                self.assertIsNotNone(answer, "it ended the process, or it is waited for")
+                errors, count, wrong = answer
+                if words is True or (words is None and count):
+                    self.assertEqual(errors, [])
+                    self.assertTrue(count == 1 or words)
+                    self.assertGreater(count, 0)
+                    continue
+                self.assertEqual((len(errors), count, wrong), (1, 0, []), errors)
+                self.assertNotRegex(words_of(errors[0]), r"\n|ERROR:|\.cpp|\.cxx")
+                if isinstance(item, list):
+                    self.assertRegex(errors[0], words)
+                else:
+                    self.assertIn(words or "", errors[0])
+                    self.assertIn(item, errors[0])
+
+
+class Files(InFolder, Table):
+    def setUp(self):
+        super().setUp()
+        for name, text in GOOD.items():
+            self.save(name, text)
+        self.scenes = 0
+
+    def save(self, name, content):
+        (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return str(self.folder / name)
+
+    def scene(self, *objects):
+        """A scene file of objects."""
+        self.scenes += 1
+        return st.write_scene(str(self.folder), f"scene{self.scenes}", {
+            "version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "material_map": {"*": "Wall"}, "objects": list(objects)})
+
+
+if __name__ == "__main__":
+    out = os.dup(1)
+    os.dup2(2, 1)  # libraries write what they like
+    with open(out, "w", encoding="utf-8") as answers:
+        for line in sys.stdin:
+            print(json.dumps(said_of(json.loads(line))), file=answers, flush=True)
