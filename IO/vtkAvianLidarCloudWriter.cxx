@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudWriter.h"
 
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarText.h"
 

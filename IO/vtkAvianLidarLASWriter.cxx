@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarLASWriter.h"
 
+#include "CoordinateSystem.h"
 #include "GeodeticFrame.h"
-#include "Private/CoordinateSystem.h"
-#include "Private/LasFormat.h"
-#include "Private/ReadCloud.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "LasFormat.h"
+#include "ReadCloud.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarNames.h"
 
 #include "vtkObjectFactory.h"
@@ -296,7 +296,7 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   };
 
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   const formats::LasMeasure measure = formats::measureLas(output, keepGoing);
   const double bound =
     std::max({ measure.axes[0].bound(), measure.axes[1].bound(), measure.axes[2].bound() });

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPCDWriter.h"
 
-#include "Private/PcdFormat.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "PcdFormat.h"
 #include "ScanPattern.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCloudFields.h"
 
 #include "vtkDataArray.h"
 #include "vtkObjectFactory.h"
@@ -219,7 +219,7 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
     output.viewpoint = pose->viewpoint();
   }
 
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   formats::writePcd(file, output, vtkAvianLidarAbort::KeepGoing(this));
   file.commit();
 }

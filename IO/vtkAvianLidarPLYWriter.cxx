@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPLYWriter.h"
 
-#include "Private/PlyFormat.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "PlyFormat.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarCloudFields.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -49,7 +49,7 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
     };
   }
 
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   formats::writePly(file, output, static_cast<std::uint64_t>(input->GetNumberOfPoints()), faces,
     vtkAvianLidarAbort::KeepGoing(this));
   file.commit();

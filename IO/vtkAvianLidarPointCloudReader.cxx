@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPointCloudReader.h"
 
+#include "CoordinateSystem.h"
 #include "GeodeticFrame.h"
-#include "Private/CoordinateSystem.h"
-#include "Private/ReadCloud.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "ReadCloud.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
@@ -122,7 +122,7 @@ int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
   }
   try
   {
-    formats::FileSource source(fileName);
+    avianlidar::FileSource source(fileName);
     return format->fits(source) ? 1 : 0;
   }
   catch (const std::exception&)
@@ -144,7 +144,7 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
     // RequestData() reports the error.
     const auto index = [&]
     {
-      formats::FileSource source(this->FileName);
+      avianlidar::FileSource source(this->FileName);
       internals.Packets =
         formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
     };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSceneReader.h"
 
-#include "Private/SceneBuilder.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "SceneBuilder.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
 #include "vtkAvianLidarRanks.h"

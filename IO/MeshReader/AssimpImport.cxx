@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Imports.h"
 
+#include "FileNames.h"
 #include "FormatFacts.h"
 #include "GltfFile.h"
-#include "MeshFormats.h"
 #include "PolygonTriangulation.h"
 #include "UnpackedSize.h"
 #include "Vector.h"

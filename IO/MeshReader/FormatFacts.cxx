@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FormatFacts.h"
 
-#include "MeshFormats.h"
+#include "FileNames.h"
 
 #include <algorithm>
 #include <charconv>

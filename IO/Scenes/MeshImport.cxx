@@ -2,7 +2,6 @@
 #include "MeshImport.h"
 
 #include "AvailableMemory.h"
-#include "MeshFormats.h"
 #include "MeshStream.h"
 
 #include <cerrno>

@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 constexpr std::uint64_t MostUnpacked = 256u << 20; ///< bytes
 constexpr std::uint64_t SmallUnpacked = 16u << 20; ///< bytes up to which any growth is allowed

@@ -7,12 +7,12 @@
 #define AvianLidarTextLines_h
 
 #include "ByteSource.h"
-#include "CloudData.h"
+#include "FileError.h"
 
 #include <charconv>
 #include <string>
 
-namespace avianlidar::formats
+namespace avianlidar
 {
 /// Returns the first 40 characters of a word or line of the file, for a message.
 std::string shown(const std::string& text);
@@ -28,7 +28,7 @@ public:
   }
 
   /// Reads the next line, without its end and without a byte-order mark. Returns false after the
-  /// last line. Throws FormatError for a line of more than 16 MiB.
+  /// last line. Throws FileError for a line of more than 16 MiB.
   bool get(std::string& line);
 
   /// Returns the offset of the next line in the source, bytes.
@@ -39,7 +39,7 @@ private:
   std::uint64_t Next;
 };
 
-/// Converts a word to a number, in the C locale. Throws FormatError, which names the key, if the
+/// Converts a word to a number, in the C locale. Throws FileError, which names the key, if the
 /// word is not a number.
 template <class T>
 T numberOf(const std::string& word, const char* key)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FootprintFeatures.h"
 
+#include "FileNames.h"
 #include "LengthText.h"
-#include "MeshFormats.h"
 #include "RegularFile.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"
