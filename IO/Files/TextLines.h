@@ -10,7 +10,9 @@
 #include "FileError.h"
 
 #include <charconv>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace avianlidar
 {
@@ -39,20 +41,25 @@ private:
   std::uint64_t Next;
 };
 
-/// Converts a word to a number, in the C locale. Throws FileError, which names the key, if the
-/// word is not a number.
+/// Converts a word to a number, in the C locale. Returns no number if the word is not a number.
+template <class T>
+std::optional<T> parsed(std::string_view word)
+{
+  word.remove_prefix(word.size() > 1 && word[0] == '+' && word[1] != '-');
+  T value{};
+  const auto [stop, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return problem == std::errc() && stop == word.data() + word.size() ? std::optional<T>(value)
+                                                                     : std::nullopt;
+}
+
+/// The same for a number that must be there. Throws FileError, which names the key, if the word is
+/// not a number.
 template <class T>
 T numberOf(const std::string& word, const char* key)
 {
-  T value{};
-  const char* end = word.data() + word.size();
-  const bool hasPlus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  const auto [stop, problem] = std::from_chars(word.data() + hasPlus, end, value);
-  if (problem != std::errc() || stop != end)
-  {
-    fail(key, " has \"", shown(word), "\", expected a number");
-  }
-  return value;
+  const std::optional<T> value = parsed<T>(word);
+  failIf(!value, key, " has \"", shown(word), "\", expected a number");
+  return *value;
 }
 
 }
