@@ -138,10 +138,10 @@ def of_panel(name):
     """{property: values beside the choices, or below the least number, of ParaView's panel}"""
     found = {}
     for prop in ElementTree.parse(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Filters", f"AvianLidar{name}.xml")).iter():
-        for domain in prop.findall("*[@entries]") + prop.findall("*[@min]"):
-            least = int(domain.get("min", 0)) - 1 if prop.tag.startswith("Int") else float(domain.get("min")) - 1e-9
-            beyond = [len(domain.get("entries").split())] if "entries" in domain.attrib else []
-            found[prop.get("command", "Set" + prop.get("name"))[3:]] = (least, *beyond)
+        ends, entries = prop.get("range", "").split(), prop.get("entries", "").split()
+        if ends or entries:
+            least = int(ends[0] if ends else 0) - 1 if prop.tag.startswith("Int") else float(ends[0]) - 1e-9
+            found[prop.get("command", "Set" + prop.get("name"))[3:]] = (least, *([len(entries)] if entries else []))
     return found
 
 
