@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
@@ -218,9 +219,4 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGeoJSONWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "UseFieldDataLimit: " << this->UseFieldDataLimit << "\n";
-  os << indent << "MinimumEnergy: " << this->MinimumEnergy << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarGeoJSONWriter, UseFieldDataLimit, MinimumEnergy);

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
@@ -169,9 +170,4 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarKITTIWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "WriteLabels: " << this->WriteLabels << "\n";
-  os << indent << "LabelSource: " << this->LabelSource << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarKITTIWriter, WriteLabels, LabelSource);

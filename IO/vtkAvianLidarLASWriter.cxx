@@ -8,6 +8,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -316,12 +317,5 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarLASWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "UTMZone: " << this->UTMZone << "\n";
-  os << indent << "SourceId: " << this->SourceId << "\n";
-  os << indent << "WriteAllArrays: " << this->WriteAllArrays << "\n";
-  os << indent << "RoundingBound: " << this->RoundingBound << "\n";
-}
+vtkAvianLidarPrintSelfMacro(
+  vtkAvianLidarLASWriter, CoordinateSystem, UTMZone, SourceId, WriteAllArrays, RoundingBound);

@@ -6,6 +6,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkDataArray.h"
 #include "vtkObjectFactory.h"
@@ -225,10 +226,4 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPCDWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileType: " << this->FileType << "\n";
-  os << indent << "Organisation: " << this->Organisation << "\n";
-  os << indent << "Precision: " << this->Precision << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarPCDWriter, FileType, Organisation, Precision);

@@ -4,6 +4,7 @@
 #include "PlyFormat.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -56,9 +57,4 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPLYWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileType: " << this->FileType << "\n";
-  os << indent << "Precision: " << this->Precision << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarPLYWriter, FileType, Precision);

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
@@ -216,12 +217,5 @@ void vtkAvianLidarPointCloudReader::Warn(const std::string& what)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPointCloudReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "LocalCoordinates: " << this->LocalCoordinates << "\n";
-  os << indent << "SensorAddress: " << (this->SensorAddress ? this->SensorAddress : "(none)")
-     << "\n";
-}
+vtkAvianLidarPrintSelfMacro(
+  vtkAvianLidarPointCloudReader, ErrorsAsData, FileName, LocalCoordinates, SensorAddress);

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSlices.h"
 #include "vtkAvianLidarText.h"
@@ -176,13 +177,7 @@ vtkAvianLidarSceneReader::~vtkAvianLidarSceneReader()
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSceneReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "Text: " << this->Text << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarSceneReader, ErrorsAsData, FileName, Text);
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarSceneReader::CanReadFile(const char* fileName)

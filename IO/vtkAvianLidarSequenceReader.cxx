@@ -7,6 +7,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarText.h"
 
@@ -326,9 +327,4 @@ int vtkAvianLidarSequenceReader::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSequenceReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarSequenceReader, ErrorsAsData, FileName);
