@@ -119,7 +119,7 @@ OF_SURFACES = [("points", "point", (NAN, INF, 1e31)), ("cell", "object_id", WHOL
                CLASS_NAMES, *NAMED]
 OF_REPORT = [("point", name, ("text", "wide", "short", 0.5, NAN)) for name in (
     "beam_id", "laser_id", "status", "skipped", "candidates", "nodes_visited", "rays_traced")]
-OF_REPORT += [("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "skipped_bound", ARRAY)]
+OF_REPORT += [("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE + ("missing",)), ("point", "skipped_bound", ARRAY)]
 ORIGIN_READ = ("field", "geodetic_origin", ("text", "two", "short", NAN))
 PLACE = [("field", "position", ("text", "two", NAN)), ("field", "orientation", ("text", "two", NAN))]
 
@@ -171,8 +171,8 @@ def produced_trails():
 
 
 NOTHING = ()
-OF_IMAGE = [("point", "beam_id", WHOLE), ("point", "energy_received", FINITE), ("point", "distance_m", FINITE), ("point", "energy", FINITE),
-            ("point", "object_id", WHOLE)]
+OF_IMAGE = [("point", name, ways + ("missing",)) for name, ways in (
+    ("beam_id", WHOLE), ("energy_received", FINITE), ("distance_m", FINITE), ("energy", FINITE), ("object_id", WHOLE))]
 # Every class with inputs: its name, properties, the producers of its inputs and what it reads of each. A later class is a row.
 CLASSES = [
     ("EchoFilter", {}, (produced_beams, OF_BEAMS), (produced_surfaces, OF_SURFACES)),
