@@ -13,9 +13,12 @@ import sys
 import tempfile
 import unittest
 
+import avianlidar
 import helpertools
 import scenetools as st
+from avianlidar import _suffixes
 from echotools import InFolder, Messages, given
+from faulttools import error_of, make, outputs, size_of
 
 ADDRESSES = 4 << 30  # bytes, of the process that reads
 MESH_GIGABYTES = "0.5"
@@ -40,52 +43,59 @@ def words_of(message):
     return re.sub("0x[0-9a-f]+", "0x", re.sub(r"\AERROR: .*\n.* \(0x[0-9a-f]+\): ", "", message).strip())
 
 
+# Readers by the ending of their files: the filter behind, how the package reads such a file, and a good file. A later reader is a row.
+READERS = {".json": ("SceneReader", "CollisionTree", avianlidar.Scene, "good.lidarscene.json"),
+           ".txt": ("SequenceReader", "UnitNames", None, None),
+           **dict.fromkeys(_suffixes.READERS, ("PointCloudReader", "UnitNames", avianlidar.load_cloud, "good.pcd"))}
+OTHERS = "PointCloudReader", "UnitNames", None, "good.pcd"
+
+
 def said_of(item):
     """Errors, the size of the output without them, and what does not hold beside. @param item a file that is read, or a command"""
     if isinstance(item, list):
         status, _, error = helpertools.run(*item)
         return error.splitlines(), int(status != 2), []
-    import avianlidar
-    from faulttools import error_of, make, outputs, size_of
-    from avianlidar import _suffixes
-    is_scene, is_sequence = item.endswith(".json"), item.endswith(".txt")
-    reader = make("SceneReader" if is_scene else "SequenceReader" if is_sequence else "PointCloudReader")
-    behind = make("CollisionTree" if is_scene else "UnitNames")
+    name, behind, load, good = READERS.get(os.path.splitext(item)[1].lower(), OTHERS)
+    reader, behind = make(name), make(behind)
     behind.SetInputConnection(reader.GetOutputPort())
-    heard, wrong = Messages(reader), []
-    can = 0 if is_scene or is_sequence else reader.CanReadFile(item)
+    heard = Messages(reader)
+    can = reader.CanReadFile(item) if name == "PointCloudReader" else 0
     given(reader, FileName=item).Update()
-    data = outputs(reader)[0]
-    size, first = data.GetNumberOfElements(0 if data.IsA("vtkPolyData") else 1) + can, list(heard.errors)
-    if not first:
-        return first, size, wrong
-    if any(map(size_of, outputs(reader))) or not is_scene and data.GetPointData().GetNumberOfArrays() or not error_of(data) or error_of(data) not in first[0]:
-        wrong.append(f"its field data: {error_of(data)}")
-    reader.SetErrorsAsData(True)
-    behind.SetErrorsAsData(True)
+    errors, data = list(heard.errors), outputs(reader)[0]
+    size = data.GetNumberOfElements(0 if data.IsA("vtkPolyData") else 1) + can
+    return errors, size, list(broken_ways(item, reader, behind, heard, load, good)) if errors else []
+
+
+def broken_ways(item, reader, behind, heard, load, good):
+    """The ways in which an error of the reader does not hold."""
+    for data in outputs(reader):
+        arrays = data.GetPointData().GetNumberOfArrays() if data.IsA("vtkPolyData") else 0
+        if size_of(data) or arrays or not error_of(data) or error_of(data) not in heard.errors[0]:
+            yield f"its output: {size_of(data)}, {arrays}, {error_of(data)}"
+    for algorithm in (reader, behind):
+        algorithm.SetErrorsAsData(True)
     later = Messages(behind)
     behind.Update()
     texts = [words_of(text) for text in heard.errors]
-    if len(texts) != 2 or {words_of(error_of(data)) for data in outputs(reader)} != {*texts[1:]} or any(map(size_of, outputs(behind))):
-        wrong.append(f"as data: {texts}, {[error_of(data) for data in outputs(reader)]}")
+    fields = {words_of(error_of(data)) for data in outputs(reader)}
+    if len(texts) != 2 or fields != {*texts[1:]} or any(map(size_of, outputs(behind))):
+        yield f"as data: {texts}, {fields}"
     if [words_of(text).partition("its producer failed: ")[2] for text in later.errors] != texts[1:]:
-        wrong.append(f"behind it: {later.errors}")
-    if is_sequence:  # its folder has no good file beside, and the package reads no sequence
-        return first, size, wrong
+        yield f"behind it: {later.errors}"
     try:
-        (avianlidar.Scene if is_scene else avianlidar.load_cloud)(item)
-        wrong.append("the package takes it")
+        if load:
+            load(item)
+            yield "the package takes it"
     except FileNotFoundError:
-        wrong += ["the package finds no file"] if os.path.exists(item) else []
+        yield from ["the package finds no file"] if os.path.exists(item) else []
     except Exception as error:  # noqa: B902
-        known = is_scene or os.path.splitext(item)[1].lower() in _suffixes.READERS
-        wrong += [] if texts[0] in words_of(str(error)) or not known else [f"the package: {error}"]
-    del later.errors[:]
-    reader.SetFileName(os.path.join(good_folder().name, "good.lidarscene.json" if is_scene else "good.pcd"))
-    behind.Update()
-    if len(heard.errors) > 2 or later.errors or not size_of(outputs(behind)[0]):
-        wrong.append(f"the next good file: {heard.errors[2:]} {later.errors}")
-    return first, size, wrong
+        yield from [] if texts[0] in words_of(str(error)) else [f"the package: {error}"]
+    if good:
+        del heard.errors[:], later.errors[:]
+        reader.SetFileName(os.path.join(good_folder().name, good))
+        behind.Update()
+        if heard.errors or later.errors or not size_of(outputs(behind)[0]):
+            yield f"the next good file: {heard.errors} {later.errors}"
 
 
 class Table(unittest.TestCase):
