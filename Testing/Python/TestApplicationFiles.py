@@ -5,7 +5,6 @@ import errno
 import gzip
 import json
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -22,6 +21,7 @@ from avianlidar.apps import _maps, _inputs, _report
 from osgeo import gdal
 import helpertools
 from exampletools import emptied
+from faulttools import disk
 from filetools import Table
 from reporttools import quick
 
@@ -222,13 +222,9 @@ class Sequences(Applications):
     def test_a_full_disk(self):
         """The error names the folder, in which all is as it was."""
         al.Sequence(self.scenario, number_of_scans=2).write(self.home)
-        before, limits = tree(self.home), resource.getrlimit(resource.RLIMIT_FSIZE)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
-        try:
-            with self.assertRaisesRegex((OSError, RuntimeError, al.Error), "File too large.*000000|000000.*File too large"):
-                al.Sequence(self.scenario).write(self.home)
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        before = tree(self.home)
+        with disk(200), self.assertRaisesRegex((OSError, RuntimeError, al.Error), "File too large.*000000|000000.*File too large"):
+            al.Sequence(self.scenario).write(self.home)
         self.assertEqual(tree(self.home), before)
 
     def refused(self, out, words, **changes):

@@ -5,7 +5,6 @@ import contextlib
 import errno
 import os
 import pathlib
-import resource
 import signal
 import socket
 import stat
@@ -23,6 +22,7 @@ from avianlidar.apps import _maps
 from avianlidar.apps._pictures import draw
 from cloudtools import echoes
 from echotools import InFolder, Messages
+from faulttools import disk
 
 NAMES = ["echoes" + suffix for suffix in (*_suffixes.WRITERS, *_suffixes.OWN)
          if suffix != ".laz" or os.environ["AVIANLIDAR_LASZIP"] == "1"]
@@ -49,17 +49,6 @@ writer.SetInputConnection(reader.GetOutputPort())
 writer.SetFileName(sys.argv[1])
 raise SystemExit(0 if writer.Write() else 3)
 """
-
-
-@contextlib.contextmanager
-def disk(size):
-    """Files may not grow beyond this: as if the disk were full then."""
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
 @contextlib.contextmanager

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of faults share: each class with producers of small inputs that are good, what it reads of them, and how that is
 spoilt."""
+import contextlib
+import resource
+
 import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -11,6 +14,17 @@ from echotools import box, copy_of, given, scan, sensor, town
 
 NAN, INF = float("nan"), float("inf")
 PLACE_OF_VALUE = 3  # of the one value of an array that is spoilt
+
+
+@contextlib.contextmanager
+def disk(size):
+    """Files may not grow beyond this: as if the disk were full then."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
 def make(name, **properties):
