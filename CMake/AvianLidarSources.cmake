@@ -31,38 +31,39 @@ set(classes
   IO/vtkAvianLidarUnitNames)
 
 # Sources for files of point clouds and scenes, without VTK classes. The fuzzers also build these sources.
+set(file_sources
+  IO/Files/ByteSource.cxx
+  IO/Files/OutputFile.cxx
+  IO/Files/TextLines.cxx
+  IO/Files/VirtualFiles.cxx)
 set(cloud_sources
-  IO/Private/ByteSource.cxx
-  IO/Private/CloudNotes.cxx
-  IO/Private/CoordinateSystem.cxx
-  IO/Private/FieldTable.cxx
-  IO/Private/KittiFormat.cxx
-  IO/Private/LasReading.cxx
-  IO/Private/LasWriting.cxx
-  IO/Private/LazFormat.cxx
-  IO/Private/OutputFile.cxx
-  IO/Private/PacketReading.cxx
-  IO/Private/PcdFormat.cxx
-  IO/Private/PlyFormat.cxx
-  IO/Private/ReadCloud.cxx
-  IO/Private/Scalars.cxx
-  IO/Private/SemanticLabels.cxx
-  IO/Private/TextLines.cxx)
+  IO/Clouds/CloudNotes.cxx
+  IO/Clouds/CoordinateSystem.cxx
+  IO/Clouds/FieldTable.cxx
+  IO/Clouds/KittiFormat.cxx
+  IO/Clouds/LasReading.cxx
+  IO/Clouds/LasWriting.cxx
+  IO/Clouds/LazFormat.cxx
+  IO/Clouds/PacketReading.cxx
+  IO/Clouds/PcdFormat.cxx
+  IO/Clouds/PlyFormat.cxx
+  IO/Clouds/ReadCloud.cxx
+  IO/Clouds/Scalars.cxx
+  IO/Clouds/SemanticLabels.cxx)
 set(scene_sources
-  IO/Private/Extrusion.cxx
-  IO/Private/FootprintFeatures.cxx
-  IO/Private/Footprints.cxx
-  IO/Private/LengthText.cxx
-  IO/Private/MeshImport.cxx
-  IO/Private/MeshStream.cxx
-  IO/Private/OsmXml.cxx
-  IO/Private/Polygons.cxx
-  IO/Private/SceneBuilder.cxx
-  IO/Private/SceneDescription.cxx
-  IO/Private/SceneFrame.cxx
-  IO/Private/ShownNames.cxx
-  IO/Private/Terrain.cxx
-  IO/Private/VirtualFiles.cxx)
+  IO/Scenes/Extrusion.cxx
+  IO/Scenes/FootprintFeatures.cxx
+  IO/Scenes/Footprints.cxx
+  IO/Scenes/LengthText.cxx
+  IO/Scenes/MeshImport.cxx
+  IO/Scenes/MeshStream.cxx
+  IO/Scenes/OsmXml.cxx
+  IO/Scenes/Polygons.cxx
+  IO/Scenes/SceneBuilder.cxx
+  IO/Scenes/SceneDescription.cxx
+  IO/Scenes/SceneFrame.cxx
+  IO/Scenes/ShownNames.cxx
+  IO/Scenes/Terrain.cxx)
 
 set(private_sources
   Filters/Private/Common/JsonNode.cxx
@@ -97,6 +98,7 @@ set(private_sources
   Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
+  ${file_sources}
   ${cloud_sources}
   ${scene_sources}
-  IO/Private/vtkAvianLidarCloudFields.cxx)
+  IO/Clouds/vtkAvianLidarCloudFields.cxx)

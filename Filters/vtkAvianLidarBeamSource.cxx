@@ -7,6 +7,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
@@ -594,12 +595,7 @@ int vtkAvianLidarBeamSource::RequestData(
 void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "Position: " << this->Position[0] << " " << this->Position[1] << " "
-     << this->Position[2] << "\n";
-  os << indent << "Orientation: " << this->Orientation[0] << " " << this->Orientation[1] << " "
-     << this->Orientation[2] << "\n";
-  os << indent << "NumberOfChannels: " << this->NumberOfChannels << "\n";
+  vtkAvianLidarPrintMacro(ErrorsAsData, Position, Orientation, NumberOfChannels);
   os << indent << "NumberOfChannelElevations: " << this->ChannelElevations.size() << "\n";
   os << indent << "NumberOfPrisms: " << this->GetNumberOfPrisms() << "\n";
   for (const auto& [name, table] : vtkInternals::Tables())
@@ -612,16 +608,9 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
     os << "\n";
   }
   os << indent << "Beams: " << (this->Table ? this->Table->directions.size() : 0) << "\n";
-  os << indent << "AzimuthRange: " << this->AzimuthRange[0] << " " << this->AzimuthRange[1] << "\n";
-  os << indent << "BeamwidthMilliradians: " << this->BeamwidthMilliradians << "\n";
-  os << indent << "BeamOutline: " << this->BeamOutline << "\n";
-  os << indent << "BeamProfile: " << this->BeamProfile << "\n";
-  os << indent << "NumberOfRevolutions: " << this->NumberOfRevolutions << "\n";
-  os << indent << "StepsPerRevolution: " << this->StepsPerRevolution << "\n";
-  os << indent << "MotionSeed: " << this->MotionSeed << "\n";
-  os << indent << "ReceiverModel: " << this->ReceiverModel << "\n";
-  os << indent << "ThresholdLaw: " << this->ThresholdLaw << "\n";
-  os << indent << "Wavelength: " << this->GetWavelength() << "\n";
+  vtkAvianLidarPrintMacro(AzimuthRange, BeamwidthMilliradians, BeamOutline, BeamProfile,
+    NumberOfRevolutions, StepsPerRevolution, MotionSeed, ReceiverModel, ThresholdLaw,
+    GetWavelength());
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
     os << indent << NameProperties(scalar.name.name) << ": " << this->*scalar.property << "\n";

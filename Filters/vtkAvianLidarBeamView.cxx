@@ -5,6 +5,7 @@
 #include "BeamSight.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
@@ -276,8 +277,4 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeamView::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "BeamId: " << this->BeamId << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarBeamView, BeamId);

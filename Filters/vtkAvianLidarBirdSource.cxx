@@ -6,6 +6,7 @@
 #include "ScanPattern.h"
 #include "ValueError.h"
 #include "vtkAvianLidarBirds.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
@@ -97,18 +98,5 @@ std::string vtkAvianLidarBirdSource::GetKnownSpecies()
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBirdSource::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Species: " << this->Species << "\n";
-  os << indent << "SpeciesFileName: " << this->SpeciesFileName << "\n";
-  os << indent << "WingPhase: " << this->WingPhase << "\n";
-  os << indent << "Gliding: " << this->Gliding << "\n";
-  os << indent << "Position: " << this->Position[0] << " " << this->Position[1] << " "
-     << this->Position[2] << "\n";
-  os << indent << "Heading: " << this->Heading << "\n";
-  os << indent << "Bank: " << this->Bank << "\n";
-  os << indent << "Reflectance: " << this->Reflectance << "\n";
-  os << indent << "ObjectId: " << this->ObjectId << "\n";
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarBirdSource, Species, SpeciesFileName, WingPhase, Gliding,
+  Position, Heading, Bank, Reflectance, ObjectId, ErrorsAsData);

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarGather.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
@@ -368,22 +369,7 @@ void vtkAvianLidarCloudComparison::AddResult(vtkFieldData* fields) const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarCloudComparison::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Controller: " << this->Controller << "\n";
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "HausdorffDistance: " << this->HausdorffDistance << "\n";
-  os << indent << "HausdorffSimulatedToReference: " << this->HausdorffSimulatedToReference << "\n";
-  os << indent << "HausdorffReferenceToSimulated: " << this->HausdorffReferenceToSimulated << "\n";
-  os << indent << "RMSESimulatedToReference: " << this->RMSESimulatedToReference << "\n";
-  os << indent << "RMSEReferenceToSimulated: " << this->RMSEReferenceToSimulated << "\n";
-  os << indent << "DensityAwareChamferDistance: " << this->DensityAwareChamferDistance << "\n";
-  os << indent
-     << "DensityAwareChamferSimulatedToReference: " << this->DensityAwareChamferSimulatedToReference
-     << "\n";
-  os << indent
-     << "DensityAwareChamferReferenceToSimulated: " << this->DensityAwareChamferReferenceToSimulated
-     << "\n";
-  os << indent << "ChamferAlpha: " << this->ChamferAlpha << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarCloudComparison, Controller, ErrorsAsData,
+  HausdorffDistance, HausdorffSimulatedToReference, HausdorffReferenceToSimulated,
+  RMSESimulatedToReference, RMSEReferenceToSimulated, DensityAwareChamferDistance,
+  DensityAwareChamferSimulatedToReference, DensityAwareChamferReferenceToSimulated, ChamferAlpha);

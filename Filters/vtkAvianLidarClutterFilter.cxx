@@ -9,6 +9,7 @@
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarGather.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScanStream.h"
@@ -440,20 +441,6 @@ int vtkAvianLidarClutterFilter::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarClutterFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Window: " << this->Window << "\n";
-  os << indent << "ClutterThreshold: " << this->ClutterThreshold << "\n";
-  os << indent << "RangeStep: " << this->RangeStep << "\n";
-  os << indent << "AzimuthStep: " << this->AzimuthStep << "\n";
-  os << indent << "ElevationStep: " << this->ElevationStep << "\n";
-  os << indent << "RangeTolerance: " << this->RangeTolerance << "\n";
-  os << indent << "AngularTolerance: " << this->AngularTolerance << "\n";
-  os << indent << "WarmUp: " << this->WarmUp << "\n";
-  os << indent << "SensorPosition: " << this->SensorPosition[0] << " " << this->SensorPosition[1]
-     << " " << this->SensorPosition[2] << "\n";
-  os << indent << "Learning: " << this->Learning << "\n";
-  os << indent << "Controller: " << this->Controller << "\n";
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarClutterFilter, Window, ClutterThreshold, RangeStep,
+  AzimuthStep, ElevationStep, RangeTolerance, AngularTolerance, WarmUp, SensorPosition, Learning,
+  Controller, ErrorsAsData);

@@ -7,6 +7,7 @@
 #include "VolumeTree.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarScene.h"
@@ -348,16 +349,5 @@ double vtkAvianLidarCollisionTree::GetNumberOfBytesSent() const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarCollisionTree::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Controller: " << this->Controller << "\n";
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "Preset: " << this->Preset << "\n";
-  os << indent << "SplitRule: " << this->SplitRule << "\n";
-  os << indent << "BoundingVolume: " << this->BoundingVolume << "\n";
-  os << indent << "MaximumLeafSize: " << this->MaximumLeafSize << "\n";
-  os << indent << "DisplayLevel: " << this->DisplayLevel << "\n";
-  os << indent << "NumberOfNodes: " << this->GetNumberOfNodes() << "\n";
-  os << indent << "NumberOfBuilds: " << this->GetNumberOfBuilds() << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarCollisionTree, Controller, ErrorsAsData, Preset, SplitRule,
+  BoundingVolume, MaximumLeafSize, DisplayLevel, GetNumberOfNodes(), GetNumberOfBuilds());

@@ -7,6 +7,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarEchoOutput.h"
 #include "vtkAvianLidarMovers.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarRevolutions.h"
 #include "vtkAvianLidarScanFilterInternals.h"
@@ -167,10 +168,4 @@ double vtkAvianLidarEchoFilter::GetNumberOfTouchedBeams() const
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Noise: " << this->Noise << "\n";
-  os << indent << "ReturnMode: " << this->ReturnMode << "\n";
-  os << indent << "ReportMovers: " << this->ReportMovers << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarEchoFilter, Noise, ReturnMode, ReportMovers);

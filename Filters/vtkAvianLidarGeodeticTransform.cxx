@@ -5,6 +5,7 @@
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
@@ -244,15 +245,5 @@ int vtkAvianLidarGeodeticTransform::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGeodeticTransform::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "SourceFrame: " << this->SourceFrame << "\n";
-  os << indent << "TargetFrame: " << this->TargetFrame << "\n";
-  os << indent << "MovePoints: " << this->MovePoints << "\n";
-  os << indent << "UseFieldDataOrigin: " << this->UseFieldDataOrigin << "\n";
-  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " " << this->Origin[2]
-     << "\n";
-  os << indent << "UTMZone: " << this->UTMZone << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarGeodeticTransform, ErrorsAsData, SourceFrame, TargetFrame,
+  MovePoints, UseFieldDataOrigin, Origin, UTMZone);

@@ -3,6 +3,7 @@
 
 #include "Hue.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
@@ -175,10 +176,4 @@ void vtkAvianLidarHSBColorMap::FillLookupTable(vtkLookupTable* table)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarHSBColorMap::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "UseFieldDataRange: " << this->UseFieldDataRange << "\n";
-  os << indent << "EnergyRange: " << this->EnergyRange[0] << " " << this->EnergyRange[1] << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarHSBColorMap, ErrorsAsData, UseFieldDataRange, EnergyRange);

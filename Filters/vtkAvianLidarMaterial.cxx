@@ -7,6 +7,7 @@
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarMaterials.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
@@ -399,16 +400,5 @@ int vtkAvianLidarMaterial::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarMaterial::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "Material: " << this->Material << "\n";
-  os << indent << "Kd: " << this->Kd << "\n";
-  os << indent << "Ks: " << this->Ks << "\n";
-  os << indent << "Kp: " << this->Kp << "\n";
-  os << indent << "Roughness: " << this->Roughness << "\n";
-  os << indent << "ObjectId: " << this->ObjectId << "\n";
-  os << indent << "NameOfObject: " << this->NameOfObject << "\n";
-  os << indent << "BlockNamePattern: " << this->BlockNamePattern << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarMaterial, ErrorsAsData, Material, Kd, Ks, Kp, Roughness,
+  ObjectId, NameOfObject, BlockNamePattern);

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarGuard.h"
 #include "vtkAvianLidarImageArrays.h"
 #include "vtkAvianLidarImageBeams.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
@@ -305,11 +306,4 @@ void vtkAvianLidarRangeImage::MakeImage(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarRangeImage::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Controller: " << this->Controller << "\n";
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "Columns: " << this->Columns << "\n";
-  os << indent << "Rows: " << this->Rows << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarRangeImage, Controller, ErrorsAsData, Columns, Rows);

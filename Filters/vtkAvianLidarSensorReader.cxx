@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSensorReader.h"
 
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 
@@ -54,8 +55,4 @@ int vtkAvianLidarSensorReader::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSensorReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarSensorReader, FileName);

@@ -8,6 +8,7 @@
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBirds.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
@@ -515,32 +516,6 @@ std::string vtkAvianLidarTracks::GetKnownSpecies()
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarTracks::PrintSelf(ostream& os, vtkIndent indent)
-{
-  const auto print = [&](const char* name, const double* values, int count)
-  {
-    os << indent << name << ":";
-    for (int i = 0; i < count; ++i)
-    {
-      os << " " << values[i];
-    }
-    os << "\n";
-  };
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "Pattern: " << this->Pattern << "\n";
-  os << indent << "FileName: " << this->FileName << "\n";
-  print("Origin", this->Origin, 3);
-  os << indent << "Species: " << this->Species << "\n";
-  os << indent << "SpeciesFileName: " << this->SpeciesFileName << "\n";
-  os << indent << "NumberOfBirds: " << this->NumberOfBirds << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  print("TimeRange", this->TimeRange, 2);
-  print("Center", this->Center, 3);
-  print("Radius", &this->Radius, 1);
-  print("Heights", this->Heights, 2);
-  print("ThresholdPosition", this->ThresholdPosition, 3);
-  print("ThresholdHeading", &this->ThresholdHeading, 1);
-  print("Reflectance", &this->Reflectance, 1);
-  os << indent << "FirstObjectId: " << this->FirstObjectId << "\n";
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarTracks, Pattern, FileName, Origin, Species,
+  SpeciesFileName, NumberOfBirds, Seed, TimeRange, Center, Radius, Heights, ThresholdPosition,
+  ThresholdHeading, Reflectance, FirstObjectId, ErrorsAsData);

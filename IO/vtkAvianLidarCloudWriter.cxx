@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarCloudWriter.h"
 
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarText.h"
 
 #include "vtkErrorCode.h"
@@ -69,10 +70,4 @@ void vtkAvianLidarCloudWriter::Warn(const std::string& text)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarCloudWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "GivenFileName: " << (this->GivenFileName ? this->GivenFileName : "(none)")
-     << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarCloudWriter, FileName, GivenFileName);

@@ -3,10 +3,11 @@
 
 #include "GeodeticFrame.h"
 #include "Json.h"
-#include "Private/OutputFile.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "OutputFile.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRequire.h"
 
 #include "vtkDataArray.h"
@@ -195,7 +196,7 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
   }
 
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   file.write(R"({"type":"FeatureCollection",)"
              "\n"
              R"("description":"Echoes of a lidar; heights are metres above the WGS84 ellipsoid",)"
@@ -218,9 +219,4 @@ void vtkAvianLidarGeoJSONWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarGeoJSONWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "UseFieldDataLimit: " << this->UseFieldDataLimit << "\n";
-  os << indent << "MinimumEnergy: " << this->MinimumEnergy << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarGeoJSONWriter, UseFieldDataLimit, MinimumEnergy);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarKITTIWriter.h"
 
-#include "Private/KittiFormat.h"
-#include "Private/OutputFile.h"
-#include "Private/ReadCloud.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "KittiFormat.h"
+#include "OutputFile.h"
+#include "ReadCloud.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointSet.h"
@@ -96,8 +97,8 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
 
   vtkDataArray* intensity = fields::Find(input, names::Intensity.name);
   std::optional<Labels> labels;
-  std::optional<formats::OutputFile> labelFile;
-  formats::OutputFile file(this->FileName);
+  std::optional<avianlidar::OutputFile> labelFile;
+  avianlidar::OutputFile file(this->FileName);
   if (this->WriteLabels)
   {
     labels.emplace(input, this->LabelSource == LABEL_SOURCE_MATERIAL);
@@ -148,7 +149,7 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
   }
   if (labels)
   {
-    formats::OutputFile::commitBoth(*labelFile, file);
+    avianlidar::OutputFile::commitBoth(*labelFile, file);
   }
   else
   {
@@ -169,9 +170,4 @@ void vtkAvianLidarKITTIWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarKITTIWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "WriteLabels: " << this->WriteLabels << "\n";
-  os << indent << "LabelSource: " << this->LabelSource << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarKITTIWriter, WriteLabels, LabelSource);

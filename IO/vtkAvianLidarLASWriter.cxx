@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarLASWriter.h"
 
+#include "CoordinateSystem.h"
 #include "GeodeticFrame.h"
-#include "Private/CoordinateSystem.h"
-#include "Private/LasFormat.h"
-#include "Private/ReadCloud.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "LasFormat.h"
+#include "ReadCloud.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarNames.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -296,7 +297,7 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   };
 
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   const formats::LasMeasure measure = formats::measureLas(output, keepGoing);
   const double bound =
     std::max({ measure.axes[0].bound(), measure.axes[1].bound(), measure.axes[2].bound() });
@@ -316,12 +317,5 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarLASWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "CoordinateSystem: " << this->CoordinateSystem << "\n";
-  os << indent << "UTMZone: " << this->UTMZone << "\n";
-  os << indent << "SourceId: " << this->SourceId << "\n";
-  os << indent << "WriteAllArrays: " << this->WriteAllArrays << "\n";
-  os << indent << "RoundingBound: " << this->RoundingBound << "\n";
-}
+vtkAvianLidarPrintSelfMacro(
+  vtkAvianLidarLASWriter, CoordinateSystem, UTMZone, SourceId, WriteAllArrays, RoundingBound);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPCDWriter.h"
 
-#include "Private/PcdFormat.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "PcdFormat.h"
 #include "ScanPattern.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkDataArray.h"
 #include "vtkObjectFactory.h"
@@ -219,16 +220,10 @@ void vtkAvianLidarPCDWriter::WriteCloud(vtkPointSet* input)
     output.viewpoint = pose->viewpoint();
   }
 
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   formats::writePcd(file, output, vtkAvianLidarAbort::KeepGoing(this));
   file.commit();
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPCDWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileType: " << this->FileType << "\n";
-  os << indent << "Organisation: " << this->Organisation << "\n";
-  os << indent << "Precision: " << this->Precision << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarPCDWriter, FileType, Organisation, Precision);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPLYWriter.h"
 
-#include "Private/PlyFormat.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "PlyFormat.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarCloudFields.h"
+#include "vtkAvianLidarPrint.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -49,16 +50,11 @@ void vtkAvianLidarPLYWriter::WriteCloud(vtkPointSet* input)
     };
   }
 
-  formats::OutputFile file(this->FileName);
+  avianlidar::OutputFile file(this->FileName);
   formats::writePly(file, output, static_cast<std::uint64_t>(input->GetNumberOfPoints()), faces,
     vtkAvianLidarAbort::KeepGoing(this));
   file.commit();
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPLYWriter::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "FileType: " << this->FileType << "\n";
-  os << indent << "Precision: " << this->Precision << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarPLYWriter, FileType, Precision);

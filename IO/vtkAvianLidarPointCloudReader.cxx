@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarPointCloudReader.h"
 
+#include "CoordinateSystem.h"
 #include "GeodeticFrame.h"
-#include "Private/CoordinateSystem.h"
-#include "Private/ReadCloud.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "ReadCloud.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
@@ -122,7 +123,7 @@ int vtkAvianLidarPointCloudReader::CanReadFile(const char* fileName)
   }
   try
   {
-    formats::FileSource source(fileName);
+    avianlidar::FileSource source(fileName);
     return format->fits(source) ? 1 : 0;
   }
   catch (const std::exception&)
@@ -144,7 +145,7 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
     // RequestData() reports the error.
     const auto index = [&]
     {
-      formats::FileSource source(this->FileName);
+      avianlidar::FileSource source(this->FileName);
       internals.Packets =
         formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
     };
@@ -216,12 +217,5 @@ void vtkAvianLidarPointCloudReader::Warn(const std::string& what)
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPointCloudReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "LocalCoordinates: " << this->LocalCoordinates << "\n";
-  os << indent << "SensorAddress: " << (this->SensorAddress ? this->SensorAddress : "(none)")
-     << "\n";
-}
+vtkAvianLidarPrintSelfMacro(
+  vtkAvianLidarPointCloudReader, ErrorsAsData, FileName, LocalCoordinates, SensorAddress);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSceneReader.h"
 
-#include "Private/SceneBuilder.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "SceneBuilder.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarMaterials.h"
 #include "vtkAvianLidarMedia.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarSlices.h"
 #include "vtkAvianLidarText.h"
@@ -176,13 +177,7 @@ vtkAvianLidarSceneReader::~vtkAvianLidarSceneReader()
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSceneReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-  os << indent << "Text: " << this->Text << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarSceneReader, ErrorsAsData, FileName, Text);
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarSceneReader::CanReadFile(const char* fileName)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarSequenceReader.h"
 
-#include "Private/ReadCloud.h"
-#include "Private/TextLines.h"
-#include "Private/vtkAvianLidarCloudFields.h"
+#include "ReadCloud.h"
+#include "TextLines.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCloudFields.h"
 #include "vtkAvianLidarGuard.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 #include "vtkAvianLidarText.h"
 
@@ -57,8 +58,8 @@ struct Line
 
   double NumberAt(std::size_t word) const
   {
-    const double value = formats::numberOf<double>(this->words[word], this->where.c_str());
-    failIf(!std::isfinite(value), this->where, " has \"", formats::shown(this->words[word]),
+    const double value = avianlidar::numberOf<double>(this->words[word], this->where.c_str());
+    failIf(!std::isfinite(value), this->where, " has \"", avianlidar::shown(this->words[word]),
       "\", expected a finite number");
     return value;
   }
@@ -66,8 +67,8 @@ struct Line
 
 std::vector<Line> LinesOf(const std::string& file)
 {
-  formats::FileSource source(file);
-  formats::TextLines lines(source, 0);
+  avianlidar::FileSource source(file);
+  avianlidar::TextLines lines(source, 0);
   const std::string name = " of " + fs::path(file).filename().string();
   std::vector<Line> all;
   std::size_t number = 0;
@@ -172,7 +173,7 @@ void ReadBoxes(const std::string& file, const Placement& place, vtkPolyData* box
       v[i] = line.NumberAt(i);
     }
     failIf(v[10] != std::trunc(v[10]) || std::abs(v[10]) > std::numeric_limits<int>::max(),
-      line.where, " has \"", formats::shown(line.words[10]),
+      line.where, " has \"", avianlidar::shown(line.words[10]),
       "\", expected a whole number of 32 bits: an id");
     const vtkIdType first = points->GetNumberOfPoints();
     for (int corner = 0; corner < 8; ++corner)
@@ -326,9 +327,4 @@ int vtkAvianLidarSequenceReader::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarSequenceReader::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarSequenceReader, ErrorsAsData, FileName);

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarUnitNames.h"
 
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarPrint.h"
 #include "vtkAvianLidarRanks.h"
 
 #include "vtkCellData.h"
@@ -85,8 +86,4 @@ int vtkAvianLidarUnitNames::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarUnitNames::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "ErrorsAsData: " << this->ErrorsAsData << "\n";
-}
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarUnitNames, ErrorsAsData);

@@ -8,8 +8,9 @@ The files of the proxies (Filters/X.xml, IO/X.xml) are ParaView's XML without th
 - A proxy has the class `vtk` + its name, its name in words as label, and the base AvianLidarAlgorithm. `icon` puts the
   proxy into the menu Avian Lidar. `extensions` and `file_description` make a reader of files with these extensions.
 - A property has its name in words as label, `Set` + its name as command (`Get` with information_only), and as many
-  elements as defaults.
-- A PropertyGroup contains the properties that it shows.
+  elements as defaults. Its text is the documentation. `range` (least and largest value, if there are any), `entries` and
+  `boolean` make its domain.
+- A PropertyGroup contains the properties that it shows. `group` is the label of a group of one property.
 - `<Property name="X" of="Y">` is the property X of the proxy Y. Attributes and elements of the tag replace attributes
   and elements of Y's property.
 - `type` and `composite` of an input make its domains. `entries` of an enumeration count from 0, except `Name=number`.
@@ -83,8 +84,28 @@ def is_property(one):
     return one.tag.endswith("Property") and (one.tag != "Property" or len(one) > 0 or "of" in one.attrib)
 
 
+def spread(prop):
+    """Makes elements of the text and of the attributes that stand for a domain."""
+    parts = []
+    if "range" in prop.attrib:
+        ends = zip(("min", "max"), prop.attrib.pop("range").split())
+        parts.append(ElementTree.Element(prop.tag.replace("VectorProperty", "RangeDomain"), {"name": "range", **dict(ends)}))
+    if "entries" in prop.attrib:
+        parts.append(ElementTree.Element("EnumerationDomain", name="enum", entries=prop.attrib.pop("entries")))
+    if prop.attrib.pop("boolean", ""):
+        parts.append(ElementTree.Element("BooleanDomain", name="bool"))
+    if (prop.text or "").strip():
+        parts.append(ElementTree.Element("Documentation"))
+        parts[-1].text, prop.text = prop.text, None
+    prop[:0] = parts
+
+
 def ungroup(proxy):
     """Moves properties out of their groups. The groups then name the properties."""
+    for i, prop in enumerate(proxy):
+        if "group" in prop.attrib:
+            proxy[i] = ElementTree.Element("PropertyGroup", label=prop.attrib.pop("group"))
+            proxy[i].append(prop)
     for group in proxy.findall("PropertyGroup"):
         for i, prop in enumerate(list(group)):
             if is_property(prop):
@@ -200,6 +221,9 @@ def expanded(files):
         root.extend([read] if read.tag == "ProxyGroup" else read)
     proxies = {proxy.get("name"): proxy for group in root for proxy in group}
     for proxy in proxies.values():
+        for prop in proxy.iter():
+            if prop.tag.endswith("Property"):
+                spread(prop)
         ungroup(proxy)
     for proxy in proxies.values():
         proxy[:] = [resolved(one, proxies) if is_property(one) else one for one in proxy]

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Imports.h"
 
+#include "FileNames.h"
 #include "FormatFacts.h"
 #include "GltfFile.h"
-#include "MeshFormats.h"
 #include "PolygonTriangulation.h"
 #include "UnpackedSize.h"
 #include "Vector.h"
@@ -19,8 +19,6 @@
 
 #include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
-
-#include <minizip/unzip.h>
 
 #include "vtk_zlib.h"
 
@@ -371,48 +369,17 @@ std::string TextOf(AssimpFiles& files)
   return text;
 }
 
-/// Returns a part of an archive, or an empty text if the part is missing.
-/// @param name without a slash in front
-std::string PartOf(unzFile archive, const std::string& name)
+/// Makes Assimp read none of the formats that this project refuses, not even by the contents of a
+/// file. Throws Error if the file has the extension of such a format.
+void RefuseFormats(Assimp::Importer& importer, const std::string& file)
 {
-  constexpr int anyCase = 2;
-  unz_file_info64 size{};
-  if (unzLocateFile(archive, name.c_str(), anyCase) != UNZ_OK ||
-    unzGetCurrentFileInfo64(archive, &size, nullptr, 0, nullptr, 0, nullptr, 0) != UNZ_OK)
+  for (const std::string ending : { ".3mf", ".amf", ".nff", ".off", ".ogex", ".x3d" })
   {
-    return {};
+    importer.UnregisterLoader(importer.GetImporter(ending.c_str()));
+    failIf(EndingOf(file) == ending, "is of a format that is not read: convert it to OBJ with ",
+      "the program of Assimp (Debian: assimp-utils), \"assimp export in", ending,
+      " out.obj\", and give its unit as scale and its axis as up_axis");
   }
-  failIf(!MayHold(size.compressed_size, size.uncompressed_size), "its part ", name, " holds ",
-    size.uncompressed_size, " bytes once decompressed, more than a mesh does");
-  if (unzOpenCurrentFile(archive) != UNZ_OK)
-  {
-    return {};
-  }
-  std::string text;
-  std::vector<char> chunk(1u << 20);
-  for (int got = 1; got > 0;)
-  {
-    got = unzReadCurrentFile(archive, chunk.data(), static_cast<unsigned int>(chunk.size()));
-    text.append(chunk.data(), static_cast<std::size_t>(std::max(got, 0)));
-  }
-  unzCloseCurrentFile(archive);
-  return text;
-}
-
-/// Returns the model that the relationships of a 3MF file name, or an empty text if the file cannot
-/// be opened. Assimp then reports the error.
-std::string ModelOf(const std::string& file)
-{
-  const std::unique_ptr<void, int (*)(unzFile)> archive(unzOpen64(file.c_str()), unzClose);
-  if (!archive)
-  {
-    return {};
-  }
-  static const std::regex target("Target *= *[\"']/?([^\"']*\\.model)[\"']");
-  const std::string relationships = PartOf(archive.get(), "_rels/.rels");
-  std::smatch named;
-  return PartOf(archive.get(),
-    std::regex_search(relationships, named, target) ? named[1].str() : "3D/3dmodel.model");
 }
 
 /// Refuses files that Assimp reads wrong. Adds the file's warnings and its up axis to the mesh.
@@ -424,14 +391,8 @@ double CheckFormat(
 {
   const std::string& name = files.GetMeshName();
   const std::string ending = EndingOf(name);
-  if (ending == ".3mf")
-  {
-    const std::string model = ModelOf(name);
-    mesh.warnings = Check3mf(model);
-    return PrintUnit(model);
-  }
   static const std::map<std::string, void (*)(const std::string&)> checks{ { ".ply", CheckPly },
-    { ".nff", CheckNff }, { ".obj", CheckObj } };
+    { ".obj", CheckObj } };
   if (const auto check = checks.find(ending); check != checks.end())
   {
     const std::string text = TextOf(files);
@@ -441,17 +402,9 @@ double CheckFormat(
     }
     return 1.0;
   }
-  static const std::set<std::string> looked{ ".off", ".gltf", ".glb", ".ifc", ".stp", ".step",
-    ".amf", ".x3d", ".ogex" };
+  static const std::set<std::string> looked{ ".gltf", ".glb", ".ifc", ".stp", ".step" };
   const std::string text = looked.count(ending) > 0 ? TextOf(files) : "";
-  if (ending == ".off")
-  {
-    if (!text.empty())
-    {
-      files.Replace(".obj", OffAsObj(text));
-    }
-  }
-  else if (ending == ".gltf" || ending == ".glb")
+  if (ending == ".gltf" || ending == ".glb")
   {
     mesh.warnings = CheckGltf(text);
     GltfFiles changed =
@@ -464,19 +417,6 @@ double CheckFormat(
         files.Add(buffer, std::move(bytes));
       }
     }
-  }
-  else if (ending == ".amf")
-  {
-    CheckAmf(text);
-    return PrintUnit(text);
-  }
-  else if (ending == ".x3d")
-  {
-    return X3dUnit(text);
-  }
-  else if (ending == ".ogex")
-  {
-    return OpenGexUnit(text, mesh.upAxis);
   }
   else if (!text.empty())
   {
@@ -633,6 +573,7 @@ Mesh ReadAssimpMesh(const std::string& file)
   Assimp::Importer& importer = *new Assimp::Importer;
   auto* files = new AssimpFiles(file);
   importer.SetIOHandler(files);
+  RefuseFormats(importer, files->GetMeshName());
   Mesh mesh;
   std::map<std::string, std::size_t> elements;
   std::string schema;

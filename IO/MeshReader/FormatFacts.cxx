@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FormatFacts.h"
 
-#include "MeshFormats.h"
+#include "FileNames.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <iterator>
-#include <optional>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -157,62 +153,6 @@ double IfcUnit(const std::vector<Entity>& entities)
   return 1.0;
 }
 
-/// Returns the value of an attribute in an XML tag, or no value if the attribute is missing.
-std::optional<std::string_view> ValueOf(std::string_view tag, std::string_view name)
-{
-  const char* const blanks = " \t\r\n";
-  for (std::size_t at = tag.find(name, 1); at != std::string_view::npos;
-       at = tag.find(name, at + 1))
-  {
-    const std::size_t equals = tag.find_first_not_of(blanks, at + name.size());
-    if (std::strchr(blanks, tag[at - 1]) && equals != std::string_view::npos && tag[equals] == '=')
-    {
-      const std::size_t quote = tag.find_first_of("'\"", equals);
-      return quote == std::string_view::npos
-        ? std::string_view()
-        : tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
-    }
-  }
-  return {};
-}
-
-/// Calls use(name without a prefix, attributes) for each XML tag outside comments, as long as use()
-/// returns true.
-template <class Use>
-void ForEachTag(std::string_view text, const Use& use)
-{
-  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1))
-  {
-    if (StartsWith(text.substr(at), "<!--"))
-    {
-      at = std::min(text.find("-->", at), text.size());
-      continue;
-    }
-    const std::string_view tag = text.substr(at + 1, text.find('>', at) - at - 1);
-    const std::size_t end = std::min(tag.find_first_of(" \t\r\n/", 1), tag.size());
-    const std::size_t colon = tag.substr(0, end).find(':');
-    if (!use(tag.substr(0, end).substr(colon == std::string_view::npos ? 0 : colon + 1),
-          tag.substr(end)))
-    {
-      return;
-    }
-  }
-}
-
-/// Refuses 3MF files that require an extension other than the materials extension.
-void CheckPrintExtensions(std::string_view attributes)
-{
-  std::istringstream prefixes{ std::string(
-    ValueOf(attributes, "requiredextensions").value_or("")) };
-  for (std::string prefix; prefixes >> prefix;)
-  {
-    const auto space = ValueOf(attributes, "xmlns:" + prefix);
-    failIf(!space || space->find("/material/") == std::string_view::npos,
-      "requires the 3MF extension ", space.value_or(prefix),
-      ", which is not supported: export it without this extension");
-  }
-}
-
 void SkipBlanks(const char*& at, const char* end)
 {
   while (at < end && (*at == ' ' || *at == '\t' || *at == '\r'))
@@ -287,8 +227,8 @@ void ForEachLine(std::string_view text, const Use& use)
   }
 }
 
-/// Removes the next line that has words from the text. Returns its words up to a comment (#).
-/// Throws Error if the line has too few words, or if no such line follows and `least` is not 0.
+/// Removes the next line that has words from the text, and returns its words up to a comment (#).
+/// Throws Error if the line has too few words, or if no such line follows.
 std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
 {
   const char* const blanks = " \t";
@@ -296,11 +236,7 @@ std::vector<std::string_view> TakeRow(std::string_view& text, std::size_t least)
   words.reserve(8); // of most lines
   while (words.empty())
   {
-    if (text.empty())
-    {
-      failIf(least > 0, "is cut short: lines are missing at its end");
-      return words;
-    }
+    failIf(text.empty(), "is cut short: lines are missing at its end");
     const auto* const end = std::find_if(
       text.begin(), text.end(), [](char byte) { return byte == '\n' || byte == '\r'; });
     const std::string_view line = text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -412,44 +348,6 @@ double ReadIfc(const std::string& file, std::map<std::string, std::size_t>& elem
   return IfcUnit(entities);
 }
 
-double X3dUnit(const std::string& text)
-{
-  double metres = 1.0;
-  ForEachTag(text,
-    [&metres](std::string_view name, std::string_view attributes)
-    {
-      const bool isUnit = name == "unit" && ValueOf(attributes, "category") == "length";
-      if (isUnit)
-      {
-        metres =
-          std::atof(std::string(ValueOf(attributes, "conversionFactor").value_or("")).c_str());
-      }
-      return !isUnit && name != "Scene";
-    });
-  failIf(!(metres > 0.0), "has a unit of length without a positive conversionFactor");
-  return metres;
-}
-
-double OpenGexUnit(const std::string& text, char& upAxis)
-{
-  static const std::regex metric("Metric[^{]*\"(distance|up)\"[^{]*\\{[^{]*\\{\\s*\"?([^\"}\\s]+)");
-  double metres = 1.0;
-  const std::string begin = text.substr(0, 1u << 14);
-  for (std::sregex_iterator at(begin.begin(), begin.end(), metric), end; at != end; ++at)
-  {
-    const std::string value = (*at)[2];
-    if ((*at)[1] == "up")
-    {
-      upAxis = value == "y" ? 'y' : 'z';
-    }
-    else if (metres = std::atof(value.c_str()); !(metres > 0.0))
-    {
-      fail("has the distance '", value, "' in its Metric, expected metres above 0");
-    }
-  }
-  return metres;
-}
-
 void CheckPly(const std::string& text)
 {
   const char* const end = "end_header";
@@ -469,69 +367,6 @@ void CheckPly(const std::string& text)
   fail("is broken: its header has no line end_header");
 }
 
-std::string OffAsObj(const std::string& text)
-{
-  std::string_view rows = text;
-  std::vector<std::string_view> counts = TakeRow(rows, 1);
-  if (const std::string_view type = counts[0]; type.find("OFF") != std::string_view::npos)
-  {
-    failIf(type.find_first_of("4n") != std::string_view::npos, "is of the type ", type,
-      ", expected OFF with three coordinates");
-    failIf(counts.size() > 1 && counts[1] == "BINARY", "is a binary OFF file, expected text");
-    counts.erase(counts.begin());
-  }
-  while (counts.size() < 3) // vertices, faces, edges
-  {
-    const std::vector<std::string_view> more = TakeRow(rows, 1);
-    counts.insert(counts.end(), more.begin(), more.end());
-  }
-  std::string obj;
-  const std::size_t vertices = CountOf(counts[0]);
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex)
-  {
-    const std::vector<std::string_view> words = TakeRow(rows, 3);
-    obj += 'v';
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      const char* at = words[k].data();
-      failIf(!SkipNumber(at, at + words[k].size()), "vertex ", vertex, " has the coordinate \"",
-        words[k], "\", expected a number");
-      obj.append(1, ' ').append(words[k]);
-    }
-    obj += '\n';
-  }
-  for (std::size_t face = CountOf(counts[1]); face > 0; --face)
-  {
-    const std::vector<std::string_view> words = TakeRow(rows, 1);
-    const std::size_t corners = CountOf(words[0]);
-    failIf(words.size() < 1 + corners, "is cut short or damaged: a face of ", words[0],
-      " vertices has ", words.size() - 1);
-    obj += corners > 0 ? "f" : "";
-    for (std::size_t k = 1; k <= corners; ++k)
-    {
-      const std::size_t corner = CountOf(words[k]);
-      failIf(corner >= vertices, "is broken: a face has vertex ", words[k], " of ", vertices);
-      obj.append(1, ' ').append(std::to_string(corner + 1));
-    }
-    obj += '\n';
-  }
-  return obj;
-}
-
-void CheckNff(const std::string& text)
-{
-  std::string_view rows = text;
-  while (!rows.empty())
-  {
-    const std::vector<std::string_view> words = TakeRow(rows, 0);
-    const bool isPolygon = words.size() == 2 && (words[0] == "p" || words[0] == "pp");
-    for (std::size_t vertex = isPolygon ? CountOf(words[1]) : 0; vertex > 0; --vertex)
-    {
-      TakeRow(rows, 3);
-    }
-  }
-}
-
 void CheckObj(const std::string& text)
 {
   std::size_t line = 0;
@@ -548,87 +383,6 @@ void CheckObj(const std::string& text)
           "\", expected a vertex with three coordinates");
       }
     });
-}
-
-std::vector<std::string> Check3mf(const std::string& text)
-{
-  std::set<std::string_view> held;
-  std::vector<std::string_view> named;
-  std::size_t painted = 0;
-  ForEachTag(text,
-    [&](std::string_view name, std::string_view attributes)
-    {
-      if (name == "triangle")
-      {
-        painted += !ValueOf(attributes, "pid").value_or("").empty() ||
-          !ValueOf(attributes, "p1").value_or("").empty();
-      }
-      else if (name == "object")
-      {
-        held.insert(ValueOf(attributes, "id").value_or(""));
-      }
-      else if (name == "item" || name == "component")
-      {
-        named.push_back(ValueOf(attributes, "objectid").value_or(""));
-      }
-      return true;
-    });
-  for (const std::string_view name : named)
-  {
-    failIf(
-      held.count(name) == 0, "is broken: it builds the object ", name, ", which it does not hold");
-  }
-  return painted == 0 ? std::vector<std::string>()
-                      : std::vector<std::string>{ "materials of " + std::to_string(painted) +
-                          " triangles are left out: the material of the object is taken" };
-}
-
-double PrintUnit(const std::string& text)
-{
-  static const std::pair<const char*, double> units[] = { { "micron", 1e-6 },
-    { "micrometer", 1e-6 }, { "millimeter", 1e-3 }, { "centimeter", 1e-2 }, { "inch", 0.0254 },
-    { "foot", 0.3048 }, { "feet", 0.3048 }, { "meter", 1.0 } };
-  std::optional<std::string_view> unit;
-  ForEachTag(text,
-    [&unit](std::string_view name, std::string_view attributes)
-    {
-      const bool isRoot = name == "model" || name == "amf";
-      if (isRoot)
-      {
-        CheckPrintExtensions(attributes);
-        unit = ValueOf(attributes, "unit");
-      }
-      return !isRoot;
-    });
-  for (const auto& [name, length] : units)
-  {
-    if (unit.value_or("millimeter") == name)
-    {
-      return length;
-    }
-  }
-  fail("has the unit '", *unit, "', expected micron, millimeter, centimeter, inch, foot or meter");
-}
-
-void CheckAmf(const std::string& text)
-{
-  for (const char* turn : { "<rx>", "<ry>", "<rz>" })
-  {
-    failIf(text.find(turn) != std::string::npos, "turns objects of a constellation (", turn,
-      "), which is not supported: export it with the objects turned");
-  }
-  const auto count = [&text](const char* element)
-  {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(element); at != std::string::npos;
-         at = text.find(element, at + 1))
-    {
-      ++found;
-    }
-    return found;
-  };
-  failIf(count("<volume") > count("<mesh"),
-    "has meshes of several volumes, which are not supported: export each volume as an object");
 }
 
 Vec3 MoveObjToOrigin(std::vector<char>& bytes)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GltfFile.h"
 
+#include "FileNames.h"
 #include "Json.h"
-#include "MeshFormats.h"
 #include "SceneTypes.h"
 
 #include <vtksys/Base64.h>

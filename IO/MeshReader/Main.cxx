@@ -9,7 +9,7 @@
  * program they cannot crash or stop the process that reads the scene.
  */
 #include "Imports.h"
-#include "MeshFormats.h"
+#include "MeshImport.h"
 #include "MeshStream.h"
 
 #include <cmath>

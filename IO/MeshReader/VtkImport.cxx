@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Imports.h"
 
-#include "MeshFormats.h"
+#include "MeshImport.h"
 #include "RegularFile.h"
 #include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarNames.h"

@@ -45,16 +45,20 @@ def checked_name(name: str, what: str) -> str:
     return name
 
 
+def require_regular(path: pathlib.Path) -> None:
+    """Raises `Error` for a folder, for a pipe, which may wait for ever, and for a device, which may never end. The
+    library's RegularFile.h does the same."""
+    if path.exists() and not path.is_file():
+        what = "it is a folder" if path.is_dir() else "it is not a regular file but a pipe or a device"
+        raise Error(f"{path}: {what}")
+
+
 def read_regular(file, most: int = LARGEST) -> bytes:
-    """The content of a regular file, or of a link to a regular file; gzip is decompressed. A pipe may wait for ever,
-    and a device may never end: both are an error, as in the library's RegularFile.h. @param most greatest number of
-    bytes after decompression"""
+    """The content of a regular file, or of a link to a regular file; gzip is decompressed. @param most greatest number
+    of bytes after decompression"""
     try:
-        path = pathlib.Path(file)
-        if path.exists() and not path.is_file():
-            what = "it is a folder" if path.is_dir() else "it is not a regular file but a pipe or a device"
-            raise Error(f"{file}: {what}")
-        content = path.read_bytes()
+        require_regular(pathlib.Path(file))
+        content = pathlib.Path(file).read_bytes()
     except (OSError, ValueError) as error:  # ValueError for a name that no file can have
         raise Error(f"{file}: cannot be read ({getattr(error, 'strerror', error)})") from None
     if not content.startswith(b"\x1f\x8b"):
@@ -311,7 +315,7 @@ def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
         raise ValueError(f"time is {time}, expected seconds since the full hour")
     if suffix not in (".vtp", *TABLES) and not hasattr(_wrapped, READERS.get(suffix, "")):
         raise refuse("read", path, [*suffixes(READERS), *TABLES[1:]])
-    if not (path.exists() if suffix in TABLES else path.is_file()):
+    if not path.exists():
         raise FileNotFoundError(f"no such file: {path}")
     if suffix in TABLES:
         if properties:
@@ -320,6 +324,7 @@ def load_cloud(file, time: float | None = None, **properties: Any) -> Cloud:
     if suffix == ".vtp":
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
         reader = vtkXMLPolyDataReader()
+        require_regular(path)
         with open(path, "rb") as stream:
             if b"<VTKFile" not in stream.read(4096):  # VTK reports several errors for such files
                 raise ValueError(f"{path}: this is not a VTK XML file")

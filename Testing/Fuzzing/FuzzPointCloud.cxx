@@ -25,7 +25,7 @@ using namespace avianlidar::formats;
   std::abort();
 }
 
-class MemorySource : public ByteSource
+class MemorySource : public avianlidar::ByteSource
 {
 public:
   MemorySource(const std::uint8_t* data, std::uint64_t size)

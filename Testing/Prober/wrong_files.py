@@ -3,7 +3,6 @@
 scenario is taken as a whole or refused in words that name the file and its member. Never a signal, a hang, or nothing. See README.md."""
 
 import argparse
-import gzip
 import json
 import math
 import os
@@ -48,18 +47,14 @@ def mesh_files(folder):
     """{name: content} of a box in every format, as text and binary, except formats whose library is known to crash: IFC (Assimp), legacy
     surfaces and unstructured grids (VTK)."""
     c, t, q = box.CORNERS, box.TRIANGLES, box.QUADS
-    ply = box.ply(c, q)
-    head, body = ply.split("end_header\n")
     triangles = b"".join(struct.pack("<12fH", 0, 0, 0, *c[list(face)].ravel(), 0) for face in t)
     quads = b"".join(struct.pack("<B4i", 4, *face) for face in q)
-    head = head.replace("ascii", "binary_little_endian") + "end_header\n"
-    gltf = box.gltf(c, t).encode()
+    head = box.ply(c, q).split("end_header\n")[0].replace("ascii", "binary_little_endian") + "end_header\n"
+    gltf = box.MESHES["box.gltf"]
     gltf += b" " * (-len(gltf) % 4)
-    files = {"box.obj": box.obj(c, t), "box.stl": box.stl(c, t), "box.ply": ply, "box.gltf": gltf, "box.dae": box.collada(c, t, "Z_UP"),
-             "box.3ds": box.three_ds(c, t), "box.ac": box.ac3d(c, q), "box.off": f"OFF\n8 {len(q)} 0\n" + body,
+    files = {**box.MESHES, "quads.ply": box.ply(c, q).encode(), "quads.ac": box.ac3d(c, q).encode(),
              "binary.stl": b"box".ljust(80) + struct.pack("<I", len(t)) + triangles, "binary.ply": head.encode() + c.astype("<f4").tobytes() + quads,
              "box.glb": b"glTF" + struct.pack("<IIII", 2, 20 + len(gltf), len(gltf), 0x4E4F534A) + gltf}
-    files["box.obj.gz"] = gzip.compress(files["box.obj"].encode(), mtime=0)
     image, grid, name = vtk.vtkImageData(), vtk.vtkAppendFilter(), os.path.join(folder, "written")
     image.SetDimensions(3, 4, 2)
     grid.AddInputData(box.poly_data(q))
@@ -73,7 +68,7 @@ def mesh_files(folder):
             writer.Write()
             with open(name, "rb") as file:
                 files[f"box{mode}.{kind}"] = file.read()
-    return {name: content if isinstance(content, bytes) else content.encode() for name, content in files.items()}
+    return files
 
 
 def reader_samples():

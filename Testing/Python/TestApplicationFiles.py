@@ -5,7 +5,6 @@ import errno
 import gzip
 import json
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -19,10 +18,11 @@ import numpy as np
 import avianlidar as al
 from avianlidar._disk import only_run
 from avianlidar.apps import _maps, _inputs, _report
-from avianlidar.apps._pictures import draw
 from osgeo import gdal
 import helpertools
 from exampletools import emptied
+from faulttools import disk
+from filetools import Table
 from reporttools import quick
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -39,15 +39,6 @@ PLAN = {"scene": "s.lidarscene.json", "sensor": SENSOR, "runways": "runways.geoj
 SCENARIO = {"scene": "s.lidarscene.json", "sensor": SENSOR, "number_of_scans": 4, "scans_per_sequence": 2, "seed": 5,
             "birds": [{"pattern": "Crossings", "number_of_birds": 3, "radius": 300, "heights": [5, 40]}]}
 
-# Runs commands, each a line of arguments; what is read may wait for ever, or never end.
-CHILD = """
-import json, resource, sys
-resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
-from avianlidar._command import main
-for line in sys.stdin:
-    print(line.rstrip(), file=sys.stderr, flush=True)
-    print("status", main(json.loads(line)), file=sys.stderr, flush=True)
-"""
 # Has a folder for itself until it is killed.
 HOLDER = """
 import sys, time
@@ -56,11 +47,6 @@ with only_run(sys.argv[1]):
     print("has it", flush=True)
     time.sleep(600)
 """
-
-
-def child(program, *arguments, **options):
-    return subprocess.Popen([sys.executable, "-c", program, *map(str, arguments)], text=True, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, **options)
 
 
 def run(*arguments):
@@ -87,7 +73,7 @@ class Applications(unittest.TestCase):
         return self.home / name
 
 
-class Inputs(Applications):
+class Inputs(Applications, Table):
     def test_names_are_checked_before_anything_is_written(self):
         (self.home / ".lidarsensor.json").write_text("{}")  # a name that the plan does not say is that of the file
         bad = ("..", "", "a/b", "a\0b", "a\nb", ".hidden", "\ud800", "x" * 300)
@@ -139,18 +125,7 @@ class Inputs(Applications):
                      for verb in ("coverage", "siting", "report", "sequence")]
         expected.append((["coverage", str(self.home / "bomb.coverage.json"), "-o", str(self.home / "out")],
                          "bomb.coverage.json: holds more than 64 MiB"))
-        job = child(CHILD, stdin=subprocess.PIPE)
-        try:
-            _, said = job.communicate("".join(json.dumps(command) + "\n" for command, _ in expected), timeout=300)
-        except subprocess.TimeoutExpired:
-            job.kill()
-            self.fail("waits for ever: " + job.communicate()[1].splitlines()[-1])
-        said = said.splitlines()
-        self.assertEqual((job.returncode, len(said)), (0, 3 * len(expected)), "\n".join(said))
-        for (command, words), line, message, status in zip(expected, said[::3], said[1::3], said[2::3]):
-            with self.subTest(command):
-                self.assertEqual((json.loads(line), status), (command, "status 2"))
-                self.assertRegex(message, words)
+        self.assert_said(expected)
         plans = [_inputs.read_plan(file) for file in (self.home / "good.coverage.json", self.plan)]
         for plan in plans:
             plan.pop("file")
@@ -194,7 +169,7 @@ class OneRun(Applications):
 
     def test_that_was_killed_has_none(self):
         out = self.home / "sets"
-        job = child(HOLDER, out)
+        job = subprocess.Popen([sys.executable, "-c", HOLDER, str(out)], text=True, stdout=subprocess.PIPE)
         self.assertEqual(job.stdout.readline(), "has it\n")
         try:
             with self.assertRaisesRegex(al.Error, f"{out}: another run writes there"):
@@ -244,6 +219,14 @@ class OneRun(Applications):
 
 
 class Sequences(Applications):
+    def test_a_full_disk(self):
+        """The error names the folder, in which all is as it was."""
+        al.Sequence(self.scenario, number_of_scans=2).write(self.home)
+        before = tree(self.home)
+        with disk(200), self.assertRaisesRegex((OSError, RuntimeError, al.Error), "File too large.*000000|000000.*File too large"):
+            al.Sequence(self.scenario).write(self.home)
+        self.assertEqual(tree(self.home), before)
+
     def refused(self, out, words, **changes):
         """Nothing is changed."""
         before = tree(out)
@@ -363,33 +346,7 @@ class Sequences(Applications):
         self.assertEqual(json.loads((out / "manifest.json").read_text())["scenario"]["sensor"]["azimuth_step"], 2)
 
 
-class FullDisk(Applications):
-    def test_leaves_good_files(self):
-        """The old file, and nothing beside it; the error names the file."""
-        home, noise = self.home, np.random.default_rng(1).uniform(0.0, 1.0, (200, 200)).astype(np.float32)
-        _maps.write_geotiff(home / "from.tif", noise, (0, 0), (1, 1), ORIGIN, "p")
-        al.Sequence(self.scenario, number_of_scans=2).write(home)
-        work = {
-            "map.tif": lambda: _maps.write_geotiff(home / "map.tif", noise, (0, 0), (1, 1), ORIGIN, "p"),
-            "status.tif": lambda: _maps.write_geotiff(home / "status.tif", (9 * noise).astype(int), (0, 0), (1, 1), None, "s", "", list("abcdefghi")),
-            "areas.geojson": lambda: _maps.write_areas(home / "areas.geojson", home / "from.tif", "words"),
-            "table.csv": lambda: _maps.write_table(home / "table.csv", [{"value": i} for i in range(9000)]),
-            "picture.png": lambda: draw(home / "picture.png", (4, 4), lambda axes: axes.imshow(noise)),
-            "000000": lambda: al.Sequence(self.scenario).write(home)}
-        for name in (*work, "status.tif.aux.xml"):
-            (home / name).write_text("good")
-        before = tree(home)
-        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-        for name, write in work.items():
-            with self.subTest(name):
-                resource.setrlimit(resource.RLIMIT_FSIZE, (200 if name == "000000" else 5000, limits[1]))
-                try:
-                    with self.assertRaisesRegex((OSError, RuntimeError, al.Error), f"File too large.*{name}|{name}.*File too large"):
-                        write()
-                finally:
-                    resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-                self.assertEqual(tree(home), before)
-
+class Maps(Applications):
     def test_maps_are_read_back(self):
         values = np.random.default_rng(1).uniform(0.0, 1.0, (50, 50)).astype(np.float32)
         file = self.home / "map.tif"

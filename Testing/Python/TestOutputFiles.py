@@ -1,26 +1,42 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are written: whole or not at all, in pairs too, with an error that names the file. Permissions, links, and
-folders and devices stay. Parts of a killed process are removed at the next writing."""
+"""Files that the package and the applications write: whole or not at all, in pairs too, with an error that names the file. Permissions,
+links, and folders and devices stay. Parts of a killed process are removed at the next writing."""
 import contextlib
 import errno
 import os
 import pathlib
-import resource
 import signal
 import socket
 import stat
 import subprocess
 import sys
+import tempfile
 from unittest import mock
+
+import numpy as np
 
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, _writers, vtkAvianLidar as wrapped
 from avianlidar._disk import only_run, replacing
+from avianlidar.apps import _maps
+from avianlidar.apps._pictures import draw
 from cloudtools import echoes
 from echotools import InFolder, Messages
+from faulttools import disk
 
 NAMES = ["echoes" + suffix for suffix in (*_suffixes.WRITERS, *_suffixes.OWN)
          if suffix != ".laz" or os.environ["AVIANLIDAR_LASZIP"] == "1"]
+
+NOISE = np.random.default_rng(1).uniform(0.0, 1.0, (200, 200)).astype(np.float32)
+PLACE, ORIGIN = ((0, 0), (1, 1)), (0.0, 0.0, 0.0)
+# Files of the applications, and how they are written.
+MAPS = {
+    "map.tif": lambda _, file: _maps.write_geotiff(file, NOISE, *PLACE, ORIGIN, "p"),
+    "status.tif": lambda _, file: _maps.write_geotiff(file, (9 * NOISE).astype(int), *PLACE, None, "s", "", list("abcdefghi")),
+    "areas.geojson": lambda folder, file: _maps.write_areas(file, folder / "from.tif", "words"),
+    "table.csv": lambda _, file: _maps.write_table(file, [{"value": i} for i in range(9000)]),
+    "picture.png": lambda _, file: draw(file, (4, 4), lambda axes: axes.imshow(NOISE))}
+ALL = (*NAMES, *MAPS)
 
 # Writes the cloud of data.pcd, a pair or a file that needs a reference system, and says whether that went well.
 WRITE = """
@@ -33,17 +49,6 @@ writer.SetInputConnection(reader.GetOutputPort())
 writer.SetFileName(sys.argv[1])
 raise SystemExit(0 if writer.Write() else 3)
 """
-
-
-@contextlib.contextmanager
-def disk(size):
-    """Files may not grow beyond this: as if the disk were full then."""
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
 @contextlib.contextmanager
@@ -67,6 +72,13 @@ class Written(InFolder):
     @classmethod
     def setUpClass(cls):
         cls.data = echoes()
+        cls.inputs = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        cls.inputs.chmod(0o755)
+        _maps.write_geotiff(cls.inputs / "from.tif", NOISE[:40, :40], *PLACE, ORIGIN, "p")
+
+    def save(self, name):
+        kind = next((kind for kind in MAPS if os.path.basename(name).endswith(kind)), None)
+        MAPS[kind](self.inputs, pathlib.Path(name)) if kind else al.save(self.data, name)
 
     def run_child(self, name, **environment):
         """Writes in a process of its own with that environment."""
@@ -91,9 +103,9 @@ class Written(InFolder):
             os._exit(0)
         return os.waitpid(child, 0)[1]
 
-    def refused(self, name, words, kinds=(OSError, al.Error)):
+    def refused(self, name, words, kinds=(OSError, al.Error, RuntimeError)):
         with self.assertRaisesRegex(kinds, words) as caught:
-            al.save(self.data, name)
+            self.save(name)
         self.assertIn(os.path.basename(name), str(caught.exception))
 
     def kitti(self, name="echoes.bin"):
@@ -106,7 +118,7 @@ class Written(InFolder):
 class Single(Written):
     def test_what_was_there_is_replaced(self):
         """With its permissions; through a link; nothing else is touched."""
-        for name in NAMES:
+        for name in ALL:
             for mode in (0o600, 0o2750):
                 with self.subTest(name, mode=oct(mode)):
                     file, other = self.folder / name, self.folder / (name + ".part0")
@@ -114,7 +126,7 @@ class Single(Written):
                     other.write_text("not yours")
                     file.chmod(mode)
                     os.symlink(name, "link-" + name)
-                    al.save(self.data, "link-" + name)
+                    self.save("link-" + name)
                     self.assertTrue(os.path.islink("link-" + name))
                     self.assertEqual(stat.S_IMODE(file.stat().st_mode), mode)
                     self.assertTrue(100 < file.stat().st_size < 1_000_000)
@@ -132,7 +144,7 @@ class Single(Written):
         with contextlib.suppress(PermissionError):  # only root may
             os.mknod("device", 0o600 | stat.S_IFCHR, os.makedev(1, 3))
         things = {name: os.lstat(name) for name in os.listdir()}
-        for name in NAMES:
+        for name in ALL:
             for thing, before in things.items():
                 with self.subTest(f"{name}: {thing}"):
                     os.rename(thing, name)
@@ -156,25 +168,24 @@ class Single(Written):
                 self.assertEqual(os.readlink(name), place)
                 os.remove(name)
 
-    def test_links_into_a_missing_folder(self):
-        for name in NAMES:
-            os.symlink("missing/other-" + name, name)
-            with self.assertRaisesRegex((OSError, al.Error), rf"No such file or directory: '?{name}'?\Z|{name}: .*No such file or directory\.\Z"):
-                al.save(self.data, name)
-
-    def test_links_to_what_is_still_to_be_made(self):
-        for name in NAMES:
-            os.symlink("other-" + name, name)
-            al.save(self.data, name)
-            self.assertEqual((os.readlink(name), os.path.isfile("other-" + name)), ("other-" + name, True))
+    def test_links_to_what_is_not_there(self):
+        """In a folder that is missing, or still to be made."""
+        for name in ALL:
+            with self.subTest(name):
+                os.symlink("missing/other-" + name, "missing-" + name)
+                missing = rf"No such file or directory: '?(/.*/)?missing-{name}(\.aux\.xml)?'?\Z|missing-{name}: .*No such file or directory\.\Z"
+                self.refused("missing-" + name, missing)
+                os.symlink("other-" + name, name)
+                self.save(name)
+                self.assertEqual((os.readlink(name), os.path.isfile("other-" + name)), ("other-" + name, True))
 
     def test_a_folder_that_is_only_read(self):
         """Files that are there stay, new ones are not made, and no run has the folder."""
-        for name in NAMES:
-            al.save(self.data, name)
+        for name in ALL:
+            self.save(name)
         before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
         with read_only(self.folder):
-            for name in NAMES:
+            for name in ALL:
                 for one in (name, "new-" + name):
                     with self.subTest(one):
                         self.refused(one, "Permission denied")
@@ -185,15 +196,15 @@ class Single(Written):
 
     def test_two_write_one_file(self):
         """Python's own and any writer: each its own part, the last to end counts."""
-        for name in NAMES:
+        for name in ALL:
             with self.subTest(name), replacing(self.folder / name) as part:
                 pathlib.Path(part).write_text("last")
-                al.save(self.data, name)
+                self.save(name)
                 self.assertGreater(os.path.getsize(name), 100)
             self.assertEqual(((self.folder / name).read_text(), parts()), ("last", []))
 
     def test_names_that_are_none(self):
-        for name in NAMES:
+        for name in ALL:
             self.refused(os.path.join("none", name), "No such file or directory")
         os.symlink("b.label", "b.bin")
         # Points that are their own labels.
@@ -204,18 +215,22 @@ class Single(Written):
         self.assertEqual(os.listdir(), ["b.bin"])
 
     def test_a_disk_that_is_too_small(self):
-        """For the first byte, for some of them, for the last one: an error, the old file and nothing else."""
-        for name in NAMES:
-            al.save(self.data, name)
+        """For the first byte, for some of them, for the last one: an error, the old file and nothing else, whatever lies beside it."""
+        beside = pathlib.Path("status.tif.aux.xml")
+        self.save("status.tif")
+        beside.write_text("good")
+        for name in ALL:
+            self.save(name)
             whole = os.path.getsize(name)
+            beside.write_text("good")
             for size in (0, whole // 2, whole - 1):
                 with self.subTest(name, size=size):
                     pathlib.Path(name).write_text("old")
                     before = set(os.listdir())
                     with disk(size):
                         self.refused(name, "File too large|too large|cannot be written to its end")
-                    self.assertEqual(pathlib.Path(name).read_text(), "old")
-                    self.assertEqual(set(os.listdir()), before)
+                    self.assertEqual((pathlib.Path(name).read_text(), set(os.listdir())), ("old", before))
+                    self.assertEqual(beside.read_text(), "good")
 
     def test_a_disk_that_fails_at_the_end(self):
         """A file gets its name only when its bytes are on the disk."""

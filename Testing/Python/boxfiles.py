@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One box in every mesh format that the scene reader's tests write: each function gives the file's content."""
 import base64
+import gzip
 import json
 import struct
 
@@ -135,6 +136,14 @@ def ifc(points, faces):
     return ("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
             "FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n"
             + "".join("#%d=%s;\n" % (i + 1, line) for i, line in enumerate(lines)) + "ENDSEC;\nEND-ISO-10303-21;\n")
+
+
+# The box in formats that are text, or bytes.
+MESHES = {"box.obj": obj(CORNERS, TRIANGLES), "box.stl": stl(CORNERS, TRIANGLES), "box.ply": ply(CORNERS, TRIANGLES),
+          "box.gltf": gltf(y_up(CORNERS) - [0.5, 0, 0], TRIANGLES), "z.dae": collada(CORNERS, TRIANGLES, "Z_UP"), "box.ac": ac3d(y_up(CORNERS), TRIANGLES),
+          "box.3ds": three_ds(CORNERS, TRIANGLES)}
+MESHES = {name: content if isinstance(content, bytes) else content.encode() for name, content in MESHES.items()}
+MESHES["packed.obj.gz"] = gzip.compress(MESHES["box.obj"], mtime=0)
 
 
 def poly_data(faces):

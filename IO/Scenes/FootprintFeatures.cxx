@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FootprintFeatures.h"
 
+#include "FileNames.h"
+#include "Glob.h"
 #include "LengthText.h"
-#include "MeshFormats.h"
 #include "RegularFile.h"
-#include "SceneDescription.h"
 #include "SceneFrame.h"
 #include "VirtualFiles.h"
 
@@ -170,7 +170,7 @@ bool Passes(const OGRFeature& feature, const std::vector<AttributeFilter>& filte
     [&](const AttributeFilter& filter)
     {
       const auto value = FindAttribute(feature, filter.attribute);
-      return value && MatchesPattern(filter.pattern, *value);
+      return value && globMatches(filter.pattern, *value);
     });
 }
 

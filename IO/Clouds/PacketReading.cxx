@@ -243,7 +243,7 @@ struct HourClock
   double hours = 0.0;
   double last = 0.0;
 
-  double timeOf(const unsigned char* payload)
+  double timeOfPacket(const unsigned char* payload)
   {
     const double time = load<std::uint32_t>(payload + 1200);
     this->hours += time < this->last - 0.5 * HourTime ? HourTime : 0.0;
@@ -259,7 +259,7 @@ int blocksAtOnce(const unsigned char* payload)
 }
 
 /// Returns the time from the time of the packet to the begin of a block, us.
-double timeOf(const unsigned char* payload, int block)
+double offsetOfBlock(const unsigned char* payload, int block)
 {
   return 2.0 * FiringTime * (block / blocksAtOnce(payload));
 }
@@ -301,7 +301,7 @@ void addBlock(TurnPoints& points, const unsigned char* payload, int block, doubl
     const double after = FiringTime * (firing / Lasers) + LaserTime * (firing % Lasers);
     double turned = azimuthOf(payload, block) + gap * after / (2.0 * FiringTime);
     turned -= turned < FullTurn ? 0.0 : FullTurn;
-    const double moment = time + timeOf(payload, block) + after;
+    const double moment = time + offsetOfBlock(payload, block) + after;
     const unsigned char* near = payload + block * BytesPerBlock + 4 + 3 * firing;
     const unsigned char* far = near + (returns - 1) * BytesPerBlock;
     int n = load<std::uint16_t>(near) == load<std::uint16_t>(far) ? 1 : 2;
@@ -479,13 +479,13 @@ std::vector<PacketIndex::Turn> turnsOf(
   for (std::size_t number = 0; number < packets.size(); ++number)
   {
     const unsigned char* payload = source.at(packets[number], PayloadSize);
-    const double time = clock.timeOf(payload);
+    const double time = clock.timeOfPacket(payload);
     for (int block = 0; block < BlocksPerPacket; block += blocksAtOnce(payload))
     {
       const int azimuth = azimuthOf(payload, block);
       if (before < 0 || azimuth < before - FullTurn / 2)
       {
-        const double seconds = 1e-6 * (time + timeOf(payload, block));
+        const double seconds = 1e-6 * (time + offsetOfBlock(payload, block));
         turns.push_back({ number, block,
           turns.empty() ? seconds : std::max(seconds, turns.back().time + LeastStep) });
       }
@@ -564,10 +564,10 @@ Cloud readTurn(
       ? azimuthOf(source.at(index.packets[p + 1], PayloadSize), 0)
       : -1;
     const int step = blocksAtOnce(payload);
-    const double time = clock.timeOf(payload);
+    const double time = clock.timeOfPacket(payload);
     if (p == from.packet) // sets the hour of the index
     {
-      const double since = 1e6 * from.time - timeOf(payload, from.block) - time;
+      const double since = 1e6 * from.time - offsetOfBlock(payload, from.block) - time;
       clock.hours = HourTime * std::round(since / HourTime);
     }
     const int end = p == to.packet ? to.block : BlocksPerPacket;

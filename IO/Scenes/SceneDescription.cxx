@@ -444,26 +444,6 @@ Object ParseObject(const JsonNode& node, Scene& scene)
 }
 }
 
-bool MatchesPattern(const std::string& pattern, const std::string& name)
-{
-  // Whether the characters of the pattern so far fit the first i characters of the name.
-  std::vector<bool> fits(name.size() + 1);
-  fits[0] = true;
-  for (const char c : pattern)
-  {
-    for (std::size_t i = 1; c == '*' && i < fits.size(); ++i)
-    {
-      fits[i] = fits[i] || fits[i - 1];
-    }
-    for (std::size_t i = name.size(); c != '*' && i > 0; --i)
-    {
-      fits[i] = fits[i - 1] && (c == '?' || c == name[i - 1]);
-    }
-    fits[0] = fits[0] && c == '*';
-  }
-  return fits.back();
-}
-
 Scene ReadDescription(const std::string& file, const std::string& text)
 {
   const Json json = text.empty() ? ReadJson(file) : ParseJson(text, file);

@@ -6,6 +6,7 @@
 #ifndef AvianLidarMeshImport_h
 #define AvianLidarMeshImport_h
 
+#include "FileNames.h"
 #include "SceneTypes.h"
 
 #include <functional>
@@ -14,8 +15,14 @@
 
 namespace avianlidar::scene
 {
+/// Returns whether VTK reads the file. Assimp reads all other files.
+inline bool IsVtkFile(const std::string& file)
+{
+  return EndsWithAny(file, { ".vtp", ".vtu", ".vts", ".vtr", ".vti", ".vtm", ".vtmb", ".vtk" });
+}
+
 /**
- * Reads meshes: VTK's formats (MeshFormats.h) with VTK, all other formats with Assimp. Files that
+ * Reads meshes: VTK's formats (IsVtkFile()) with VTK, all other formats with Assimp. Files that
  * Assimp reads may be compressed, with the extension ".gz". Polygons are triangulated.
  * Transformations of a scene graph are applied in double precision. Vertices with identical
  * coordinates are merged over all parts of the file. The material of a triangle is an index in

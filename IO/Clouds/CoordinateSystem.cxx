@@ -19,13 +19,13 @@ namespace
 {
 std::string wktOf(int code, bool ellipsoidalHeights)
 {
-  const scene::QuietGdal quiet;
+  const QuietGdal quiet;
   OGRSpatialReference system;
   const bool isKnown = system.importFromEPSG(code) == OGRERR_NONE &&
     (!ellipsoidalHeights || system.PromoteTo3D(nullptr) == OGRERR_NONE);
   // Without the option GDAL cannot write heights above the ellipsoid as WKT 1.
   constexpr const char* option = "ALLOW_ELLIPSOIDAL_HEIGHT_AS_VERTICAL_CRS=YES";
-  const std::string wkt = isKnown ? scene::WktOf(system, "FORMAT=WKT1_GDAL", option) : "";
+  const std::string wkt = isKnown ? WktOf(system, "FORMAT=WKT1_GDAL", option) : "";
   failIf(wkt.empty(), "GDAL does not know EPSG:", code, " (is PROJ's database proj.db installed?)",
     quiet.Reason());
   return wkt;
@@ -108,8 +108,8 @@ std::string geocentricWkt()
 std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& texts)
 {
   Bytes bytes = imageWith(keys, doubles, texts);
-  const scene::QuietGdal quiet;
-  const scene::OfflineGdal offline;
+  const QuietGdal quiet;
+  const OfflineGdal offline;
   const CPLConfigOptionSetter heights("GTIFF_REPORT_COMPD_CS", "YES", false);
   GDALAllRegister();
   const std::string name = "/vsimem/avian_lidar_keys_" +
@@ -122,7 +122,7 @@ std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& t
     const OGRSpatialReference* system = data ? data->GetSpatialRef() : nullptr;
     for (const char* format : { "FORMAT=WKT1_GDAL", "FORMAT=WKT2_2019" })
     {
-      wkt = wkt.empty() && system ? scene::WktOf(*system, format) : wkt;
+      wkt = wkt.empty() && system ? WktOf(*system, format) : wkt;
     }
   }
   VSIUnlink(name.c_str());
@@ -131,7 +131,7 @@ std::string wktOfGeoKeys(const Bytes& keys, const Bytes& doubles, const Bytes& t
 
 std::string foreignUnitOf(const std::string& wkt)
 {
-  const scene::QuietGdal quiet;
+  const QuietGdal quiet;
   const OGRSpatialReference system = systemOf(wkt);
   if (system.IsEmpty())
   {
@@ -149,13 +149,13 @@ std::string foreignUnitOf(const std::string& wkt)
 
 bool hasDegrees(const std::string& wkt)
 {
-  const scene::QuietGdal quiet;
+  const QuietGdal quiet;
   return systemOf(wkt).IsGeographic();
 }
 
 int utmZoneOf(const std::string& wkt)
 {
-  const scene::QuietGdal quiet;
+  const QuietGdal quiet;
   const OGRSpatialReference system = systemOf(wkt);
   const char* datum = system.GetAttrValue("DATUM");
   int north = 0;

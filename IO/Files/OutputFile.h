@@ -18,24 +18,24 @@
 #include <string_view>
 #include <vector>
 
-namespace avianlidar::formats
+namespace avianlidar
 {
 class OutputFile
 {
 public:
-  /// Opens a part. Throws FormatError with the reason if the part cannot be made: the folder is
+  /// Opens a part. Throws FileError with the reason if the part cannot be made: the folder is
   /// missing, there is no permission, or the name belongs to a folder or a device.
   explicit OutputFile(const std::string& name);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Appends bytes. Throws FormatError if the bytes cannot be written, as on a full disk.
+  /// Appends bytes. Throws FileError if the bytes cannot be written, as on a full disk.
   void write(const void* bytes, std::size_t count);
   void write(std::string_view text) { this->write(text.data(), text.size()); }
   void write(const std::vector<unsigned char>& bytes) { this->write(bytes.data(), bytes.size()); }
 
-  /// Moves the position of the next write() to the offset `at`, bytes. Throws FormatError on
+  /// Moves the position of the next write() to the offset `at`, bytes. Throws FileError on
   /// failure.
   void seek(std::uint64_t at);
 
@@ -49,7 +49,7 @@ public:
   /// the part replaces.
   void commit();
 
-  /// Commits two files, or throws FormatError and commits no file. If the file system
+  /// Commits two files, or throws FileError and commits no file. If the file system
   /// cannot exchange two names, the first file may already be replaced. The error then names the
   /// replaced file.
   static void commitBoth(OutputFile& first, OutputFile& second);

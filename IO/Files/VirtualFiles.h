@@ -13,7 +13,7 @@
 
 #include <string>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 /// Returns the name under which GDAL reads a file: "/vsigzip/..." for a name that ends in ".gz",
 /// else the name itself. Throws Error if a compressed file holds too much (UnpackedSize.h).

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OsmXml.h"
 
-#include "SceneDescription.h"
+#include "Glob.h"
+#include "TextLines.h"
 
 #include <expat.h>
 
@@ -44,6 +45,8 @@ struct Node
   Id id = 0;
   double latitude = 0, longitude = 0; // deg
   std::vector<Tag> tags;
+
+  std::size_t Size() const { return this->tags.size(); }
 };
 
 struct Way
@@ -54,6 +57,8 @@ struct Way
   bool isClosed = false;
   bool isCut = false;  // whether nodes of it are missing
   bool isLost = false; // whether too few nodes are left
+
+  std::size_t Size() const { return this->nodes.size() + this->tags.size(); }
 };
 
 struct Relation
@@ -62,20 +67,9 @@ struct Relation
   std::vector<Member> members;
   std::vector<Tag> tags;
   bool isLost = false;
-};
 
-std::size_t SizeOf(const Node& node)
-{
-  return node.tags.size();
-}
-std::size_t SizeOf(const Way& way)
-{
-  return way.nodes.size() + way.tags.size();
-}
-std::size_t SizeOf(const Relation& relation)
-{
-  return relation.members.size() + relation.tags.size();
-}
+  std::size_t Size() const { return this->members.size() + this->tags.size(); }
+};
 
 // Objects in the order of the file, each id once. The larger of two with one id counts.
 template <class T>
@@ -89,7 +83,7 @@ public:
     {
       this->All.push_back(std::move(one));
     }
-    else if (SizeOf(one) > SizeOf(this->All[known->second]))
+    else if (one.Size() > this->All[known->second].Size())
     {
       this->All[known->second] = std::move(one);
     }
@@ -113,20 +107,9 @@ std::string_view Trimmed(std::string_view text)
   return text.substr(0, text.find_last_not_of(XmlSpaces) + 1);
 }
 
-template <class T>
-std::optional<T> ReadNumber(std::string_view text)
-{
-  text = Trimmed(text);
-  text.remove_prefix(text.size() > 1 && text[0] == '+' && text[1] != '-');
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional<T>(value)
-                                                                  : std::nullopt;
-}
-
 std::optional<double> ReadDegrees(std::string_view text, double largest)
 {
-  const std::optional<double> value = ReadNumber<double>(text);
+  const std::optional<double> value = parsed<double>(Trimmed(text));
   return value && std::abs(*value) <= largest ? value : std::nullopt;
 }
 
@@ -137,29 +120,20 @@ std::string FindTag(const std::vector<Tag>& tags, std::string_view key)
   return found == tags.end() ? std::string() : found->value;
 }
 
-// Attributes of an element.
-class Attributes
-{
-public:
-  explicit Attributes(const char* const* all)
-    : All(all)
-  {
-  }
-  std::string_view Get(std::string_view name) const
-  {
-    for (const char* const* at = this->All; *at; at += 2)
-    {
-      if (name == *at)
-      {
-        return at[1];
-      }
-    }
-    return {};
-  }
+// Attributes of an element: names and values in turn, as Expat gives them.
+using Attributes = const char* const*;
 
-private:
-  const char* const* All;
-};
+std::string_view Get(Attributes all, std::string_view name)
+{
+  for (; *all; all += 2)
+  {
+    if (name == *all)
+    {
+      return all[1];
+    }
+  }
+  return {};
+}
 
 // Nodes, ways and relations of a file.
 struct Map
@@ -227,7 +201,7 @@ private:
   static void XMLCALL OnStart(void* self, const char* name, const char** attributes)
   {
     auto& reader = *static_cast<MapReader*>(self);
-    reader.Do([&] { reader.Start(name, Attributes(attributes)); });
+    reader.Do([&] { reader.Start(name, attributes); });
   }
   static void XMLCALL OnEnd(void* self, const char* name)
   {
@@ -243,7 +217,7 @@ private:
                            : Kind::None;
   }
 
-  void Start(std::string_view name, const Attributes& own)
+  void Start(std::string_view name, Attributes own)
   {
     if (this->Current == Kind::None)
     {
@@ -255,22 +229,22 @@ private:
     }
   }
 
-  void StartObject(Kind kind, const Attributes& own)
+  void StartObject(Kind kind, Attributes own)
   {
     this->Current = kind;
     this->Depth = 0;
     this->IsKept =
-      kind != Kind::None && own.Get("action") != "delete" && own.Get("visible") != "false";
+      kind != Kind::None && Get(own, "action") != "delete" && Get(own, "visible") != "false";
     if (!this->IsKept)
     {
       return;
     }
-    const std::optional<Id> id = ReadNumber<Id>(own.Get("id"));
+    const std::optional<Id> id = parsed<Id>(Trimmed(Get(own, "id")));
     if (!id)
     {
       const char* const words[] = { "", "node ", "way ", "relation " };
       this->Found.nameless.Add(
-        words[static_cast<int>(kind)] + ('"' + std::string(own.Get("id")) + '"'));
+        words[static_cast<int>(kind)] + ('"' + std::string(Get(own, "id")) + '"'));
       this->IsKept = false;
       return;
     }
@@ -280,11 +254,11 @@ private:
     this->OneNode.id = this->OneWay.id = this->OneRelation.id = *id;
     if (kind == Kind::Node)
     {
-      const auto latitude = ReadDegrees(own.Get("lat"), 90.0);
-      const auto longitude = ReadDegrees(own.Get("lon"), 180.0);
+      const auto latitude = ReadDegrees(Get(own, "lat"), 90.0);
+      const auto longitude = ReadDegrees(Get(own, "lon"), 180.0);
       if (!latitude || !longitude)
       {
-        this->Found.placeless.emplace_back(*id, std::string(Trimmed(own.Get("id"))));
+        this->Found.placeless.emplace_back(*id, std::string(Trimmed(Get(own, "id"))));
         this->IsKept = false;
         return;
       }
@@ -293,7 +267,7 @@ private:
     }
   }
 
-  void AddPart(std::string_view name, const Attributes& own)
+  void AddPart(std::string_view name, Attributes own)
   {
     if (!this->IsKept)
     {
@@ -304,10 +278,10 @@ private:
       auto& tags = this->Current == Kind::Node ? this->OneNode.tags
         : this->Current == Kind::Way           ? this->OneWay.tags
                                                : this->OneRelation.tags;
-      tags.push_back({ std::string(own.Get("k")), std::string(own.Get("v")) });
+      tags.push_back({ std::string(Get(own, "k")), std::string(Get(own, "v")) });
     }
     // A reference that is not a number is one to a missing object.
-    const Id ref = ReadNumber<Id>(own.Get("ref")).value_or(std::numeric_limits<Id>::min());
+    const Id ref = parsed<Id>(Trimmed(Get(own, "ref"))).value_or(std::numeric_limits<Id>::min());
     if (name == "nd" && this->Current == Kind::Way)
     {
       this->OneWay.nodes.push_back(ref);
@@ -315,7 +289,7 @@ private:
     if (name == "member" && this->Current == Kind::Relation)
     {
       this->OneRelation.members.push_back(
-        { std::string(own.Get("type")), std::string(own.Get("role")), ref });
+        { std::string(Get(own, "type")), std::string(Get(own, "role")), ref });
     }
   }
 
@@ -606,7 +580,7 @@ private:
       {
         const std::string value =
           filter.attribute == idName ? std::to_string(id) : FindTag(tags, filter.attribute);
-        return !value.empty() && MatchesPattern(filter.pattern, value);
+        return !value.empty() && globMatches(filter.pattern, value);
       });
   }
 

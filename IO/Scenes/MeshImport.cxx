@@ -2,7 +2,6 @@
 #include "MeshImport.h"
 
 #include "AvailableMemory.h"
-#include "MeshFormats.h"
 #include "MeshStream.h"
 
 #include <cerrno>
@@ -102,13 +101,13 @@ struct ProgramEnded : Error
 };
 
 // Returns the axis that points up after reading. Assimp turns Collada, 3DS, IFC and DXF to y. The
-// specifications of glTF, AC3D, FBX and X3D require y. Other formats do not give the axis, and z is
+// specifications of glTF, AC3D and FBX require y. Other formats do not give the axis, and z is
 // taken, as is usual in surveying.
 char UpAxis(const std::string& file)
 {
   const bool isY = EndsWithAny(UncompressedName(file),
     { ".dae", ".zae", ".3ds", ".ifc", ".stp", ".step", ".dxf", ".gltf", ".glb", ".ac", ".acc",
-      ".ac3d", ".fbx", ".x3d" });
+      ".ac3d", ".fbx" });
   return isY ? 'y' : 'z';
 }
 }

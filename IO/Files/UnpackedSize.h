@@ -11,24 +11,19 @@
 
 #include <cstdint>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 constexpr std::uint64_t MostUnpacked = 256u << 20; ///< bytes
 constexpr std::uint64_t SmallUnpacked = 16u << 20; ///< bytes up to which any growth is allowed
 constexpr std::uint64_t MostGrowth = 100;          ///< of larger files; text grows 5 to 30 times
-
-/// Returns whether a file of `packed` bytes may hold `unpacked` bytes.
-inline bool MayHold(std::uint64_t packed, std::uint64_t unpacked)
-{
-  return unpacked <= SmallUnpacked || (unpacked <= MostUnpacked && unpacked / MostGrowth <= packed);
-}
 
 /// Throws Error if `unpacked` bytes are more than a file of `packed` bytes may hold.
 inline void CheckUnpacked(std::uint64_t unpacked, std::uint64_t packed)
 {
   failIf(unpacked > MostUnpacked, "holds more than ", MostUnpacked >> 20,
     " MiB once decompressed: decompress it first");
-  failIf(!MayHold(packed, unpacked), "its ", packed, " bytes hold more than ", MostGrowth,
+  failIf(unpacked > SmallUnpacked && unpacked / MostGrowth > packed, "its ", packed,
+    " bytes hold more than ", MostGrowth,
     " times as many once decompressed, as no mesh or map does: decompress it first");
 }
 }

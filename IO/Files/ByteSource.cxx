@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ByteSource.h"
 
-#include "CloudData.h"
+#include "FileError.h"
 #include "RegularFile.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 
-namespace avianlidar::formats
+namespace avianlidar
 {
 namespace
 {

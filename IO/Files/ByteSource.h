@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace avianlidar::formats
+namespace avianlidar
 {
 class ByteSource
 {
@@ -20,7 +20,7 @@ public:
 
   virtual std::uint64_t size() const = 0;
 
-  /// Copies `count` bytes from `offset` on. Throws FormatError unless all bytes lie inside the
+  /// Copies `count` bytes from `offset` on. Throws FileError unless all bytes lie inside the
   /// source.
   virtual void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) = 0;
 
@@ -43,7 +43,7 @@ private:
 class FileSource : public ByteSource
 {
 public:
-  /// Opens the file. Throws FormatError with the reason if the file cannot be opened.
+  /// Opens the file. Throws FileError with the reason if the file cannot be opened.
   explicit FileSource(const std::string& name);
   std::uint64_t size() const override { return this->Size; }
   void read(std::uint64_t offset, std::uint64_t count, unsigned char* into) override;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace avianlidar::formats
+namespace avianlidar
 {
 std::string shown(const std::string& text)
 {

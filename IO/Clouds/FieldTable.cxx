@@ -15,21 +15,15 @@ namespace
 /// double, because times in nanoseconds have more digits than a double.
 void wordToBytes(const std::string& word, Scalar type, unsigned char* bytes)
 {
-  const char* end = word.data() + word.size();
-  const auto whole = [&](auto& integer)
+  const auto withSign = type == Scalar::Int64 ? parsed<std::int64_t>(word) : std::nullopt;
+  const auto without = type == Scalar::UInt64 ? parsed<std::uint64_t>(word) : std::nullopt;
+  if (withSign)
   {
-    const auto [stop, problem] = std::from_chars(word.data(), end, integer);
-    return problem == std::errc() && stop == end;
-  };
-  std::int64_t withSign = 0;
-  std::uint64_t without = 0;
-  if (type == Scalar::Int64 && whole(withSign))
-  {
-    store(withSign, bytes);
+    store(*withSign, bytes);
   }
-  else if (type == Scalar::UInt64 && whole(without))
+  else if (without)
   {
-    store(without, bytes);
+    store(*without, bytes);
   }
   else
   {

@@ -3,7 +3,6 @@
 
 #include "Extrusion.h"
 #include "FootprintFeatures.h"
-#include "SceneDescription.h"
 #include "SceneFrame.h"
 #include "ShownNames.h"
 #include "VirtualFiles.h"

@@ -3,6 +3,7 @@
 
 #include "Figures.h"
 #include "Footprints.h"
+#include "Glob.h"
 #include "MeshImport.h"
 #include "SceneDescription.h"
 #include "SceneFrame.h"
@@ -65,7 +66,7 @@ int FindMaterial(const Scene& scene, const Object& object, const std::string& na
   {
     for (const MaterialRule& rule : *rules)
     {
-      if (MatchesPattern(rule.pattern, name))
+      if (globMatches(rule.pattern, name))
       {
         return rule.material;
       }

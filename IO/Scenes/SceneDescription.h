@@ -18,10 +18,6 @@ namespace avianlidar::scene
  * relative to the folder of the scene file and are returned as absolute names.
  */
 Scene ReadDescription(const std::string& file, const std::string& text = {});
-
-/// Returns whether a name fits a pattern, in which `*` stands for any characters and `?` for one
-/// character.
-bool MatchesPattern(const std::string& pattern, const std::string& name);
 }
 
 #endif

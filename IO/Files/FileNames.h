@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file MeshFormats.h
- * @brief Chooses by the file extension which library reads a mesh file.
+ * @file FileNames.h
+ * @brief Finds the format of a file by the extension of its name.
  */
-#ifndef AvianLidarMeshFormats_h
-#define AvianLidarMeshFormats_h
+#ifndef AvianLidarFileNames_h
+#define AvianLidarFileNames_h
 
 #include <vtksys/SystemTools.hxx>
 
@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 inline bool StartsWith(std::string_view text, std::string_view start)
 {
@@ -36,12 +36,6 @@ inline std::string UncompressedName(const std::string& file)
 inline bool EndsWithAny(const std::string& file, std::initializer_list<const char*> endings)
 {
   return std::find(endings.begin(), endings.end(), EndingOf(file)) != endings.end();
-}
-
-/// Returns whether VTK reads the file. Assimp reads all other files.
-inline bool IsVtkFile(const std::string& file)
-{
-  return EndsWithAny(file, { ".vtp", ".vtu", ".vts", ".vtr", ".vti", ".vtm", ".vtmb", ".vtk" });
 }
 }
 

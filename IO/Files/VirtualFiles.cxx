@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VirtualFiles.h"
 
-#include "MeshFormats.h"
+#include "FileNames.h"
 #include "UnpackedSize.h"
 
 #include <cpl_http.h>
@@ -13,7 +13,7 @@
 #include <mutex>
 #include <vector>
 
-namespace avianlidar::scene
+namespace avianlidar
 {
 namespace
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputFile.h"
 
-#include "CloudData.h"
+#include "FileError.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,7 +13,7 @@
 #include <exception>
 #include <filesystem>
 
-namespace avianlidar::formats
+namespace avianlidar
 {
 namespace fs = std::filesystem;
 
@@ -45,7 +45,7 @@ int hold(const std::string& part, int flags, unsigned int mode)
   return -1;
 }
 
-/// Throws FormatError with the reason of the system if a call failed.
+/// Throws FileError with the reason of the system if a call failed.
 void requireDone(bool isDone, const char* problem)
 {
   if (!isDone)
