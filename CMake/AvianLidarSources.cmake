@@ -90,6 +90,8 @@ set(private_sources
   Filters/Private/Beams/vtkAvianLidarScanArrays.cxx
   Filters/Private/Beams/vtkAvianLidarScanShape.cxx
   Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
+  Filters/Private/Movers/BirdTables.cxx
+  Filters/Private/Movers/Table.cxx
   Filters/Private/Movers/vtkAvianLidarBirdTargets.cxx
   Filters/Private/Movers/vtkAvianLidarBirds.cxx
   Filters/Private/Movers/vtkAvianLidarMovers.cxx

@@ -2,6 +2,7 @@
 #include "vtkAvianLidarTracks.h"
 
 #include "AvailableMemory.h"
+#include "BirdTables.h"
 #include "Flight.h"
 #include "GeodeticFrame.h"
 #include "ValueError.h"

@@ -162,8 +162,8 @@ std::pair<double, double> workOf(const CollisionTree& tree, const Workload& work
   for (std::size_t b = 0; b < work.beams(); ++b)
   {
     DrawnRays given(&work.rays[b]);
-    const BeamBlock block{ &work.frames[b], 1, rays, &given };
-    const TraceCounters& counters = tracer.traceBlock(block, TraceMode::Beams).counters[0];
+    const TracedBeams block{ &work.frames[b], 1, rays, &given };
+    const TraceCounters& counters = tracer.traceBeams(block, TraceMode::Beams).counters[0];
     sum.first += static_cast<double>(counters.nodesVisited);
     sum.second += static_cast<double>(counters.candidates) / packets;
   }

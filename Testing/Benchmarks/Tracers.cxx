@@ -52,8 +52,8 @@ Tracer ourTracer(const CollisionTree& tree, TraceMode mode)
         tracers[thread] = std::make_unique<BeamTracer>(scene);
       }
       DrawnRays given(&work.rays[begin]);
-      const BeamBlock block{ &work.frames[begin], end - begin, rays, &given };
-      const BlockHits& found = tracers[thread]->traceBlock(block, mode);
+      const TracedBeams block{ &work.frames[begin], end - begin, rays, &given };
+      const TracedHits& found = tracers[thread]->traceBeams(block, mode);
       for (std::size_t b = begin; consumer && b < end; ++b)
       {
         const std::vector<Hit> hits =

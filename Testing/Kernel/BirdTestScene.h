@@ -3,7 +3,7 @@
 #ifndef BirdTestScene_h
 #define BirdTestScene_h
 
-#include "Bird.h"
+#include "BirdTables.h"
 #include "Silhouette.h"
 
 #include <algorithm>

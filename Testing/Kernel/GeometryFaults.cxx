@@ -86,10 +86,10 @@ std::string faultOfBlock(const GeometryCase& one, const BeamFrame& frame, const 
   }
   const std::vector<BeamRays> rays(Beams, one.rays);
   DrawnRays given(rays.data());
-  const BeamBlock block{ frames.data(), Beams, static_cast<std::uint32_t>(one.rays.size()),
+  const TracedBeams block{ frames.data(), Beams, static_cast<std::uint32_t>(one.rays.size()),
     &given };
   OneBeamTracer tracer(tree);
-  const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
+  const TracedHits& found = tracer.traceBeams(block, TraceMode::Automatic);
   for (std::size_t b = 0; b < Beams; ++b)
   {
     const std::vector<Hit> right = loopOverTriangles(one, frames[b], tree);

@@ -66,8 +66,8 @@ public:
   {
     const auto count = static_cast<std::uint32_t>(rays.size());
     DrawnRays given(&rays);
-    const BeamBlock block{ &this->Frame, 1, count, &given };
-    const BlockHits& found = this->traceBlock(block, mode);
+    const TracedBeams block{ &this->Frame, 1, count, &given };
+    const TracedHits& found = this->traceBeams(block, mode);
     hits = hitsOf(this->Descended, this->Frame, rays, found.triangles[0]);
     this->OfRays.nodesVisited += found.counters[0].nodesVisited;
     this->OfRays.raysTraced += found.counters[0].raysTraced;

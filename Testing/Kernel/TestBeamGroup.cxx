@@ -88,7 +88,7 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
       drawn.push_back(raysInDisc(random, rays));
     }
     DrawnRays given(drawn.data());
-    const BeamBlock block{ frames.data(), frames.size(), rays, &given };
+    const TracedBeams block{ frames.data(), frames.size(), rays, &given };
     const auto check = [&]()
     {
       for (const TraceMode mode : { TraceMode::Automatic, TraceMode::Beams })
@@ -96,7 +96,7 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
         const SceneTriangles togetherScene(*tree);
         BeamTracer together(togetherScene);
         OneBeamTracer alone(*tree);
-        const BlockHits& found = together.traceBlock(block, mode);
+        const TracedHits& found = together.traceBeams(block, mode);
         std::vector<Hit> singly;
         for (std::size_t b = 0; b < frames.size(); ++b)
         {
@@ -162,9 +162,9 @@ TEST(BeamGroup, RaysAreDrawnOnlyForBeamsThatMayHit)
   BeamSampler sampler(Sensor(), Sampling::Stratified, 50);
   DrawnRays drawn(sampler, 0);
   drawn.begin(ids, 0, ids.size());
-  const BeamBlock block{ frames.data(), frames.size(), 50, &drawn };
+  const TracedBeams block{ frames.data(), frames.size(), 50, &drawn };
   OneBeamTracer tracer(*tree);
-  const BlockHits& found = tracer.traceBlock(block, TraceMode::Automatic);
+  const TracedHits& found = tracer.traceBeams(block, TraceMode::Automatic);
   EXPECT_NE(found.triangles[0], nullptr);
   for (std::size_t b = 0; b < ids.size(); ++b)
   {

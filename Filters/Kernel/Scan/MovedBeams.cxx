@@ -36,7 +36,7 @@ bool meets(const BeamFrame& beam, const MoverSphere& sphere)
 }
 
 /// A cone about consecutive beams, and the time in which they are fired.
-struct BlockCone
+struct ConeOfBeams
 {
   Vec3 apex{ 0.0 };
   double apart = 0.0; ///< distance of the farthest origin from `apex`, m
@@ -45,7 +45,7 @@ struct BlockCone
   double begin = std::numeric_limits<double>::infinity(); ///< time of the first firing, s
   double end = -std::numeric_limits<double>::infinity();
 
-  BlockCone(const ScanBeams& beams, std::size_t first, std::size_t last, double halfBeamwidth)
+  ConeOfBeams(const ScanBeams& beams, std::size_t first, std::size_t last, double halfBeamwidth)
     : apex(beams.origins[first])
   {
     for (std::size_t b = first; b < last; ++b)
@@ -111,7 +111,7 @@ void MovedBeams::findAmong(const std::vector<std::uint32_t>& movers, std::size_t
   {
     return;
   }
-  const BlockCone cone(this->Beams, begin, end, this->Width.half);
+  const ConeOfBeams cone(this->Beams, begin, end, this->Width.half);
   MoverSphere sphere;
   for (const std::uint32_t m : movers)
   {

@@ -46,9 +46,9 @@ std::unique_ptr<CellSamples> ViewFinder::findCrowded(
   this->Polygons.entering().appendNumbers(this->Numbers);
   const BeamRays& rays = this->Cells.place(beam, frame, this->Numbers);
   DrawnRays given(&rays);
-  const BeamBlock block{ &frame, 1, static_cast<std::uint32_t>(rays.size()), &given, nullptr,
+  const TracedBeams block{ &frame, 1, static_cast<std::uint32_t>(rays.size()), &given, nullptr,
     true };
-  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
+  const TracedHits& found = this->Tracer.traceBeams(block, this->Setup.settings.traceMode);
   addCounters(found.counters[0], cost);
   const std::uint32_t* const triangles = found.triangles[0];
   std::unique_ptr<CellSamples> cells =

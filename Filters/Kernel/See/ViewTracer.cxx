@@ -109,9 +109,9 @@ void ViewTracer::traceRays(const std::vector<BeamToSee>& beams, std::vector<Seen
   {
     this->Numbers.push_back(beams[k].beam);
   }
-  const BeamBlock block{ this->FramesOfRays.data(), this->FramesOfRays.size(), count, &this->Rays,
+  const TracedBeams block{ this->FramesOfRays.data(), this->FramesOfRays.size(), count, &this->Rays,
     this->Numbers.data() };
-  const BlockHits& found = this->Tracer.traceBlock(block, this->Setup.settings.traceMode);
+  const TracedHits& found = this->Tracer.traceBeams(block, this->Setup.settings.traceMode);
   for (std::size_t n = 0; n < this->TracedRays.size(); ++n)
   {
     const std::size_t k = this->TracedRays[n];

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Bird.h"
 
-#include "Table.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -148,34 +146,6 @@ TriangleMesh wing(const BirdShape& shape, double side, double angle)
   return mesh;
 }
 
-BirdSpecies speciesOf(const TableLine& line)
-{
-  BirdSpecies species;
-  species.name = line.text(0);
-  if (species.name.empty())
-  {
-    line.fail("species has no name");
-  }
-  species.mass = line.number(1, "mass", 1e-3, 100.0);
-  species.length = line.number(2, "length", 0.01, 10.0);
-  species.span = line.number(3, "span", 0.01, 10.0);
-  species.wingArea = line.number(4, "wing area", 1e-5, 10.0);
-  species.passerine = line.text(5) == "yes";
-  if (!species.passerine && line.text(5) != "no")
-  {
-    line.fail("passerine is '" + line.text(5) + "', expected yes or no");
-  }
-  species.airspeed = line.number(6, "airspeed", 0.1, 100.0);
-  if (!(BirdShape(species).wingLength > 0.0))
-  {
-    line.fail("the span is smaller than the body of this mass is wide");
-  }
-  if (BirdShape(species).wingChord > species.length)
-  {
-    line.fail("the wings are broader than the bird is long: see wing area and span");
-  }
-  return species;
-}
 }
 
 BirdShape::BirdShape(const BirdSpecies& species)
@@ -235,19 +205,6 @@ TriangleMesh wholeBird(const BirdShape& shape, double angle)
     {
       all.triangles.push_back({ first + t[0], first + t[1], first + t[2] });
     }
-  }
-  return all;
-}
-
-std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file)
-{
-  std::vector<BirdSpecies> all;
-  readTable(text, file,
-    { "species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]" },
-    [&](const TableLine& line, std::size_t) { all.push_back(speciesOf(line)); });
-  if (all.empty())
-  {
-    throw std::runtime_error(file + ": holds no species");
   }
   return all;
 }

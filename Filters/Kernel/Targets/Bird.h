@@ -82,11 +82,6 @@ TriangleMesh birdPart(const BirdShape& shape, BirdPart part, double angle);
 /// All parts of a bird in one mesh.
 TriangleMesh wholeBird(const BirdShape& shape, double angle);
 
-/// Reads a table of species with the header of Filters/Birds/species.csv. Lines that begin with #
-/// are comments. Throws std::runtime_error naming file, line and column.
-/// @param file name of the file, for messages
-std::vector<BirdSpecies> readSpecies(const std::string& text, const std::string& file);
-
 /// Index of the first species with this name. Throws std::runtime_error ("is 'dodo', expected one
 /// of ...") if no species has the name.
 std::size_t findSpecies(const std::vector<BirdSpecies>& all, const std::string& name);

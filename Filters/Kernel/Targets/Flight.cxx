@@ -2,9 +2,7 @@
 #include "Flight.h"
 
 #include "AvailableMemory.h"
-#include "GeodeticFrame.h"
 #include "Random.h"
-#include "Table.h"
 #include "ValueError.h"
 
 #include <algorithm>
@@ -353,93 +351,6 @@ std::string checkRange(const char* name, const std::array<double, 2>& range, boo
   }
   return bad;
 }
-
-/// Reads the rows of a table of tracks.
-class TrackRows
-{
-public:
-  TrackRows(const std::vector<BirdSpecies>& known, std::int32_t seed)
-    : Known(known)
-    , Seed(seed)
-  {
-  }
-
-  void setOrigin(const std::array<double, 3>& origin)
-  {
-    this->Geodesy.setOrigin(origin[0], origin[1], origin[2]);
-  }
-
-  void add(const TableLine& line, bool geodetic)
-  {
-    Flight& flight = this->flightOf(line);
-    Pose pose;
-    pose.time = line.number(2, "time", -Largest, Largest);
-    pose.position = geodetic
-      ? this->geodeticPosition(line)
-      : Vec3(line.number(3, "x", -Largest, Largest), line.number(4, "y", -Largest, Largest),
-          line.number(5, "z", -Largest, Largest));
-    if (!flight.poses.empty() && !(pose.time > flight.poses.back().time))
-    {
-      std::ostringstream before;
-      before.precision(17);
-      before << flight.poses.back().time;
-      line.fail("time is '" + line.text(2) + "', expected more than " + before.str() +
-        ", the time before of id '" + flight.number + "'");
-    }
-    flight.poses.push_back(pose);
-  }
-
-  std::vector<Flight> Flights;
-
-private:
-  Flight& flightOf(const TableLine& line)
-  {
-    if (line.text(0).empty())
-    {
-      line.fail("id is empty, expected a name or a number");
-    }
-    const std::size_t species = this->speciesOf(line);
-    const auto [place, isNew] = this->Ids.try_emplace(line.text(0), this->Flights.size());
-    if (isNew)
-    {
-      Flight flight;
-      flight.number = line.text(0);
-      flight.species = species;
-      flight.wingPhase = trackWingPhase(this->Seed, this->Flights.size());
-      this->Flights.push_back(flight);
-    }
-    Flight& flight = this->Flights[place->second];
-    if (flight.species != species)
-    {
-      line.fail("species is '" + line.text(1) + "', expected '" + this->Known[flight.species].name +
-        "', as id '" + flight.number + "' has it before");
-    }
-    return flight;
-  }
-
-  std::size_t speciesOf(const TableLine& line) const
-  try
-  {
-    return findSpecies(this->Known, line.text(1));
-  }
-  catch (const std::runtime_error& error)
-  {
-    line.fail(std::string("species ") + error.what());
-  }
-
-  Vec3 geodeticPosition(const TableLine& line) const
-  {
-    const auto p = this->Geodesy.convert(Frame::Geodetic, Frame::ENU,
-      { line.number(3, "longitude", -360.0, 360.0), line.number(4, "latitude", -90.0, 90.0),
-        line.number(5, "height", -Largest, Largest) });
-    return { p[0], p[1], p[2] };
-  }
-
-  const std::vector<BirdSpecies>& Known;
-  std::int32_t Seed;
-  GeodeticFrame Geodesy;
-  std::unordered_map<std::string, std::size_t> Ids;
-};
 }
 
 std::string checkFlights(const FlightSettings& settings)
@@ -563,30 +474,5 @@ void orientAlongPath(Flight& flight)
 double trackWingPhase(std::int32_t seed, std::size_t track)
 {
   return BirdNumbers(seed, track + 1)(DrawWings)[0];
-}
-
-std::vector<Flight> readFlights(const std::string& text, const std::string& file,
-  const std::vector<BirdSpecies>& known, const std::array<double, 3>& origin, std::int32_t seed)
-{
-  TrackRows rows(known, seed);
-  readTable(text, file, { "id,species,time,x,y,z", "id,species,time,longitude,latitude,height" },
-    [&](const TableLine& line, std::size_t header)
-    {
-      if (header == 1 && rows.Flights.empty())
-      {
-        rows.setOrigin(origin);
-      }
-      rows.add(line, header == 1);
-    });
-  for (Flight& flight : rows.Flights)
-  {
-    if (flight.poses.size() < 2)
-    {
-      throw std::runtime_error(
-        file + ": id '" + flight.number + "' has one time, expected at least two");
-    }
-    orientAlongPath(flight);
-  }
-  return std::move(rows.Flights);
 }
 }

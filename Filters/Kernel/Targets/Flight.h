@@ -102,15 +102,6 @@ void orientAlongPath(Flight& flight);
 
 /// Phase of the wingbeat of a track at time 0. @param track index of the track
 double trackWingPhase(std::int32_t seed, std::size_t track);
-
-/// Reads a table of tracks: a header "id,species,time,x,y,z" or
-/// "id,species,time,longitude,latitude,height". Lines that begin with # are comments. Rows of
-/// several tracks may alternate. Throws std::runtime_error naming file, line and column.
-/// @param file name of the file, for messages @param known all species
-/// @param origin origin of the scene: latitude, longitude in degrees, height above the ellipsoid in
-/// m (checked by the caller with GeodeticFrame::checkOrigin())
-std::vector<Flight> readFlights(const std::string& text, const std::string& file,
-  const std::vector<BirdSpecies>& known, const std::array<double, 3>& origin, std::int32_t seed);
 }
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarBirds.h"
 
+#include "BirdTables.h"
 #include "RegularFile.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"

@@ -35,8 +35,8 @@ std::size_t countTracing(const Scene& scene, std::size_t mostRays)
       for (std::size_t b = 0; b < work.beams(); ++b)
       {
         DrawnRays given(&work.rays[b]);
-        const BeamBlock block{ &work.frames[b], 1, 100, &given };
-        const BlockHits& hits = tracer.traceBlock(block, TraceMode::Automatic);
+        const TracedBeams block{ &work.frames[b], 1, 100, &given };
+        const TracedHits& hits = tracer.traceBeams(block, TraceMode::Automatic);
         if (const std::uint32_t* const triangles = hits.triangles[0])
         {
           found += 100 - std::count(triangles, triangles + 100, NoTriangle);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeamTracer.h"
 
-#include "BlockTrace.h"
+#include "BeamRayTracer.h"
 #include "Descents.h"
 #include "TriangleTest.h"
 
@@ -12,7 +12,7 @@ namespace avianlidar
 struct BeamTracer::Workspace
 {
   TraversalStack stack;
-  BlockWorkspace block;
+  BeamRayWorkspace rays;
 };
 
 void addCounters(const TraceCounters& more, TraceCounters& sum)
@@ -44,34 +44,34 @@ void BeamTracer::setBeam(const BeamFrame& frame)
   this->Counters = {};
 }
 
-const BlockHits& BeamTracer::traceBlock(const BeamBlock& block, TraceMode mode)
+const TracedHits& BeamTracer::traceBeams(const TracedBeams& beams, TraceMode mode)
 {
-  BlockRaysWorkspace& work = this->Work->block.rays;
-  work.found.triangles.assign(block.size, nullptr);
-  work.found.counters.assign(block.size, TraceCounters());
+  BeamRayWorkspace& work = this->Work->rays;
+  work.found.triangles.assign(beams.size, nullptr);
+  work.found.counters.assign(beams.size, TraceCounters());
   for (TraceCounters& counters : work.found.counters)
   {
-    counters.raysTraced = block.rays;
+    counters.raysTraced = beams.rays;
   }
-  work.triangles.resize(std::max(work.triangles.size(), block.size * block.rays));
+  work.triangles.resize(std::max(work.triangles.size(), beams.size * beams.rays));
   work.used = 0;
-  if (!this->Scene.tree().empty() && block.size > 0)
+  if (!this->Scene.tree().empty() && beams.size > 0)
   {
-    avianlidar::traceBlock(this->Scene, block, mode, this->Work->block);
+    BeamRayTracer(this->Scene, beams, work).trace(mode);
   }
-  if (!this->Scene.moved().empty() && block.size > 0)
+  if (!this->Scene.moved().empty() && beams.size > 0)
   {
-    this->traceMoved(block);
+    this->traceMoved(beams);
   }
   return work.found;
 }
 
-/// Find the rays of the block's single beam that hit movers before anything else.
-void BeamTracer::traceMoved(const BeamBlock& block)
+/// Find the rays of the single beam that hit movers before anything else.
+void BeamTracer::traceMoved(const TracedBeams& beams)
 {
-  BlockRaysWorkspace& work = this->Work->block.rays;
-  const BeamFrame& frame = block.frames[0];
-  const BeamRays& rays = block.raysOf(0);
+  BeamRayWorkspace& work = this->Work->rays;
+  const BeamFrame& frame = beams.frames[0];
+  const BeamRays& rays = beams.raysOf(0);
   const BeamPlaneMap map(frame);
   BeamRayVisitor visitor(this->Scene, frame, map);
   std::uint32_t* const triangles = work.triangles.data();

@@ -54,7 +54,7 @@ struct TraceCounters
 void addCounters(const TraceCounters& more, TraceCounters& sum);
 
 /// Beams that are traced together.
-struct BeamBlock
+struct TracedBeams
 {
   const BeamFrame* frames = nullptr;
   std::size_t size = 0;   ///< number of beams
@@ -74,8 +74,8 @@ struct BeamBlock
 /// for the block's rays and hits to fit into the cache. @param raysPerBeam at least 1
 std::size_t beamsPerBlock(int raysPerBeam);
 
-/// Triangles that the rays of a block hit. Ranges are found where they are used (RaySamples.h).
-struct BlockHits
+/// Triangles that the rays of some beams hit. Ranges are found where they are used (RaySamples.h).
+struct TracedHits
 {
   /// By beam: nearest triangle of each ray, or NoTriangle; null if no ray of the beam hits a
   /// triangle.
@@ -83,7 +83,7 @@ struct BlockHits
   std::vector<TraceCounters> counters; ///< cost of each beam
 };
 
-/// Traces blocks of beams, and single rays of the current beam. Each thread needs its own object.
+/// Traces the rays of beams, and single rays of the current beam. Each thread needs its own object.
 /// The scene must outlive the object.
 class BeamTracer
 {
@@ -96,10 +96,10 @@ public:
   /// Begin a beam: set the frame, and set the counters to 0.
   void setBeam(const BeamFrame& frame);
 
-  /// Find the nearest triangle of every ray of all beams of a block. Neighbouring beams of one apex
-  /// are traced together. Where movers are placed, the block must have one beam. The current beam
+  /// Find the nearest triangle of every ray of some beams. Neighbouring beams of one apex are
+  /// traced together. Where movers are placed, there must be one beam. The current beam
   /// and the beam's counters do not change. The result is valid until the next call.
-  const BlockHits& traceBlock(const BeamBlock& block, TraceMode mode);
+  const TracedHits& traceBeams(const TracedBeams& block, TraceMode mode);
 
   /// Nearest hit along `direction` (of any length above 0) from the apex of the current beam.
   Hit traceFromApex(const Vec3& direction);
@@ -122,7 +122,7 @@ private:
   template <class Visitor>
   void search(Visitor& visitor, const Vec3& origin, const Vec3& direction, double margin);
 
-  void traceMoved(const BeamBlock& block);
+  void traceMoved(const TracedBeams& block);
 
   const SceneTriangles& Scene;
   BeamFrame Frame;
