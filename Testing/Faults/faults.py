@@ -100,10 +100,10 @@ FAULTS = [Fault(*fault) for fault in (
      "IO/Private/Extrusion.cxx", "  AddTriangle(mesh, f.bottomLeft, upper.front(), f.topLeft, wall);\n", ""),
     # Python.
     ("ospa_order", "a wrong power", "Python-Test(Scores|Tracks)$",
-     "Python/avianlidar/apps/_scores.py", "missing = cutoff ** order * (most - least) / most",
+     "Python/avianlidar/apps/sequences/_scores.py", "missing = cutoff ** order * (most - least) / most",
      "missing = cutoff * (most - least) / most"),
     ("switch_twice", "an off-by-one", "Python-Test(Scores|Tracks)$",
-     "Python/avianlidar/apps/_scores.py", "return sum(a != b for a, b in zip(had, had[1:]))", "return sum(a != b for a, b in zip(had, had[2:]))"),
+     "Python/avianlidar/apps/sequences/_scores.py", "return sum(a != b for a, b in zip(had, had[1:]))", "return sum(a != b for a, b in zip(had, had[2:]))"),
     ("image_axes", "a swapped axis", "Python-TestCoverageMaps$",
      "Python/avianlidar/_coverage.py", "data.GetDimensions()[::-1] if isinstance(data, vtkImageData)",
      "data.GetDimensions() if isinstance(data, vtkImageData)"),

@@ -27,7 +27,7 @@ PACKAGES = {
     "python3-avianlidar": (
         {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
          "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, python3-tqdm, "},
-        [r"usr/bin/avianlidar", r"usr/lib/python3/dist-packages/avianlidar/(apps/)?[\w.]+",
+        [r"usr/bin/avianlidar", r"usr/lib/python3/dist-packages/avianlidar/(apps/(\w+/)?)?[\w.]+",
          r"usr/lib/python3/dist-packages/avianlidar/scene/(LICENSE-ODbL\.md|hongqiao\.(geojson|lidarscene\.json))",
          r"usr/share/man/man1/avianlidar\.1\.gz", r"usr/share/bash-completion/completions/avianlidar",
          r"usr/share/zsh/vendor-completions/_avianlidar"]),

@@ -56,7 +56,7 @@ class Ranks(unittest.TestCase):
         script.write_text(f"""
 import time
 from avianlidar import _command
-from avianlidar.apps import _looks
+from avianlidar.apps.coverage import _looks
 from avianlidar._ranks import Ranks
 def kept(values):
     if Ranks().rank == 0:

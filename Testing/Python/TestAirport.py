@@ -22,17 +22,15 @@ import scenetools
 from avianlidar import siting
 from avianlidar._cloud import field_values
 from avianlidar._command import parser
-from avianlidar.apps import _airport as airport
-from avianlidar.apps import _airport_pages as airport_pages
-from avianlidar.apps import _ground
-from avianlidar.apps._airport_map import AirportMap
-from avianlidar.apps._json import packaged
-from avianlidar.apps._maps import coordinate_system
+from avianlidar.apps.airport import _ground, _pages as airport_pages, _write as airport
+from avianlidar.apps.airport._map import AirportMap
+from avianlidar.apps.inputs._json import packaged
+from avianlidar.apps.places._gdal import coordinate_system
 
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 FOLDER = pathlib.Path(exampletools.OUTPUT) / "TestAirport"
-KNOWN = packaged("airport.json")
+KNOWN = packaged("places/airport.json")
 gdal.UseExceptions()
 
 

@@ -14,8 +14,8 @@ import numpy as np
 
 import avianlidar as al
 from avianlidar import _command
-from avianlidar.apps import _bench
-from avianlidar.apps._bench import Points, write_bench
+from avianlidar.apps.sequences import _bench
+from avianlidar.apps.sequences._bench import Points, write_bench
 from helpertools import rows_of
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"

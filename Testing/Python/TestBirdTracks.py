@@ -9,9 +9,10 @@ import numpy as np
 import TestSequence
 import avianlidar as al
 from avianlidar import _command
-from avianlidar.apps import _card, _following, _report, _sequence
-from avianlidar.apps._following import ORIGINS, TRACK, Input, Live, score
-from avianlidar.apps._inputs import read_plan
+from avianlidar.apps.coverage import _report
+from avianlidar.apps.inputs._read import read_plan
+from avianlidar.apps.sequences import _card, _following, _sequence
+from avianlidar.apps.sequences._following import Input, Live, ORIGINS, TRACK, score
 from avianlidar.siting import Runway
 from exampletools import emptied
 from helpertools import rows_of

@@ -11,8 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 import avianlidar as al
 from avianlidar._cloud import add_array as _set
-from avianlidar.apps._boxes import Boxes, _rotation
-from avianlidar.apps._sequence import Sequence
+from avianlidar.apps.sequences._boxes import Boxes, _rotation
+from avianlidar.apps.sequences._sequence import Sequence
 from echotools import group
 from helpertools import box
 from TestSequence import scenario_file

@@ -13,7 +13,7 @@ import exampletools
 import helpertools
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar.apps._maps import coordinate_system
+from avianlidar.apps.places._gdal import coordinate_system
 from osgeo import osr
 from reporttools import airport, written
 

@@ -14,9 +14,9 @@ import avianlidar as al
 import exampletools  # noqa: F401  (finds the studies)
 import flown
 from avianlidar import Coverage
-from avianlidar.apps import _crossing
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._plan import Plan
+from avianlidar.apps.coverage import _crossing
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.inputs._read import read_plan
 from reporttools import plan, written
 
 SPEED = 12.5  # airspeed of a herring gull in Filters/Birds/species.csv, m/s

@@ -14,12 +14,12 @@ import numpy as np
 import TestBirdTracks
 from avianlidar import Error
 from avianlidar._command import main
-from avianlidar.apps import _design_page
-from avianlidar.apps._design import is_told, on_the_front, spread
-from avianlidar.apps._design_page import Designs
-from avianlidar.apps._formula import Formula
-from avianlidar.apps._plan import Plan
-from avianlidar.apps._inputs import read_plan
+from avianlidar.apps.coverage import _design_page
+from avianlidar.apps.coverage._design import is_told, on_the_front, spread
+from avianlidar.apps.coverage._design_page import Designs
+from avianlidar.apps.coverage._formula import Formula
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.inputs._read import read_plan
 from exampletools import emptied
 from helpertools import rows_of
 

@@ -17,15 +17,13 @@ from osgeo import gdal, ogr, osr
 import avianlidar as al
 import TestAirport as ta
 from avianlidar import siting
-from avianlidar.apps import _airport_pages as airport_pages
-from avianlidar.apps import _aixm as aixm
-from avianlidar.apps import _extract as extract
-from avianlidar.apps import _features, _gdal, _osm
-from avianlidar.apps import _obstacles as obstacles
-from avianlidar.apps._airport_map import AirportMap
-from avianlidar.apps._json import packaged
+from avianlidar.apps.airport import _aixm as aixm, _extract as extract, _obstacles as obstacles, _osm
+from avianlidar.apps.airport import _pages as airport_pages
+from avianlidar.apps.airport._map import AirportMap
+from avianlidar.apps.inputs._json import packaged
+from avianlidar.apps.places import _features, _gdal
 
-KNOWN = packaged("airport.json")
+KNOWN = packaged("places/airport.json")
 
 
 def things(file):

@@ -394,7 +394,7 @@ class Contents(Files):
             file.writestr("3D/3dmodel.model", b"<model>" + bytes(270 << 20))
         self.assert_errors({self.scene({"file": "bomb.3mf"}): "its part 3D/3dmodel.model holds 283115527 bytes once decompressed"})
         self.assertLess(time.monotonic() - start, 60.0)
-        from avianlidar.apps import _inputs  # not in the processes with limits
+        from avianlidar.apps.inputs import _read as _inputs  # not in the processes with limits
         for name in ("plan.coverage.json", "cloud.csv"):
             with self.assertRaisesRegex(avianlidar.Error, name + ": holds more than [0-9]+ MiB, which is too much"):
                 (_inputs.read_plan if "json" in name else avianlidar.load_cloud)(packed(name, zeros, many, b'{"a":[', b"0]}"))

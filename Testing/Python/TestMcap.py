@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import avianlidar
-from avianlidar.apps import _mcap
+from avianlidar.apps.sequences import _mcap
 
 READER = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Testing" / "IO" / "mcap_to_json.js"
 MODULES = pathlib.Path(os.environ.get("NODE_PATH", "none"))

@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
 
 from avianlidar import siting
-from avianlidar.apps import _pictures
-from avianlidar.apps._placing import Label, place_labels
+from avianlidar.apps.coverage import _pictures
+from avianlidar.apps.pages import _drawing
+from avianlidar.apps.pages._placing import Label, place_labels
 
 
 def runway(name, x, y, degrees, length=3000.0):
@@ -41,7 +42,7 @@ def plan(runways, kinds):
 class Labels(unittest.TestCase):
     def written(self, extent, labels, marks=(), lines=()):
         """Labels on a map of an extent. @return axes, labels that are left out, and the boxes of the others in pixels"""
-        figure = Figure(_pictures.map_size(extent, 5.9, 0.0, 0.5), dpi=_pictures.PIXELS, layout="constrained")
+        figure = Figure(_drawing.map_size(extent, 5.9, 0.0, 0.5), dpi=_drawing.PIXELS, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots()
         axes.set(xlim=extent[:2], ylim=extent[2:], aspect="equal", xlabel="m east", ylabel="m north")

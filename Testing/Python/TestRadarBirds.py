@@ -17,7 +17,7 @@ import TestSequence
 import avianlidar as al
 from avianlidar import reach
 from avianlidar._pipeline import update
-from avianlidar.apps._flights import read_flights
+from avianlidar.apps.sequences._flights import read_flights
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
 from exampletools import emptied
 from helpertools import rows_of, run

@@ -19,16 +19,15 @@ from osgeo import gdal, ogr, osr
 
 import avianlidar as al
 import exampletools
-from avianlidar.apps import _ground
-from avianlidar.apps._gdal import open_file, quiet
-from avianlidar.apps._json import packaged
-from avianlidar.apps._maps import coordinate_system
-from avianlidar.apps._osm import read_extract
+from avianlidar.apps.airport import _ground
+from avianlidar.apps.airport._osm import read_extract
+from avianlidar.apps.inputs._json import packaged
+from avianlidar.apps.places._gdal import coordinate_system, open_file, quiet
 
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 AROUND = (-1000.0, 1000.0, -1000.0, 1000.0)
 FOLDER = pathlib.Path(exampletools.OUTPUT) / "TestRasters"
-KNOWN = packaged("airport.json")
+KNOWN = packaged("places/airport.json")
 SLOPE = np.tile(50 + 0.1 * np.arange(-150, 151), (301, 1))  # 10 m apart
 HOLE = (slice(140, 160), slice(140, 160))
 gdal.UseExceptions()

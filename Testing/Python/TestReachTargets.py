@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 import avianlidar as al
 from avianlidar import _sheet, reach
-from avianlidar.apps import _targets
+from avianlidar.apps.coverage import _targets
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
 import helpertools
 

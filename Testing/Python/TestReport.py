@@ -12,10 +12,10 @@ import numpy as np
 import avianlidar as al
 import exampletools  # noqa: F401  (finds the examples)
 from avianlidar import siting
-from avianlidar.apps._answer import share_of
-from avianlidar.apps._crossing import crossing
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._plan import Plan
+from avianlidar.apps.coverage._answer import share_of
+from avianlidar.apps.coverage._crossing import crossing
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.inputs._read import read_plan
 from browser import Browser
 from reporttools import HERE, ON_SALE, PLAN, STEP, TARGET, plan, report, rows_of, same_numbers
 

@@ -17,14 +17,14 @@ import exampletools  # noqa: F401  (finds the examples)
 import flown
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main, parser
-from avianlidar.apps import _answer
-from avianlidar.apps._json import packaged
-from avianlidar.apps._on_sale import on_sale
-from avianlidar.apps._plan import Plan
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._report import Report
-from avianlidar.apps._sites import Sites
-from avianlidar.apps._words import plural
+from avianlidar.apps.coverage import _answer
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.coverage._report import Report
+from avianlidar.apps.coverage._sites import Sites
+from avianlidar.apps.inputs._json import packaged
+from avianlidar.apps.inputs._on_sale import on_sale
+from avianlidar.apps.inputs._read import read_plan
+from avianlidar.apps.pages._words import plural
 from browser import Browser
 from reporttools import HERE, SENSOR, STEP, TARGET, plan, report, rows_of, same_numbers, written
 
@@ -146,7 +146,7 @@ class Less(unittest.TestCase):
 
     def test_ranges_of_the_package_are_those_of_the_table(self):
         """For all sensors and species; one of them is computed again."""
-        ranges = packaged("ranges.json")["ranges"]
+        ranges = packaged("inputs/ranges.json")["ranges"]
         with open(SOURCE / "Documentation" / "evidence" / "tables" / "coverage-ranges.csv", encoding="utf-8") as file:
             table = list(csv.DictReader(file))
         self.assertEqual({(row["receiver"], row["bird"]) for row in table}, {(name, bird) for name in al.Sensor.presets() for bird in SPECIES})

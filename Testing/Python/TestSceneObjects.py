@@ -18,7 +18,7 @@ from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter
 
 from boxfiles import CORNERS, QUADS, TRIANGLES, ac3d, collada, gltf, ifc, obj, ply, poly_data, stl, three_ds, y_up
 from avianlidar import vtkAvianLidar
-from avianlidar.apps._features import length_of
+from avianlidar.apps.places._features import length_of
 from echotools import group
 import scenetools as st
 

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from avianlidar.apps import _scores as scores
+from avianlidar.apps.sequences import _scores as scores
 
 
 def brute(distance, cutoff, order):

@@ -17,8 +17,8 @@ import yaml
 
 import avianlidar as al
 from avianlidar import _command, _pipeline
-from avianlidar.apps import _labels
-from avianlidar.apps._simulation import STATUSES, SUBSETS, TRUTH, Clutter
+from avianlidar.apps.sequences import _labels
+from avianlidar.apps.sequences._simulation import Clutter, STATUSES, SUBSETS, TRUTH
 from boxfiles import CORNERS, LOW, TRIANGLES, stl
 from echotools import bird as bird_of
 from exampletools import emptied

@@ -20,14 +20,15 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar.apps import _pictures, _sites, _sites_page
-from avianlidar.apps._features import properties_of
-from avianlidar.apps._json import load_json, packaged
-from avianlidar.apps._osm import read_extract
-from avianlidar.apps._plan import Plan
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._sites import Sites
-from avianlidar.apps._candidates import Surfaces, code_of, pierced
+from avianlidar.apps.airport._osm import read_extract
+from avianlidar.apps.coverage import _pictures, _sites, _sites_page
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.coverage._sites import Sites
+from avianlidar.apps.inputs._json import load_json, packaged
+from avianlidar.apps.inputs._read import read_plan
+from avianlidar.apps.pages._drawing import drawn
+from avianlidar.apps.places._candidates import Surfaces, code_of, pierced
+from avianlidar.apps.places._features import properties_of
 from helpertools import error_of
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
@@ -81,7 +82,7 @@ class Candidates(unittest.TestCase):
                 canvas.draw()
                 places = axes.transData.transform([(0, 0), (2.5, 0.3), (4.6, 0.3)]).astype(int)
                 shown.extend(np.asarray(canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
-            _pictures.drawn((4, 4), draw)
+            drawn((4, 4), draw)
             np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 
     def test_two_in_one_place_are_one(self):
@@ -536,8 +537,8 @@ class Plans(unittest.TestCase):
                          [('Main, "old"', 45.0), ("18L/36R", 30.0), ("18R/36L", 45.11), ("05/23", 45.0), ("13/31", 45.0)])
         self.assertEqual([str(one.message).partition("a.geojson: ")[2] for one in heard],
                          ["13/31: width is 'wide', expected metres above 0; the runway counts as 45 m wide"])
-        extract = read_extract(self.folder / "a.osm", packaged("airport.json"))
-        rows = [properties_of(one, packaged("airport.json")) for one in extract.features]
+        extract = read_extract(self.folder / "a.osm", packaged("places/airport.json"))
+        rows = [properties_of(one, packaged("places/airport.json")) for one in extract.features]
         self.assertEqual([(one.name, round(one.width, 3)) for one in found], [(row.get("name") or row["ref"], row["width"]) for row in rows])
         # Tags in an object, as of Overpass' JSON, and as the hstore of QGIS; numbers and null beside them
         shape = {"type": "LineString", "coordinates": [[13.3, 53.6], [13.3, 53.61]]}

@@ -8,7 +8,7 @@ import importlib.util
 import os
 import re
 
-from avianlidar import _suffixes
+from avianlidar import _suffixes, apps
 
 source = os.environ["AVIANLIDAR_SOURCE_DIR"]
 
@@ -121,6 +121,14 @@ APPS, PUBLIC = "avianlidar.apps", {"avianlidar", "avianlidar._verbs", "avianlida
 for module in imports.keys() - PUBLIC:
     above = {name for name in imports[module] if name.startswith(APPS)}
     assert module.startswith(APPS) or not above, f"{module} imports {above}, which stand on top of it"
+
+# Packages of applications import only packages before them in their list, which names all of them.
+found = {package.split(".")[2] for package in modules if package.count(".") > 2}
+assert found == set(apps.PACKAGES), found ^ set(apps.PACKAGES)
+for module in (module for module in modules if module.count(".") > 2):
+    used = {name.split(".")[2] for name in imports[module] if name.startswith(f"{APPS}.")}
+    above = used - set(apps.PACKAGES[:apps.PACKAGES.index(module.split(".")[2]) + 1])
+    assert not above, f"{module} imports {above}, which come after it in apps.PACKAGES"
 
 # The tests that a header of the kernel names are there.
 tests = {os.path.basename(path) for path in files("Testing", ".cxx", ".py", ".h")}

@@ -11,12 +11,13 @@ import numpy as np
 import avianlidar as al
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar.apps import _metar, _sites_page
-from avianlidar.apps._air import extinction_of_rain
-from avianlidar.apps._plan import Plan
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._report import Report
-from avianlidar.apps._sites import OTHER_PLACES, Sites
+from avianlidar.apps.coverage import _sites_page
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.coverage._report import Report
+from avianlidar.apps.coverage._sites import OTHER_PLACES, Sites
+from avianlidar.apps.inputs import _metar
+from avianlidar.apps.inputs._air import extinction_of_rain
+from avianlidar.apps.inputs._read import read_plan
 from helpertools import error_of, rows_of
 from reporttools import HERE, SENSOR, airport, quick, written
 

@@ -10,7 +10,8 @@ import unittest.mock
 import exampletools
 from avianlidar._command import main
 from avianlidar import reach
-from avianlidar.apps import _crossing, _pictures, _report
+from avianlidar.apps.coverage import _crossing, _report
+from avianlidar.apps.pages import _drawing
 import helpertools
 
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9Q"
@@ -27,7 +28,7 @@ def quick(pictures=False):
         changed.enter_context(unittest.mock.patch.object(_report, "on_sale", lambda: ON_SALE))
         changed.enter_context(unittest.mock.patch.multiple(_crossing, BIRDS=200, PROBED=2000))
         if not pictures:
-            pixel = unittest.mock.patch.object(_pictures, "draw", lambda file, *_: pathlib.Path(file).write_bytes(PIXEL))
+            pixel = unittest.mock.patch.object(_drawing, "draw", lambda file, *_: pathlib.Path(file).write_bytes(PIXEL))
             changed.enter_context(pixel)
         yield
 

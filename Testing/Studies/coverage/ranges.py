@@ -11,7 +11,7 @@ import numpy as np
 import avianlidar as al
 import tools
 from avianlidar import reach
-from avianlidar.apps._pictures import draw_reach
+from avianlidar.apps.coverage._pictures import draw_reach
 from running import study
 
 SHOWN = ("Search905", "Search1550", "Automotive16", "Airport16")  # in the picture

@@ -12,15 +12,15 @@ import functools
 import math
 import pathlib
 import re
-from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Tuple
 from xml.etree import ElementTree
 
 from osgeo import ogr, osr
 
-from .._pipeline import Error
+from ..._pipeline import Error
+from ..places._features import DECIMAL, form_of
+from ..places._gdal import corners_of, degrees, plain, quiet, solid
 from ._extract import CROSSING, NO_DEGREES, NO_EXTENT, are_degrees, has_extent
-from ._features import DECIMAL, form_of
-from ._gdal import corners_of, degrees, plain, quiet, solid
 
 ENDED, FUTURE, NO_DATE = "no longer valid", "not valid yet", "a validity without a date"
 NO_BASELINE = "a change without its baseline"

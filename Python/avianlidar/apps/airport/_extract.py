@@ -11,8 +11,8 @@ from typing import Any, Callable, Counter, Dict, List, Optional, Sequence, Set, 
 import numpy as np
 from osgeo import ogr
 
-from ._features import HEIGHTS, ON_ROOF, Feature, Reasons, Table, form_of, height_name, length_of, properties_of
-from ._gdal import corners_of, geometry, is_closed, parts_of, solid, union, valid
+from ..places._features import HEIGHTS, ON_ROOF, Feature, Reasons, Table, form_of, height_name, length_of, properties_of
+from ..places._gdal import corners_of, geometry, is_closed, parts_of, solid, union, valid
 
 COAST = "coastline"
 UNKNOWN, CUT, TWICE = "unknown kind", "cut by the extract's border", "drawn twice"

@@ -15,12 +15,11 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 from osgeo import gdal, osr
 
-from .._numbers import figures
-from .._pipeline import Error, callers_level
-from .._scene import mesh as _surface
-from ._gdal import accuracy_words, warning_of
-from ._json import naming
-from ._maps import coordinate_system
+from ..._numbers import figures
+from ..._pipeline import Error, callers_level
+from ..._scene import mesh as _surface
+from ..inputs._json import naming
+from ..places._gdal import accuracy_words, coordinate_system, warning_of
 from ._raster import MOST_PIXELS, Raster, pixels_to_read, open_raster
 
 LOWEST, HIGHEST = -500.0, 9000.0  # m: the Dead Sea's shore lies at -430, Everest at 8,849

@@ -10,13 +10,12 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 from osgeo import osr
 
-from .._pipeline import Error
+from ..._pipeline import Error
+from ..inputs._json import packaged
+from ..places._features import Feature, form_of, length_of, properties_of
+from ..places._gdal import box_of, coordinate_system, corners_of, degrees, geometry, moved, valid
 from ._extract import COAST, CUT, OUTSIDE, on_roofs, sea, without_parts
-from ._features import Feature, form_of, length_of, properties_of
-from ._gdal import box_of, corners_of, degrees, geometry, moved, valid
 from ._ground import difference, height_at, posts_of, read_heights, terrain
-from ._json import packaged
-from ._maps import coordinate_system
 from ._obstacles import read_obstacles
 from ._osm import read_extract
 from ._runways import choose_runways
@@ -49,7 +48,7 @@ class AirportMap:
 
     def __init__(self, extract, heights=None, icao: Optional[str] = None, bounds: Optional[Sequence[float]] = None,
                  obstacles: Sequence[Any] = (), progress: Callable[[str, int, int], Any] = lambda *_: None):
-        self.known, self.extract = packaged("airport.json"), pathlib.Path(extract)
+        self.known, self.extract = packaged("places/airport.json"), pathlib.Path(extract)
         self.dem, self.level = self._ground(heights)
         self.progress = progress
         if bounds is not None:

@@ -12,14 +12,13 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 import numpy as np
 from osgeo import osr
 
-from .._files import read_regular
-from .._pipeline import Error
+from ..._files import read_regular
+from ..._pipeline import Error
+from ..inputs._tables import csv_rows
+from ..places._features import NUMBER, TALLEST, Feature, form_of, number_of
+from ..places._gdal import coordinate_system, corners_of, degrees, geometry, moved
 from ._aixm import TWICE, Row, Structures
-from ._features import NUMBER, TALLEST, Feature, form_of, number_of
-from ._gdal import corners_of, degrees, geometry, moved
-from ._maps import coordinate_system
 from ._osm import CONTROLS
-from ._tables import csv_rows
 
 METRES = {**dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
           **dict.fromkeys(("ft", "foot", "feet", "'", "′"), 0.3048),

@@ -16,11 +16,11 @@ from xml.etree import ElementTree
 import numpy as np
 from osgeo import gdal, ogr, osr
 
-from .._pipeline import Error
+from ..._pipeline import Error
+from ..inputs._json import naming
+from ..places._features import DECIMAL, Feature, tags_of
+from ..places._gdal import accuracy_words, degrees, expect_file, features_of_json, moved, open_file, plain, quiet
 from ._extract import NO_DEGREES, Extract
-from ._features import DECIMAL, Feature, tags_of
-from ._gdal import accuracy_words, degrees, expect_file, features_of_json, moved, open_file, plain, quiet
-from ._json import naming
 
 SUFFIXES = {".osm": "OSM", ".pbf": "OSM", ".geojson": "GeoJSON", ".gpkg": "GPKG"}  # suffixes with GDAL's drivers
 ID, NO_ID = re.compile(r"-?\d{1,18}"), "without a whole number as id"

@@ -8,15 +8,15 @@ from typing import Any, Counter, Dict, Iterable, Iterator, Tuple
 
 import numpy as np
 
-from .._cloud import field_values, leaves_of, triangles_of
-from .._scene import Scene
-from .._writers import as_csv
-from ._airport_plans import AirportScene, Place
-from ._candidates import ground_of
+from ..._cloud import field_values, leaves_of, triangles_of
+from ..._scene import Scene
+from ..._writers import as_csv
+from ..pages._placing import Label, place_labels
+from ..places._candidates import ground_of
+from ..places._features import Feature
+from ..places._regions import end_names, ends_of
 from ._extract import CROSSING, CUT, OUTSIDE, UNKNOWN
-from ._features import Feature
-from ._placing import Label, place_labels
-from ._regions import end_names, ends_of
+from ._plans import AirportScene, Place
 
 # Classes in the picture: colour, and drawing order from below. Each pair of colours is at least 14 apart in CIELAB, and
 # at least 7 for eyes without the cones of long or of middle wavelengths.

@@ -14,15 +14,15 @@ from typing import Any, Counter, Dict, List, NamedTuple, Optional, Sequence, Tup
 import numpy as np
 from osgeo import ogr
 
-from .._cloud import field_values
-from .._scene import Scene
-from ._airport_map import AirportMap
-from ._candidates import Surfaces, candidates, ground_of, lattice, pierced
-from ._features import Feature, form_of, height_name
-from ._gdal import geometry, moved
-from ._geojson import read_outlines, to_geodetic
-from ._json import naming
-from ._regions import Runway, ends_of, runway_outline
+from ..._cloud import field_values
+from ..._scene import Scene
+from ..inputs._json import naming
+from ..places._candidates import Surfaces, candidates, ground_of, lattice, pierced
+from ..places._features import Feature, form_of, height_name
+from ..places._gdal import geometry, moved
+from ..places._geojson import read_outlines, to_geodetic
+from ..places._regions import Runway, ends_of, runway_outline
+from ._map import AirportMap
 
 AROUND = 600.0  # distance from runways within which lidars may stand, m
 SPACINGS, CHOICE = (200, 150, 100, 50), 30  # spacings of candidates, m; the widest that leaves CHOICE of them is used

@@ -16,9 +16,9 @@ from xml.etree import ElementTree
 import numpy as np
 from osgeo import gdal
 
-from .._pipeline import Error
-from ._gdal import expect_file, open_file, warning_of
-from ._json import naming
+from ..._pipeline import Error
+from ..inputs._json import naming
+from ..places._gdal import expect_file, open_file, warning_of
 
 DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid", ".hgt": "SRTMHGT", ".vrt": "VRT"}
 FORMATS = {"GTiff": "a GeoTIFF (.tif)", "AAIGrid": "an ASCII grid (.asc)", "SRTMHGT": "an SRTM tile (.hgt)",

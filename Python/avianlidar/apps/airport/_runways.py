@@ -12,12 +12,11 @@ import numpy as np
 from osgeo import osr
 from scipy.sparse.csgraph import connected_components
 
-from .._pipeline import Error
+from ..._pipeline import Error
+from ..places._features import Feature, form_of
+from ..places._gdal import box_of, coordinate_system, degrees, geometry, moved, parts_of
+from ..places._regions import designators
 from ._extract import NO_DEGREES, OUTSIDE, Extract
-from ._features import Feature, form_of
-from ._gdal import box_of, degrees, geometry, moved, parts_of
-from ._maps import coordinate_system
-from ._regions import designators
 
 NEAR_AERODROME = 3000.0  # greatest distance of a runway from its aerodrome, m
 ONE_AIRPORT = 6000.0  # greatest distance between runways of one airport in an extract without aerodromes, m

@@ -9,18 +9,18 @@ from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 
-from .._disk import write_whole
-from .._files import read_regular
-from .._pipeline import Error
-from .._scene import load_scene
-from .._writers import vtp
-from . import _airport_pages as pages
-from . import _pictures as pictures
-from ._airport_map import AirportMap
-from ._airport_plans import AirportScene, scene_file
-from ._gdal import quiet
-from ._geojson import features_of, read_runways
-from ._json import load_json
+from ..._disk import write_whole
+from ..._files import read_regular
+from ..._pipeline import Error
+from ..._scene import load_scene
+from ..._writers import vtp
+from ..inputs._json import load_json
+from ..pages import _drawing as drawing
+from ..places._gdal import quiet
+from ..places._geojson import features_of, read_runways
+from . import _pages as pages
+from ._map import AirportMap
+from ._plans import AirportScene, scene_file
 
 WHAT = ("airport.geojson", "terrain.vtp", "airport.lidarscene.json", "exclusions.geojson", "airport.coverage.json",
         "siting.coverage.json", "airport.scenario.json", "assumed.csv", "airport.png", "README.txt")
@@ -120,7 +120,7 @@ def write(airport: AirportMap, folder) -> Tuple[Kept, AirportScene]:
     progress("files", 8, len(WHAT))
     lengths = np.diff(np.reshape(airport.rectangle, (2, 2)))[:, 0]
     wide, high = np.maximum(9.0 * lengths / lengths.max(), 3.0) + (2.0, 0.5)  # inches
-    put("airport.png", lambda: pictures.drawn((wide, high), lambda axes: pages.draw(axes, found, place)))
+    put("airport.png", lambda: drawing.drawn((wide, high), lambda axes: pages.draw(axes, found, place)))
     put("README.txt", lambda: pages.readme(found, place))
     progress("files", len(WHAT), len(WHAT))
     return kept, found

@@ -9,17 +9,17 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .. import reach
-from .._numbers import figures
-from .._properties import snake
-from .._weather import in_words
-from ._candidates import ground_of
+from ... import reach
+from ..._numbers import figures
+from ..._properties import snake
+from ..._weather import in_words
+from ..inputs._on_sale import PLACE
+from ..pages._words import listed, plural
+from ..places._candidates import ground_of
+from ..places._regions import APPROACH_LENGTH, KINDS, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
 from ._crossing import Crossing
-from ._on_sale import PLACE
 from ._plan import Plan
-from ._regions import APPROACH_LENGTH, KINDS, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
 from ._sites import FEWEST_DRAWS
-from ._words import listed, plural
 
 LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"

@@ -17,13 +17,13 @@ from typing import List, Tuple
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .. import vtkAvianLidar as _wrapped
-from .._coverage import Coverage
-from .._pipeline import update
-from .._properties import set_properties
+from ... import vtkAvianLidar as _wrapped
+from ..._coverage import Coverage
+from ..._pipeline import update
+from ..._properties import set_properties
+from ..places._regions import APPROACH_HALF_WIDTH, STRIP_HALF_WIDTH, region_names
+from ..sequences._scores import weighted
 from ._plan import Plan, restored
-from ._regions import APPROACH_HALF_WIDTH, STRIP_HALF_WIDTH, region_names
-from ._scores import weighted
 
 TWICE = 2  # detections
 BIRDS = 2000  # greatest number of birds

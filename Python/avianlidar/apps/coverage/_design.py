@@ -13,19 +13,19 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .._coverage import Coverage, places_of
-from .._pipeline import Error, Updates, update
-from .._ranks import Ranks
-from .._sensor import Sensor
-from . import _scores as scores
-from ._air import Air, gathers_light
+from ..._coverage import Coverage, places_of
+from ..._pipeline import Error, Updates, update
+from ..._ranks import Ranks
+from ..._sensor import Sensor
+from ..inputs._air import Air, gathers_light
+from ..inputs._json import naming
+from ..inputs._read import read_plan, read_scenario
+from ..inputs._tables import read_table
+from ..sequences import _scores as scores
+from ..sequences._tracks import LEARNING, BirdTracks
 from ._formula import Formula
-from ._inputs import read_plan, read_scenario
-from ._json import naming
 from ._looks import files_of, fill, require_memory
 from ._plan import OTHER_PLACES, Plan
-from ._tables import read_table
-from ._tracks import LEARNING, BirdTracks
 
 DESIGNS = 128
 FINALISTS = 5  # number of designs that are tracked

@@ -8,16 +8,17 @@ from typing import Any, Dict, List
 
 import numpy as np
 
-from .._disk import only_run, write_whole
-from .._version import __version__
-from . import _pictures as pictures
-from ._card import cell
+from ..._disk import only_run, write_whole
+from ..._version import __version__
+from ..inputs._on_sale import CHOSEN
+from ..inputs._tables import write_table
+from ..pages import _drawing as drawing
+from ..pages._html import embedded, render
+from ..pages._words import plural
+from ..sequences._card import cell
+from ..sequences._scores import Value
 from ._design import CHANGE, FIELDS, TOLD, Candidate, Field, Study, is_told
-from ._on_sale import CHOSEN
 from ._report import place
-from ._scores import Value
-from ._tables import embedded, render, write_table
-from ._words import plural
 
 TOLD_WORDS = {True: "yes", False: "no", None: "undecided"}
 PULSE_COLUMNS = {"exit_aperture [m2]": "exit_aperture", "radiant_exposure [J/m2]": "exposure",
@@ -118,7 +119,7 @@ def _draw_front(axes, study: Study) -> None:
     axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"required: {100 * study.asked:g} %")
     axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5,
               label="cheapest with this share" if study.chosen else "the best")
-    pictures.finish(axes, ylim=(0.0, None), xlabel=f"cost{', ' + study.unit if study.unit else ''}",
+    drawing.finish(axes, ylim=(0.0, None), xlabel=f"cost{', ' + study.unit if study.unit else ''}",
                     ylabel="share of birds, %")
 
 
@@ -149,8 +150,8 @@ def write(study: Study) -> None:
          "change_of_detected [1]": row["share"].value, "change_std_error [1]": row["share"].error,
          f"change_of_cost [{study.unit or '1'}]": row["cost"], "refused": row["refused"]}
         for row in study.sensitivities])
-    pictures.draw(out / "front.png", (6.4, 4.2), lambda axes: _draw_front(axes, study))
-    pictures.draw(out / "sensitivities.png", (6.4, 4.2), lambda axes: _draw_sensitivities(axes, study))
+    drawing.draw(out / "front.png", (6.4, 4.2), lambda axes: _draw_front(axes, study))
+    drawing.draw(out / "sensitivities.png", (6.4, 4.2), lambda axes: _draw_sensitivities(axes, study))
     shown = {one.number: one for one in [*study.front, study.about]}.values()
     base = [{"words": field.words, "base": field.text(study.base[name]), "swept": name in bounds,
              "bounds": _bounds(field, bounds[name]) if name in bounds else "the same in all designs"}
@@ -158,7 +159,7 @@ def write(study: Study) -> None:
     question = f"Which is the cheapest lidar that {does(study, f'{100 * study.asked:g} % of ')}?"
     count, answer = len(study.candidates), answers(study)
     write_whole(out / "design.html", render(
-        "design.html.jinja", question=plan.plan.get("description") or question, answer=answer, study=study,
+        "coverage/design.html.jinja", question=plan.plan.get("description") or question, answer=answer, study=study,
         stands=stands(study), shown=sorted(shown, key=lambda one: one.cost),
         fields=[FIELDS[name] for name in study.swept], told=TOLD, change=CHANGE, base=base, version=__version__,
         refused=[one for one in study.candidates if one.refused], places=len(plan.points), name=plan.name, count=count,

@@ -15,14 +15,14 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .._cloud import as_numpy, field_values, rows_of, with_points
-from .._coverage import Coverage
-from .._disk import write_whole
-from .._files import read_regular
-from .._numbers import figures
-from .._pipeline import Error, Updates, callers_level, update
-from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
-from .._version import __version__
+from ..._cloud import as_numpy, field_values, rows_of, with_points
+from ..._coverage import Coverage
+from ..._disk import write_whole
+from ..._files import read_regular
+from ..._numbers import figures
+from ..._pipeline import Error, Updates, callers_level, update
+from ..._ranks import Ranks, as_json, digest_of, digest_of_arrays
+from ..._version import __version__
 
 SAME_BIRDS = 20_000  # number of places whose poses are in memory together: 6 MB for each sensor and air
 

@@ -4,38 +4,21 @@ from __future__ import annotations
 
 import itertools
 import json
-import math
 import pathlib
 from typing import Any, Callable, Dict, Optional, Sequence
 
 import numpy as np
 
-from .._disk import replacing, write_whole
-from .._files import save
-from ._json import naming
+from ..._disk import replacing, write_whole
+from ..._files import save
+from ..inputs._json import naming
+from ..inputs._tables import write_table
 from ._plan import Plan
-from ._tables import write_table
 
 QUANTITIES = {"detection_probability": "1", "track_probability": "1", "photoelectrons": "1",
               "minimum_effective_area": "m2", "status": ""}  # written maps with their units
 LIMITS = (0.1, 0.5, 0.9)  # limits of the detection probability, in GeoJSON
 IN_MEMORY = "/vsimem/avianlidar/"  # GDAL's folder in memory
-
-
-def coordinate_system(origin: Sequence[float]):
-    """The scene's plane for GIS: the transverse Mercator projection about the origin on WGS84, scaled to the origin's
-    height. The difference to east and north is some millimetres at 3 km. @param origin latitude, longitude (deg),
-    height (m)"""
-    from ._gdal import osr
-    system = osr.SpatialReference()
-    # Lengths at a height are longer than on the ellipsoid, in proportion to the distance from the centre of curvature.
-    flattening = 1.0 / osr.SRS_WGS84_INVFLATTENING
-    bulge = 1.0 - flattening * (2.0 - flattening) * math.sin(math.radians(origin[0])) ** 2
-    radius = osr.SRS_WGS84_SEMIMAJOR * (1.0 - flattening) / bulge
-    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} "
-                           f"+k={1.0 + origin[2] / radius:.12g} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
-    system.SetProjCS("metres east and north of the scene's origin")
-    return system
 
 
 def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Sequence[float],
@@ -49,7 +32,7 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
     origin      of the scene: latitude, longitude (deg), height (m); None: no coordinate system
     categories  names of the values 0, 1, ...
     """
-    from ._gdal import gdal
+    from ..places._gdal import coordinate_system, gdal
     is_whole = np.issubdtype(values.dtype, np.integer)
     pixels = values[::-1].astype(np.uint8 if is_whole else np.float32)
     rows, columns = pixels.shape
@@ -87,7 +70,7 @@ def write_geotiff(file, values: np.ndarray, corner: Sequence[float], spacing: Se
 def _taken(name: str) -> bytes:
     """The bytes that GDAL has written to a file in memory, which is freed; empty without such a file. GDAL does not
     write to the disk itself, because GDAL does not report a full disk."""
-    from ._gdal import gdal
+    from ..places._gdal import gdal
     name = IN_MEMORY + name
     found = gdal.VSIStatL(name)
     if found is None:
@@ -109,7 +92,7 @@ def write_areas(file, geotiff, description: str) -> None:
     geotiff      the map, which needs a coordinate system
     description  description in the file
     """
-    from ._gdal import gdal, ogr
+    from ..places._gdal import gdal, ogr
     image = gdal.Open(str(geotiff))
     classes = gdal.GetDriverByName("MEM").CreateCopy("", image)
     band = classes.GetRasterBand(1)

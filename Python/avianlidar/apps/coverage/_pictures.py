@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of coverage with Matplotlib, which only the functions import."""
+"""Pictures of coverage."""
 from __future__ import annotations
 
-import io
-import warnings
-from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .._cloud import as_numpy, field_values, leaves_of, triangles_of
-from .._coverage import Coverage
-from .._disk import write_whole
-from .._plot import status_colours
-from ..reach import Reach
-from ._placing import Label, place_labels
+from ..._coverage import Coverage
+from ..._plot import status_colours
+from ...reach import Reach
+from ..pages._drawing import finish
+from ..pages._placing import Label, place_labels
+from ..places._from_above import draw_airport, draw_land
+from ..places._regions import APPROACH_LENGTH, Runway, end_names, ends_of, region_outlines
 from ._plan import Plan
-from ._regions import APPROACH_LENGTH, Runway, end_names, ends_of, region_outlines
 
 # Colours of vtkAvianLidarCoverage's statuses.
 STATUS_COLOURS = ["#" + "".join(f"{round(255 * value):02x}" for value in colour)
@@ -24,101 +21,13 @@ STATUS_COLOURS = ["#" + "".join(f"{round(255 * value):02x}" for value in colour)
 HIGH = 160.0  # height of the section, m; one tenth more than the plan's greatest height if that is larger
 GLIDE_PATH = 3.0  # slope of the glide path, deg
 THRESHOLD_HEIGHT = 15.0  # height of the glide path above a runway's end, m
-TALL = 5.0  # height above the ground at the sensor from which on surfaces are drawn as buildings, m ...
-FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... except these classes
-PIXELS = 150  # pixels per inch
 OUTLINES = (0.1, 0.5)  # probabilities whose outlines are drawn on the first page
 AROUND_SITES = 150.0  # margin around the candidates on their map, m
 SHOWN = 250  # pixels along the longer side of the map on the first page
 AROUND = 0.07  # margin around the map on the first page, as a share of the longer side
 SIDES = (0.4, 0.9)  # least and greatest ratio of height to width of the map on the first page
-PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
-CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
 BAR = (1.03, 0.0, 0.04, 1.0)  # place of a colour bar as high as the map, in parts of the map
 STEP = (10.0, 2.0)  # steps of the section along the runway and upwards, m
-
-
-def gradient() -> List[str]:
-    """Colours of nine probabilities from 0 to 1."""
-    from matplotlib import colormaps, colors
-    return [colors.to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, 9)]
-
-
-def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> None:
-    """Writes a picture to a file; see `drawn`."""
-    write_whole(file, drawn(size, work, columns))
-
-
-def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> bytes:
-    """A picture (PNG). @param size inches @param work function that draws into the given axes @param columns axes side
-    by side"""
-    from matplotlib import font_manager, rc_context
-    from matplotlib.figure import Figure
-    content = io.BytesIO()
-    known = {font.name for font in font_manager.fontManager.ttflist}
-    fonts = ["DejaVu Sans", *(name for name in CJK if name in known)]
-    style = {"axes.labelsize": 9, "xtick.labelsize": 9, "ytick.labelsize": 9, "legend.fontsize": 8, "grid.alpha": 0.4,
-             "font.family": fonts, "text.parse_math": False}  # names keep their $
-    with rc_context(style), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has
-        figure = Figure(figsize=size, dpi=PIXELS, layout="constrained")
-        work(figure.subplots(1, columns))
-        figure.draw_without_rendering()  # the layout needs two passes to fix axes of equal scales
-        figure.savefig(content, format="png")
-    return content.getvalue()
-
-
-def finish(axes, **settings: Any) -> None:
-    """Sets limits and labels of axes, a grid, and a legend if something has a label."""
-    axes.set(**settings)
-    axes.grid()
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend()
-
-
-def map_size(extent: Sequence[float], width: float, beside: float = 0.0, above: float = 0.0) -> Tuple[float, float]:
-    """Size in inches of a picture filled by a map with labels. @param width width of the map @param beside, above
-    inches for other contents"""
-    x0, x1, y0, y1 = extent
-    return width + beside, 0.5 + (width - 0.7) * float(np.clip((y1 - y0) / max(x1 - x0, 1e-9), 0.25, 3.0)) + above
-
-
-def draw_land(axes, plan: Plan) -> None:
-    """Draws woods and water of the scene from above."""
-    from matplotlib.collections import PolyCollection
-    for block in leaves_of(plan.scene.surfaces):
-        polygons, ids = block.GetPolys(), block.GetCellData().GetArray("object_id")
-        if not polygons.GetNumberOfCells():
-            continue
-        classes = np.array(field_values(block).get("object_classes", [""]))
-        of = classes[as_numpy(ids) if ids and len(classes) > 1 else np.zeros(polygons.GetNumberOfCells(), int)]
-        points = vtk_to_numpy(block.GetPoints().GetData())[:, :2]
-        offsets = vtk_to_numpy(polygons.GetOffsetsArray())
-        cells = np.split(points[vtk_to_numpy(polygons.GetConnectivityArray())], offsets[1:-1])
-        for wanted, colour in ((np.isin(of, PLANTS), "#b5d6a7"), (of == "water", "#a9cfe8")):
-            if wanted.any():
-                drawn = [cells[i] for i in np.flatnonzero(wanted)]
-                axes.add_collection(PolyCollection(drawn, facecolors=colour, edgecolors=colour, zorder=0.5))
-
-
-def draw_airport(axes, plan: Plan, colour: str = "0.25") -> None:
-    """Draws buildings, runways and the sensor from above. @param colour colour of buildings and runways"""
-    from matplotlib.colors import ListedColormap
-    for runway in plan.runways:
-        axes.plot(*np.transpose([runway.start, runway.end]), color=colour, linewidth=1.5, solid_capstyle="butt")
-    if plan.scene is not None:
-        surfaces = plan.scene.tree.GetOutput()
-        points, cells = triangles_of(surfaces)
-        roofs = points[cells][:, :, 2].min(axis=1) > (plan.ground or 0.0) + TALL
-        classes = field_values(surfaces).get("object_classes", ())
-        if len(classes):
-            roofs &= ~np.isin(classes, FLAT)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
-        if roofs.any():
-            axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()),
-                           cmap=ListedColormap([colour]))
-    axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
-    axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
-    axes.locator_params(nbins=5)
 
 
 def draw_map(axes, plan: Plan, cover: Coverage, quantity: str) -> None:

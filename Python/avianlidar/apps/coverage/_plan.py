@@ -10,24 +10,24 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import leaves_of
-from .._coverage import Coverage, places_of
-from .._numbers import figures
-from .._pipeline import Error, update
-from .._ranks import digest_of, digest_of_arrays
-from .._scene import Scene, load_scene
-from .._sensor import Sensor
-from .._weather import AIR, in_weather, weather
-from ._air import Air, as_received
-from ._candidates import ground_of
-from ._geojson import read_runways
-from ._json import naming
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import leaves_of
+from ..._coverage import Coverage, places_of
+from ..._numbers import figures
+from ..._pipeline import Error, update
+from ..._ranks import digest_of, digest_of_arrays
+from ..._scene import Scene, load_scene
+from ..._sensor import Sensor
+from ..._weather import AIR, in_weather, weather
+from ..inputs._air import Air, as_received
+from ..inputs._json import naming
+from ..inputs._on_sale import PLACE, idea
+from ..inputs._read import sensor_name
+from ..places._candidates import ground_of
+from ..places._geojson import read_runways
+from ..places._regions import Runway, by_kind, ends_of, places_by_region, region_heights, region_names
+from ..sequences._scores import weighted
 from ._looks import require_memory
-from ._inputs import sensor_name
-from ._on_sale import PLACE, idea
-from ._regions import Runway, by_kind, ends_of, places_by_region, region_heights, region_names
-from ._scores import weighted
 
 HEIGHTS = (15.0, 30.0, 60.0, 150.0)  # default heights of maps, m
 PLACES = 12000

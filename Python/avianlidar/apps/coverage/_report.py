@@ -11,28 +11,31 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
-from .._cloud import field_values
-from .._disk import only_run, write_whole
-from .._numbers import figures
-from .._pipeline import Error
-from .._version import __version__
-from .. import reach
-from . import _answer, _sites_page
+from ... import reach
+from ..._cloud import field_values
+from ..._disk import only_run, write_whole
+from ..._numbers import figures
+from ..._pipeline import Error
+from ..._version import __version__
+from ..inputs._air import gathers_light
+from ..inputs._json import load_json, naming
+from ..inputs._on_sale import half_range, on_sale
+from ..inputs._tables import write_table
+from ..pages import _drawing as drawing
+from ..pages._html import embedded, render
+from ..pages._words import counted, listed
+from ..places._candidates import NOT_CHECKED
+from ..places._geojson import to_geodetic
+from ..places._regions import rounded
+from ..sequences._card import read_card
+from . import _answer
 from . import _pictures as pictures
-from ._air import gathers_light
+from . import _sites_page
 from ._answer import LEAST, LEAST_WORDS, birds_of, cell, decimals, how_sure, metres, percent, place, share_of
-from ._candidates import NOT_CHECKED
-from ._card import read_card
 from ._crossing import Crossing, crossing
-from ._geojson import to_geodetic
-from ._json import load_json, naming
 from ._maps import height_name
-from ._on_sale import half_range, on_sale
 from ._plan import OTHER_PLACES, Plan
-from ._regions import rounded
 from ._sites import BEST, FEWEST_DRAWS, Sites
-from ._tables import embedded, render, write_table
-from ._words import counted, listed
 
 VISIBILITIES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 20_000.0)  # in the section on weather, m
 RAINS = (0.0, 1.0, 5.0, 10.0, 25.0, 50.0)  # rain rates, mm/h
@@ -99,7 +102,7 @@ class Report:
         return {"source": embedded(file), "alt": f"{what}. {caption}.", "caption": caption}
 
     def _draw(self, file: pathlib.Path, size: Tuple[float, float], what: str, caption: str, work) -> Dict[str, str]:
-        pictures.draw(file, size, work)
+        drawing.draw(file, size, work)
         self.done += 1
         self.progress("pictures", self.done, self.pictures)
         return self._figure(file, what, caption)
@@ -107,7 +110,7 @@ class Report:
     def _view(self, plan: Plan, folder: pathlib.Path, name: str) -> Dict[str, Any]:
         """Pictures of a sensor at a place. @param name part of the names of files"""
         names = plan.map_at(plan.heights[0]).status_names
-        maps, reasons, sections, size = [], [], [], pictures.map_size(plan.extent, 3.3)
+        maps, reasons, sections, size = [], [], [], drawing.map_size(plan.extent, 3.3)
         for height in plan.heights:
             cover, where = plan.map_at(height), f"{plan.title}, {height:g} m above {plan.above}"
             p = plan.mixed(cover)
@@ -124,7 +127,7 @@ class Report:
         clutter = plan.coverage.clutter_map
         count = int(np.count_nonzero(clutter["detection_probability"] >= 0.5)) if clutter.number_of_points else 0
         drawn = self._draw(
-            folder / f"{name}-clutter.png", pictures.map_size(plan.extent, 4.0, 0.8), "Map of clutter",
+            folder / f"{name}-clutter.png", drawing.map_size(plan.extent, 4.0, 0.8), "Map of clutter",
             f"{plan.title}: {count} echoes of surfaces in at least every second scan",
             lambda axes: pictures.draw_clutter(axes, plan, clutter))
         limits = "; red: heights of the plan" if plan.asked else ""
@@ -338,7 +341,7 @@ class Report:
         regions = f"; dotted: the plan's {kinds}, with the share detected in each" if view.runways else ""
         left_out: List[str] = []
         picture = self._draw(
-            folder / "answer.png", pictures.map_size(extent, 5.9, 0.0, 0.2 * math.ceil(len(found) / 4) + 0.3),
+            folder / "answer.png", drawing.map_size(extent, 5.9, 0.0, 0.2 * math.ceil(len(found) / 4) + 0.3),
             f"Map of the airport: one scan detects half or more of the birds on {seen} above {view.above}",
             f"{view.name} (red triangle), {place(view.sensor.position)}. "
             f"Filled: one scan detects half or more of the birds, dashed: a tenth{regions}",
@@ -393,7 +396,7 @@ class Report:
         asked = {name: part for name, part in self.plan.items() if name not in made}
         text = json.dumps(_shown(asked), indent=1, ensure_ascii=False)
         return render(
-            "report.html.jinja",
+            "coverage/report.html.jinja",
             filter_metres=metres, filter_share=percent, filter_of_row=share_of, filter_cell=cell,
             filter_rounded=rounded, filter_twice=_answer.twice, chance=share_of(answering[0].overall),
             said=[" ".join([_answer.in_short(answering[0], site_of[0], crossings[0]),
@@ -411,7 +414,7 @@ class Report:
             names=[plan.name for plan in self.plans], views=shown, reaches=reaches,
             advice=[one for one in advices if one],
             tables=self._tables(views), sites=sited, weather=weather, hours=self.plan.get("hours", ""),
-            fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=pictures.gradient(),
+            fewest=FEWEST_DRAWS, least=LEAST, least_words=LEAST_WORDS, colours=drawing.gradient(),
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)), tracks=self.tracks,
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},

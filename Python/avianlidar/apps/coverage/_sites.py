@@ -10,18 +10,18 @@ from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tupl
 
 import numpy as np
 
-from .._pipeline import Error
-from .._ranks import Ranks
-from .._scene import load_scene
-from ._air import Air
-from ._candidates import NAMES, SAME_PLACE, Surfaces, candidates, ground_of, is_near, lattice, pierced
-from ._geojson import read_outlines, with_other_heights
-from ._json import naming
+from ..._pipeline import Error
+from ..._ranks import Ranks
+from ..._scene import load_scene
+from ..inputs._air import Air
+from ..inputs._json import naming
+from ..inputs._tables import read_table
+from ..places._candidates import NAMES, SAME_PLACE, Surfaces, candidates, ground_of, is_near, lattice, pierced
+from ..places._geojson import read_outlines, with_other_heights
+from ..places._regions import by_kind, rounded, runway_outline
 from ._looks import look, require_memory, value_of_same_birds
 from ._networks import Network, search, value_of, values_of
 from ._plan import OTHER_PLACES, Plan
-from ._regions import by_kind, rounded, runway_outline
-from ._tables import read_table
 
 NEAR = 40  # number of candidates, best alone, whose networks are compared, together with the best network's members
 DRAWS = 10

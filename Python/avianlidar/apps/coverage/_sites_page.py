@@ -7,11 +7,13 @@ from typing import Any, Dict, List
 
 import numpy as np
 
+from ..inputs._tables import write_table
+from ..pages import _drawing as drawing
+from ..pages._words import listed
+from ..places._candidates import NAMES, NOT_CHECKED, TABLE
+from ..places._geojson import write_sites
 from . import _pictures as pictures
-from ._candidates import NAMES, NOT_CHECKED, TABLE
 from ._sites import Change, Sites
-from ._tables import write_sites, write_table
-from ._words import listed
 
 
 def kept_surfaces(sites: Sites) -> str:
@@ -75,6 +77,6 @@ def write(sites: Sites, folder, changes: List[Change]) -> None:
                 "; ".join(f"{name}: {text}" for name, text in words(sites).items()))
     write_table(folder / "gain.csv", sites.gain())
     write_table(folder / "robustness.csv", sites.robustness(changes))
-    pictures.draw(folder / "sites.png", pictures.map_size(pictures.sites_extent(sites), 4.6, 0.8, 0.3),
+    drawing.draw(folder / "sites.png", drawing.map_size(pictures.sites_extent(sites), 4.6, 0.8, 0.3),
                   lambda axes: pictures.draw_sites(axes, sites))
-    pictures.draw(folder / "gain.png", (4.4, 2.8), lambda axes: pictures.draw_gain(axes, sites))
+    drawing.draw(folder / "gain.png", (4.4, 2.8), lambda axes: pictures.draw_gain(axes, sites))

@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import add_array, field_values
-from .._pipeline import update
-from .._properties import set_properties, unknown
-from .._scan import Scan
-from .._scene import Scene, mover
-from .._sensor import Sensor
-from ._json import packaged
-from ._words import plural
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import add_array, field_values
+from ..._pipeline import update
+from ..._properties import set_properties, unknown
+from ..._scan import Scan
+from ..._scene import Scene, mover
+from ..._sensor import Sensor
+from ..inputs._json import packaged
+from ..pages._words import plural
 
 FORMS = {"board": "board:SIDE", "sphere": "sphere:DIAMETER", "drone": "drone", "person": "person", "wall": "wall",
          "ground": "ground"}
@@ -54,7 +54,7 @@ def joined(parts) -> tuple[np.ndarray, np.ndarray]:
 
 def quadcopter(thick: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """Points (m, nose towards +x) and triangles of a quadcopter. @param thick thickness of its parts, 1: assumed"""
-    drone = packaged("targets.json")["drone"]
+    drone = packaged("coverage/targets.json")["drone"]
     across, arm, motor, leg = (drone[name] for name in ("across", "arm", "motor", "leg"))
     parts = [box(np.array(middle), np.array(half) * thick) for middle, half in drone["body"]]
     for angle in np.radians((45, 135, 225, 315)):
@@ -110,7 +110,7 @@ class Target:
         if self.kind == "board":
             return half * np.array([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)]), np.array([(0, 1, 2), (0, 2, 3)])
         if self.kind == "person":
-            return box((0.0, 0.0, 0.0), 0.5 * np.array(packaged("targets.json")["person"]["size"]))
+            return box((0.0, 0.0, 0.0), 0.5 * np.array(packaged("coverage/targets.json")["person"]["size"]))
         return sphere(self.size) if self.kind == "sphere" else quadcopter()
 
 
@@ -133,7 +133,7 @@ def target(form: str, reflectance: float | None = None, height: float | None = N
     'board of 0.5 m, reflectance 0.1'
     """
     kind, colon, text = form.partition(":")
-    known = packaged("targets.json")
+    known = packaged("coverage/targets.json")
     if kind not in FORMS:
         raise ValueError(unknown("target", kind, FORMS.values()))
     size = 0.0

@@ -6,11 +6,11 @@ import functools
 import warnings
 from typing import Any, Dict, NamedTuple, Tuple
 
-from .._cloud import field_values
-from .._coverage import Coverage
-from .._scene import Scene
-from .._sensor import Sensor
-from .._weather import in_words
+from ..._cloud import field_values
+from ..._coverage import Coverage
+from ..._scene import Scene
+from ..._sensor import Sensor
+from ..._weather import in_words
 
 
 class Air(NamedTuple):

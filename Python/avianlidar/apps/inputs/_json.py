@@ -9,9 +9,9 @@ import math
 import pathlib
 from typing import Any, Dict, Iterator, List, Tuple
 
-from .._files import read_regular
-from .._pipeline import Error, words_of
-from .._properties import unknown
+from ..._files import read_regular
+from ..._pipeline import Error, words_of
+from ..._properties import unknown
 
 # kinds of files, by a key that other kinds do not have
 KINDS = {"objects": "a scene", "number_of_scans": "a scenario", "siting": "a plan", "coverage": "a plan"}
@@ -52,8 +52,8 @@ def load_json(file) -> Any:
 
 @functools.lru_cache(maxsize=None)
 def packaged(name: str) -> Any:
-    """The content of a JSON file of this package."""
-    return load_json(pathlib.Path(__file__).with_name(name))
+    """The content of a JSON file of the applications, such as `places/airport.json`."""
+    return load_json(pathlib.Path(__file__).parents[1] / name)
 
 
 def _words_of(wrong: Any) -> str:
@@ -69,7 +69,7 @@ def _words_of(wrong: Any) -> str:
 def check_json(document: Any, schema: str, what: str) -> None:
     """`Error` names the property that does not fit a schema of this package. @param what the document's name"""
     import jsonschema
-    found = list(jsonschema.Draft202012Validator(packaged(schema)).iter_errors(document))
+    found = list(jsonschema.Draft202012Validator(packaged(f"inputs/{schema}")).iter_errors(document))
     # An unknown key may be a misspelt required key.
     wrong = next((one for one in found if one.validator == "additionalProperties" and not one.path),
                  jsonschema.exceptions.best_match(found))

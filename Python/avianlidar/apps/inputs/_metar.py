@@ -20,8 +20,8 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
-from .._files import read_regular
-from .._pipeline import Error
+from ..._files import read_regular
+from ..._pipeline import Error
 from ._air import extinction_of_rain
 
 MILE = 1609.344  # m

@@ -6,10 +6,10 @@ import functools
 import math
 from typing import Iterable, Tuple
 
-from .._properties import snake
-from .._sensor import Sensor
+from ..._properties import snake
+from ..._sensor import Sensor
+from ..pages._words import listed, plural
 from ._json import packaged
-from ._words import listed, plural
 
 PLACE = ("position", "orientation")  # settings that say how a lidar stands
 # Settings that the owner of a lidar chooses; other changes make a lidar that nobody sells.
@@ -37,7 +37,7 @@ def idea(name: str, sensor: Sensor, given: Iterable[str] = ()) -> str:
 def half_range(name: str, species: str) -> float:
     """The range to which one scan of a preset detects half of the birds in its beams in clear air, m; nan for a species
     without a range. Testing/Studies/coverage/ranges.py computes these ranges."""
-    table = packaged("ranges.json")
+    table = packaged("inputs/ranges.json")
     half = table["shares"].index(0.5)
     return float(table["ranges"].get(name, {}).get(species, {half: math.nan})[half])
 

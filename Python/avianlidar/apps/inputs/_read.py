@@ -5,11 +5,11 @@ from __future__ import annotations
 import pathlib
 from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
 
-from .. import vtkAvianLidar as _wrapped
-from .._files import checked_name
-from .._pipeline import Error
-from .._properties import in_snake_case, property_names, unknown
-from .._weather import in_weather, weather, without_air
+from ... import vtkAvianLidar as _wrapped
+from ..._files import checked_name
+from ..._pipeline import Error
+from ..._properties import in_snake_case, property_names, unknown
+from ..._weather import in_weather, weather, without_air
 from . import _metar
 from ._json import check_json, load_json, naming, packaged
 from ._on_sale import PLACE
@@ -144,7 +144,7 @@ def checked(scenario: Any, what: str) -> Dict[str, Any]:
 
 def _check_groups(groups: Any, what: str) -> None:
     """`Error` for a key of a group of birds that is not known, or that only groups with a file have."""
-    keys = packaged("scenario.schema.json")["properties"]["birds"]["items"]["properties"]
+    keys = packaged("inputs/scenario.schema.json")["properties"]["birds"]["items"]["properties"]
     names = property_names(_wrapped.vtkAvianLidarTracks)
     known = [name for name in dict.fromkeys((*names, *keys)) if keys.get(name) != {"not": {}}]
     for place, group in enumerate(groups if isinstance(groups, list) else ()):

@@ -15,9 +15,9 @@ import numpy as np
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
-from .._cloud import rows_of
-from .._pipeline import callers_level, update
-from ._json import packaged
+from ..._cloud import rows_of
+from ..._pipeline import callers_level, update
+from ..inputs._json import packaged
 from ._regions import Runway, runway_outline
 
 MOST_CANDIDATES = 100_000
@@ -26,7 +26,7 @@ NAMES = ("strip", "approach", "transitional")
 # Inner horizontal and conical surfaces lie 45 m and more above the aerodrome.
 NOT_CHECKED = ("take-off climb surfaces", "inner horizontal surfaces", "conical surfaces",
                "areas that protect ILS and other radio aids")
-TABLE: Dict[str, Any] = packaged("surfaces.json")  # all dimensions of the surfaces, their source, and the assumptions
+TABLE: Dict[str, Any] = packaged("places/surfaces.json")  # dimensions of the surfaces, their source, assumptions
 STEP = 100.0  # distance along a runway between places at which the runway's height is taken from the scene, m
 
 

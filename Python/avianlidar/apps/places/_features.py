@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
 
 import numpy as np
 
-from ._json import packaged
+from ..inputs._json import packaged
 
 TALLEST, HIGHEST = 1000.0, 200.0  # greatest plausible height, m, and number of storeys
 LONGEST_LENGTH = 100  # characters
@@ -123,7 +123,7 @@ def _one_length(text: str) -> Optional[float]:
     if not found or (found[3] and unit[0] not in "f'′"):
         return None
     if unit[0] in "sl" or unit.startswith("fl"):
-        return number_of(found[1]) * packaged("airport.json")["level_height"]
+        return number_of(found[1]) * packaged("places/airport.json")["level_height"]
     metres = next((value for word, value in UNITS.items() if unit.startswith(word)), 1.0)
     return (number_of(found[1], TALLEST / metres) + (number_of(found[3]) if found[3] else 0.0) / 12) * metres
 

@@ -6,6 +6,7 @@ import contextlib
 import functools
 import itertools
 import json
+import math
 import os
 import pathlib
 import warnings
@@ -14,7 +15,7 @@ from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
 import numpy as np
 from osgeo import gdal, ogr, osr
 
-from .._pipeline import Error, callers_level
+from ..._pipeline import Error, callers_level
 from ._features import form_of
 
 GRID_ACCURACY = 1.0  # m: worse accuracies of coordinates are reported
@@ -280,3 +281,18 @@ def union(areas: List[Any], nested: bool = False):
             if form_of(part) == "area":
                 whole.AddGeometry(part)
     return whole.UnionCascaded()
+
+
+def coordinate_system(origin: Sequence[float]):
+    """The scene's plane for GIS: the transverse Mercator projection about the origin on WGS84, scaled to the origin's
+    height. The difference to east and north is some millimetres at 3 km. @param origin latitude, longitude (deg),
+    height (m)"""
+    system = osr.SpatialReference()
+    # Lengths at a height are longer than on the ellipsoid, in proportion to the distance from the centre of curvature.
+    flattening = 1.0 / osr.SRS_WGS84_INVFLATTENING
+    bulge = 1.0 - flattening * (2.0 - flattening) * math.sin(math.radians(origin[0])) ** 2
+    radius = osr.SRS_WGS84_SEMIMAJOR * (1.0 - flattening) / bulge
+    system.ImportFromProj4(f"+proj=tmerc +lat_0={origin[0]:.12g} +lon_0={origin[1]:.12g} "
+                           f"+k={1.0 + origin[2] / radius:.12g} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs")
+    system.SetProjCS("metres east and north of the scene's origin")
+    return system

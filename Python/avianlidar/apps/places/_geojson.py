@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runways and outlines in GeoJSON files, and conversion between degrees and metres of a scene."""
+"""Runways and outlines in GeoJSON files, files of sites, and conversion between degrees and metres of a scene."""
 from __future__ import annotations
 
 import itertools
@@ -7,17 +7,20 @@ import json
 import pathlib
 import re
 import warnings
-from typing import Any, Callable, Dict, List, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import Cloud
-from .._coverage import places_of
-from .._pipeline import Error, callers_level, update
-from .._properties import set_properties
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import Cloud, add_array, vertices
+from ..._coverage import places_of
+from ..._disk import write_whole
+from ..._files import save
+from ..._pipeline import Error, callers_level, update
+from ..._properties import set_properties
+from ..._ranks import as_json
+from ..inputs._json import load_json, naming, packaged
 from ._features import Reasons, length_of, tags_of, width_of
-from ._json import load_json, naming, packaged
 from ._regions import Runway, designators
 
 NEAR_LINE = 3000.0  # greatest gap between runways on one line that may be one runway, m
@@ -92,13 +95,14 @@ def _lines(shape: Dict[str, Any], origin: Sequence[float]) -> List[np.ndarray]:
         first, last = last, first
     x, y = last - first
     beside = np.abs((points - first) @ (-y, x)) / max(np.hypot(x, y), 1.0)
-    return [np.array([first, last])] if is_many and beside.max() <= packaged("airport.json")["runway_offset"] else ends
+    is_one = is_many and beside.max() <= packaged("places/airport.json")["runway_offset"]
+    return [np.array([first, last])] if is_one else ends
 
 
 def read_runways(file, origin: Sequence[float]) -> List[Runway]:
     """The runways of a GeoJSON file: lines whose property or tag `kind` or `aeroway` is "runway", with `name` or `ref`
     and `width`, in service, on land. @param origin of the scene: latitude, longitude (deg), height (m)"""
-    path, known = pathlib.Path(file), packaged("airport.json")
+    path, known = pathlib.Path(file), packaged("places/airport.json")
     reasons, left = Reasons(known), []
     found: List[Runway] = []
     strange: List[str] = []
@@ -235,3 +239,33 @@ def with_other_heights(scene_file, folder, offset: Callable[[], float]) -> pathl
         file.write_text(json.dumps(shapes), encoding="utf-8")
     (out / path.name).write_text(json.dumps(scene), encoding="utf-8")
     return out / path.name
+
+
+def write_sites(folder, sites, columns: Mapping[str, Any], origin: Optional[Sequence[float]] = None,
+                description: str = "") -> None:
+    """Writes sites.csv and sites.vtp, and sites.geojson if the scene has an origin: one point for each site, in the
+    given order.
+
+    sites        n x 3, m
+    columns      numbers by name, n each
+    origin       latitude, longitude (deg), height (m) of the scene's origin
+    description  description in sites.geojson
+    """
+    out, data = pathlib.Path(folder), vertices(sites)
+    degrees = to_geodetic(sites, origin) if origin is not None else np.empty((0, 3))
+    in_degrees = {} if origin is None else {"longitude": degrees[:, 0], "latitude": degrees[:, 1]}
+    for name, values in {**columns, **in_degrees}.items():
+        if len(values) != len(sites):
+            raise ValueError(f"column {name!r} has {len(values)} values, expected {len(sites)}, one for each site")
+        add_array(data.GetPointData(), name, np.asarray(values))
+    out.mkdir(parents=True, exist_ok=True)
+    save(data, out / "sites.vtp")
+    save(data, out / "sites.csv")
+    if origin is None:
+        return
+    rows = zip(degrees.tolist(), *(np.asarray(values).tolist() for values in columns.values()))
+    features = [{"type": "Feature", "properties": dict(zip(columns, row)), "geometry": {
+        "type": "Point", "coordinates": [round(lon, 9), round(lat, 9), round(height, 4)]}}
+        for (lon, lat, height), *row in rows]
+    write_whole(out / "sites.geojson", as_json({
+        "type": "FeatureCollection", "description": description, "features": features}))

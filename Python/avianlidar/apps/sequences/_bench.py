@@ -9,21 +9,22 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tu
 
 import numpy as np
 
-from .._disk import only_run, write_whole
-from .._files import read_regular
-from .._pipeline import Error
-from .._version import __version__
-from .._weather import in_words
-from .._writers import as_csv
-from . import _pictures as pictures
+from ..._disk import only_run, write_whole
+from ..._files import read_regular
+from ..._pipeline import Error
+from ..._version import __version__
+from ..._weather import in_words
+from ..._writers import as_csv
+from ..inputs._json import naming
+from ..inputs._read import read_manifest
+from ..inputs._tables import read_table, texts
+from ..pages import _drawing as drawing
+from ..pages._html import embedded, render
 from ._card import cell
-from ._json import naming
 from ._labels import BIRD, MOVING
 from ._scores import Value, mean
-from ._inputs import read_manifest
 from ._sequence import DONE, content_of
 from ._simulation import SUBSETS
-from ._tables import embedded, read_table, render, texts
 
 RANGES = (200.0, 400.0, 600.0, 1000.0)  # limits of the groups by range, m
 GROUPS = (*(f"{low:g} to {high:g} m" for low, high in zip((0.0, *RANGES), RANGES)), f"beyond {RANGES[-1]:g} m")
@@ -290,7 +291,7 @@ def write_bench(folders: Sequence[Any], predictions: Sequence[Any], out, numbers
             write_whole(out / name, as_csv(map(texts, rows)))
         shown = [{**page(scored), "picture": _picture(out, scored)} for scored in by_set]
         write_whole(out / "bench.html", render(
-            "bench.html.jinja", sets=shown, version=__version__, all=ALL, scores=SCORES, lost=LOST, sure=SURE,
+            "sequences/bench.html.jinja", sets=shown, version=__version__, all=ALL, scores=SCORES, lost=LOST, sure=SURE,
             rates=FALSE, first=first))
     return by_set
 
@@ -345,7 +346,7 @@ def _picture(out: pathlib.Path, scored: Sequence[Scored]) -> Optional[Dict[str, 
     if not curves:
         return None
     file = out / f"curves-{of.name}.png"
-    pictures.draw(file, (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
+    drawing.draw(file, (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
     areas = ", ".join(f"{one.name} {one.value(ALL, 'average_precision').value:.3f}" for one in scored if one.curves)
     return {"source": embedded(file), "alt": f"Precision over recall at {of.name}; average precision: {areas}.",
             "caption": f"{of.name}, {of.weather}: the mean of the sequences, and one standard error to either side"}
@@ -358,4 +359,4 @@ def _draw_curves(axes, curves: Dict[str, np.ndarray]) -> None:
         if len(values) > 1:
             error = deviation / math.sqrt(len(values))
             axes.fill_between(RECALLS, middle - error, middle + error, color=line.get_color(), alpha=0.2, linewidth=0)
-    pictures.finish(axes, xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))
+    drawing.finish(axes, xlabel="recall", ylabel="precision", xlim=(0.0, 1.0), ylim=(0.0, 1.02))

@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .._cloud import Cloud, field_values, leaves_of, triangles_of
+from ..._cloud import Cloud, field_values, leaves_of, triangles_of
 
 RAYS = 72  # least number of rays to a mover
 

@@ -11,18 +11,20 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Seque
 
 import numpy as np
 
-from .._disk import write_whole
-from .._pipeline import Error
-from .._ranks import as_json
-from .._version import __version__
-from .._writers import as_csv
-from . import _pictures as pictures
+from ..._disk import write_whole
+from ..._pipeline import Error
+from ..._ranks import as_json
+from ..._version import __version__
+from ..._writers import as_csv
+from ..inputs._json import load_json
+from ..inputs._tables import texts
+from ..pages import _drawing as drawing
+from ..pages._html import embedded, render
+from ..pages._words import counted
+from ..places._from_above import draw_airport
 from . import _scores as scores
 from ._following import FALSE, ORIGINS, STATES, VOLUMES, Input
-from ._json import load_json
 from ._scores import Value
-from ._tables import embedded, render, texts
-from ._words import counted
 
 HEIGHTS = (10.0, 30.0, 60.0)  # limits of the bands of a bird's mean height, m
 BANDS = [f"below {HEIGHTS[0]:g} m", *(f"{low:g} to {high:g} m" for low, high in zip(HEIGHTS, HEIGHTS[1:])),
@@ -153,11 +155,11 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
                      for _, volume, of in warnings],
         "pictures": []}
     for kind, name, size, alt, caption, work in _pictures(inputs, results, runways, warned):
-        pictures.draw(out / name, size, work, 4 if kind == "strip" else 1)
+        drawing.draw(out / name, size, work, 4 if kind == "strip" else 1)
         card["pictures"].append({"kind": kind, "file": name, "alt": alt, "caption": caption})
         progress("pictures", len(card["pictures"]), 2 * len(inputs) + 1 + bool(warned))
     write_whole(out / "card.json", as_json(card))
-    write_whole(out / "card.html", render("card.html.jinja", card=shown(out, card)))
+    write_whole(out / "card.html", render("sequences/card.html.jinja", card=shown(out, card)))
     return card
 
 
@@ -242,7 +244,7 @@ def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
     points, origins = np.array(last["points"]).reshape(-1, 3), np.array(last["origins"], int)
     titles = "echoes", "kept by the clutter filter", "confirmed tracks", "birds: tracked (green), not (red)"
     for ax, title in zip(axes, titles):
-        pictures.draw_airport(ax, ground, "0.85")
+        draw_airport(ax, ground, "0.85")
         ax.set_title(title, fontsize=9)
         ax.set_ylabel("m north" if ax is axes[0] else "")
     for ax, chosen in ((axes[0], np.ones(len(points), bool)), (axes[1], ~np.array(last["clutter"], bool))):
@@ -263,7 +265,7 @@ def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
 
 
 def _draw_begin(axes, ground, tracks: Results) -> None:
-    pictures.draw_airport(axes, ground, "0.8")
+    draw_airport(axes, ground, "0.8")
     for name, colour in zip(ORIGINS, COLOURS):
         places = np.array([track["begin"][:2] for track in tracks if track["origin"] == name]).reshape(-1, 2)
         if len(places):
@@ -276,7 +278,7 @@ def _draw_ospa(axes, inputs: Sequence[Input], results: Sequence[Mapping[str, Any
         distances = [[x[0] for x in sequence["ospa"]] for sequence in one.values()]
         values = np.array([*itertools.zip_longest(*distances, fillvalue=math.nan)])
         axes.plot(np.arange(len(values)) / of.sensor.rotation_rate, np.nanmean(values, axis=1), label=of.name)
-    pictures.finish(axes, ylim=(0.0, None), xlabel="s since tracking began", ylabel="OSPA distance, m")
+    drawing.finish(axes, ylim=(0.0, None), xlabel="s since tracking began", ylabel="OSPA distance, m")
 
 
 def _draw_warnings(axes, names: Sequence[str], warned: Warned) -> None:
@@ -287,4 +289,4 @@ def _draw_warnings(axes, names: Sequence[str], warned: Warned) -> None:
                 shares = [np.mean(seconds > 0.0), *(np.mean(seconds >= t) for t in least)]
                 axes.step([0.0, *least], shares, where="pre", linestyle=style, color=f"C{number}",
                           label=f"{name}, {volume} ({counted(len(seconds), 'bird')})")
-    pictures.finish(axes, ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")
+    drawing.finish(axes, ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")

@@ -17,16 +17,16 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import add_array
-from .._pipeline import Error, callers_level, update
-from .._properties import set_properties, unknown
-from .._scene import load_scene
-from ._candidates import ground_of
-from ._geojson import placed
-from ._json import naming
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import add_array
+from ..._pipeline import Error, callers_level, update
+from ..._properties import set_properties, unknown
+from ..._scene import load_scene
+from ..inputs._json import naming
+from ..pages._words import counted
+from ..places._candidates import ground_of
+from ..places._geojson import placed
 from ._logs import FROM_MAP, LEVELS, OUTLIERS, Column, Columns, Log, seconds_of
-from ._words import counted
 
 SCIENTIFIC = {"sturnus vulgaris": "starling", "falco tinnunculus": "kestrel", "columba livia": "pigeon",
               "corvus corone": "crow", "larus argentatus": "herring gull", "branta canadensis": "Canada goose"}

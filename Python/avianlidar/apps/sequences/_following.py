@@ -11,22 +11,23 @@ from typing import Any, Counter, Dict, Iterable, Iterator, List, NamedTuple, Opt
 
 import numpy as np
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import Cloud, add_array, as_numpy
-from .._pipeline import Error, Updates, update
-from .._properties import get_property, property_names, set_properties
-from .._ranks import digest_of_arrays
-from .._scene import Scene, load_scene, mesh
-from .._sensor import Sensor
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import Cloud, add_array, as_numpy
+from ..._pipeline import Error, Updates, update
+from ..._properties import get_property, property_names, set_properties
+from ..._ranks import digest_of_arrays
+from ..._scene import Scene, load_scene, mesh
+from ..._sensor import Sensor
+from ..inputs._json import naming
+from ..inputs._read import read_manifest, read_scenario
+from ..inputs._tables import read_table
+from ..places._geojson import read_runways
+from ..places._regions import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS,
+                               Runway)
 from . import _scores as scores
-from ._json import naming
 from ._labels import FIRST_BIRD, FIRST_OBJECT
-from ._geojson import read_runways
-from ._regions import APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, STRIP_HALF_WIDTH, STRIP_HEIGHTS, Runway
-from ._inputs import read_manifest, read_scenario
 from ._sequence import DONE, _short, content_of
 from ._simulation import STATUSES
-from ._tables import read_table
 
 VOLUMES = ("strip", "glide path")
 NO_BIT = ("number_of_threads", "controller")  # properties that change no result

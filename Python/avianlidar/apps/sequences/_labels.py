@@ -6,8 +6,8 @@ from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Tuple
 
 import numpy as np
 
-from .._pipeline import Error
-from ._json import packaged
+from ..._pipeline import Error
+from ..inputs._json import packaged
 
 BIRD = 99  # default label of birds
 FIRST_OBJECT, FIRST_BIRD, LAST_ID = 1000, 10000, 65534  # ids of movers; labels hold id + 1 in 16 bits
@@ -25,7 +25,7 @@ class Class(NamedTuple):
 # Every class of a sequence, by its id in SemanticKITTI (Documentation/reference/formats.md).
 # Classes to be found come first.
 CLASSES = {int(label): Class(name, here, tuple(color))
-           for label, (name, here, color) in packaged("classes.json").items()}
+           for label, (name, here, color) in packaged("sequences/classes.json").items()}
 
 
 def classes_of(bird: int) -> Dict[int, Class]:

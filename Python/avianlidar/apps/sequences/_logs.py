@@ -14,9 +14,9 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Se
 
 import numpy as np
 
-from .._files import read_regular
-from .._pipeline import Error
-from .._properties import unknown
+from ..._files import read_regular
+from ..._pipeline import Error
+from ..._properties import unknown
 
 # Words of a column's name that change nothing, and units with their size in m or s
 FILLERS = {"gps", "gnss", "location", "position", "pos", "fix", "coordinate", "coord", "decimal", "utc", "gmt"}

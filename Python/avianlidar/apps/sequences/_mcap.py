@@ -14,9 +14,9 @@ from typing import Iterator, List, Sequence, Tuple
 
 import numpy as np
 
-from .._disk import replacing
-from .._files import numbers_of, read_regular
-from .._version import __version__
+from ..._disk import replacing
+from ..._files import numbers_of, read_regular
+from ..._version import __version__
 
 _MAGIC = b"\x89MCAP0\r\n"
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = *range(1, 9), 11, 15

@@ -14,21 +14,21 @@ from typing import Any, Callable, Counter, Dict, List, Optional
 
 import numpy as np
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import Cloud
-from .._disk import only_run, synchronize, write_whole
-from .._files import numbers_of, read_regular
-from .._pipeline import Error, Updates, callers_level
-from .._ranks import Ranks, as_json, digest_of, digest_of_arrays
-from .._version import __version__
-from .._weather import in_words
-from .._writers import as_csv
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import Cloud
+from ..._disk import only_run, synchronize, write_whole
+from ..._files import numbers_of, read_regular
+from ..._pipeline import Error, Updates, callers_level
+from ..._ranks import Ranks, as_json, digest_of, digest_of_arrays
+from ..._version import __version__
+from ..._weather import in_words
+from ..._writers import as_csv
+from ..inputs._json import load_json
+from ..inputs._read import with_files
+from ..pages._words import counted
 from ._boxes import Boxes
-from ._json import load_json
 from ._labels import BIRD, classes_of, configuration, relabel
-from ._inputs import with_files
 from ._simulation import STATUSES, SUBSETS, TRUTH, Simulation
-from ._words import counted
 
 DONE = "done.json"
 PART = ".part"  # suffix of a folder that is being written

@@ -14,20 +14,20 @@ from typing import Any, Dict, Iterator, List, Tuple, Union
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vtkPolyData
 
-from .. import vtkAvianLidar as _wrapped
-from .._cloud import Cloud, add_array, field_values, leaves_of
-from .._numbers import figures
-from .._pipeline import Error, Updates, callers_level, update
-from .._properties import set_properties
-from .._scan import Scan
-from .._scene import Scene, load_scene, mesh, mover
-from .._sensor import Sensor
-from .._weather import in_weather
-from ._air import check_received, scatters
+from ... import vtkAvianLidar as _wrapped
+from ..._cloud import Cloud, add_array, field_values, leaves_of
+from ..._numbers import figures
+from ..._pipeline import Error, Updates, callers_level, update
+from ..._properties import set_properties
+from ..._scan import Scan
+from ..._scene import Scene, load_scene, mesh, mover
+from ..._sensor import Sensor
+from ..._weather import in_weather
+from ..inputs._air import check_received, scatters
+from ..inputs._json import naming
+from ..inputs._read import checked, read_scenario
 from ._flights import FAR, SETTINGS, Flights, least_distance, origin_of, read_flights
-from ._json import naming
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of
-from ._inputs import checked, read_scenario
 from ._logs import as_time, seconds_of
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
@@ -219,7 +219,7 @@ class Simulation:
         off, count = flights.within(self.sensor.position, self.sensor.range_gate, end)
         if count == 0 or any(self.sensor.orientation[1:]):
             return
-        from ..reach import band
+        from ...reach import band
         lowest, highest = band(self.at_rest)
         away = np.maximum(np.linalg.norm(off, axis=1), 1e-3)
         up, size = np.degrees(np.arcsin(np.clip(off[:, 2] / away, -1.0, 1.0))), np.degrees(np.minimum(SPAN / away, 1.0))

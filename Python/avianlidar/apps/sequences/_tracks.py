@@ -10,23 +10,23 @@ from typing import Any, Callable, Dict, Optional, Sequence as Many, Union
 
 import numpy as np
 
-from .. import vtkAvianLidar as _wrapped
-from .._disk import only_run, write_whole
-from .._files import checked_name
-from .._pipeline import Error
-from .._properties import in_snake_case
-from .._ranks import Ranks, as_json
-from .._sensor import Sensor
-from .._version import __version__
-from .._weather import without_air
+from ... import vtkAvianLidar as _wrapped
+from ..._disk import only_run, write_whole
+from ..._files import checked_name
+from ..._pipeline import Error
+from ..._properties import in_snake_case
+from ..._ranks import Ranks, as_json
+from ..._sensor import Sensor
+from ..._version import __version__
+from ..._weather import without_air
+from ..inputs._json import load_json, naming
+from ..inputs._read import read_scenario
+from ..pages._words import counted
+from ..places._regions import Runway
 from . import _scores as scores
 from ._card import write_card
 from ._following import Chain, Input, origin_of, read_truth, score
-from ._json import load_json, naming
-from ._regions import Runway
-from ._inputs import read_scenario
 from ._sequence import Sequence, _identity, _short
-from ._words import counted
 
 CUTOFF = 20.0  # m: a track at this distance from a bird is not assigned to the bird
 ORDER = 2.0  # order of OSPA
