@@ -113,7 +113,7 @@ FAULTS = [Fault(*fault) for fault in (
     ("panel_command", "a wrong command in a panel", "Plugin-TestProxies$",
      "Plugin/IO/AvianLidarPointCloudReader.xml", 'name="SensorAddress"', 'name="SensorAddress" command="SetFileName"'),
     ("exchanged_arrays", "an exchanged array name", "Python-Test(EchoFiles|Glossary|PCD|EchoPipeline)$|Cxx-TestEchoFilter",
-     "Filters/Private/Common/vtkAvianLidarNames.h", 'constexpr Name EnergyReceived{ "energy_received"',
+     "Filters/Private/Arrays/vtkAvianLidarNames.h", 'constexpr Name EnergyReceived{ "energy_received"',
      'constexpr Name EnergyReceived{ "energy_recieved"'),
 )]
 
