@@ -5,9 +5,10 @@
     Testing/Faults/faults.py build/paraview -o faults.csv                # all: half an hour
     Testing/Faults/faults.py build/paraview --only rain_half --suite     # one, against the whole suite of Testing/run.sh
 
-Each fault names the tests that should see it. Faults whose tests differ are planted at the same time, so that five builds serve all: it patches
-source files, builds, runs these tests, and restores the files. A fault that does not compile, or whose text is not found exactly once, is an
-error. A row of the table: fault, kind, layer, the number of tests that fail, their names."""
+Each fault names the tests that should see it. Faults whose tests differ are planted at the same time, so that five
+builds serve all: it patches source files, builds, runs these tests, and restores the files. A fault that does not
+compile, or whose text is not found exactly once, is an error. A row of the table: fault, kind, layer, the number of
+tests that fail, their names."""
 import argparse
 import collections
 import csv
@@ -123,7 +124,8 @@ def layer(fault):
 
 
 def ctest(build, *arguments, left_out="bare|install"):
-    return subprocess.run(["ctest", "--test-dir", build, "-LE", left_out, *arguments], capture_output=True, text=True, check=False).stdout
+    return subprocess.run(["ctest", "--test-dir", build, "-LE", left_out, *arguments], capture_output=True, text=True,
+                          check=False).stdout
 
 
 def failing(build, names):
@@ -139,7 +141,8 @@ def groups(faults, tests):
     packed = []
     for fault in faults:
         for group in packed:
-            if len(group) < 8 and all(fault.file != other.file and not tests[fault.name] & tests[other.name] for other in group):
+            if len(group) < 8 and all(fault.file != other.file and not tests[fault.name] & tests[other.name]
+                                      for other in group):
                 group.append(fault)
                 break
         else:
@@ -150,9 +153,11 @@ def groups(faults, tests):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="a build folder of this source, with tests")
-    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path("faults.csv"), help="table, to which rows are added")
+    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path("faults.csv"),
+                        help="table, to which rows are added")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="faults; default: all")
-    parser.add_argument("--suite", action="store_true", help="run the whole suite for each, one fault at a time; default: the tests that each names")
+    parser.add_argument("--suite", action="store_true",
+                        help="run the whole suite for each, one fault at a time; default: the tests that each names")
     parser.add_argument("--short", action="store_true", help="only tests of Testing/run.sh")
     parser.add_argument("--list", action="store_true", help="only list them, and check that each text is there once")
     options = parser.parse_args()

@@ -4,9 +4,9 @@
 
     Testing/Faults/pictures.py build/paraview -o pictures.csv     # three builds and four turns of the image tests
 
-Each change patches source files, which are restored at the end. The exit code is 1 if a baseline does not show a change that can
-occur in it. Testing/Python/TestPictures.py plants hues and shifts. A row of the table: change, baseline, image error, whether the
-change can occur in the picture."""
+Each change patches source files, which are restored at the end. The exit code is 1 if a baseline does not show a change
+that can occur in it. Testing/Python/TestPictures.py plants hues and shifts. A row of the table: change, baseline, image
+error, whether the change can occur in the picture."""
 import argparse
 import csv
 import os
@@ -17,37 +17,39 @@ import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
-MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text(encoding="utf-8"), re.M)[1])
+MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text(encoding="utf-8"),
+                       re.M)[1])
 TESTS = "TestExamplePictures|TestImage|Plugin-Test(Pipeline|Macros-more)$"
 ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline)"
 OUTPUT, SCAN = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/Scan.cxx"
 BAR, NOTHING = "axes.figure.colorbar(", "(lambda *_, **__: None)("
 # Name, baselines in which it can occur, and for each file what is replaced by what.
-CHANGES = (
-    ("nothing", "^$", ()),
-    ("energies times 0.9", ENERGIES, (
-        (OUTPUT, "{ return all[i].energy; }", "{ return 0.9 * all[i].energy; }"),
-        (OUTPUT, "{ return all[i].energyReceived; }", "{ return 0.9 * all[i].energyReceived; }"))),
-    ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds|^TestImageRange", (
-        (SCAN, "      block.beamOfEcho.resize(block.echoes.size(), b);\n",
-         "      block.echoes.resize(b % 10 == 0 ? block.beamOfEcho.size() : block.echoes.size());\n"
-         "      block.beamOfEcho.resize(block.echoes.size(), b);\n"),)),
-    ("a missing legend", ".", (
-        ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
-        ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
-        ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
-        ("Plugin/Macros/avian_lidar_coverage.py", "SetScalarBarVisibility(view, True)", "SetScalarBarVisibility(view, False)"),
-        ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
-        ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
-        ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
+CHANGES = (("nothing", "^$", ()), (
+               "energies times 0.9", ENERGIES, (
+                   (OUTPUT, "{ return all[i].energy; }", "{ return 0.9 * all[i].energy; }"),
+                   (OUTPUT, "{ return all[i].energyReceived; }", "{ return 0.9 * all[i].energyReceived; }"))),
+           ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds|^TestImageRange",
+            ((SCAN, "      block.beamOfEcho.resize(block.echoes.size(), b);\n",
+              "      block.echoes.resize(b % 10 == 0 ? block.beamOfEcho.size() : block.echoes.size());\n      "
+              "block.beamOfEcho.resize(block.echoes.size(), b);\n"),)),
+           ("a missing legend", ".", (
+                ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
+                ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
+                ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
+                ("Plugin/Macros/avian_lidar_coverage.py", "SetScalarBarVisibility(view, True)",
+                 "SetScalarBarVisibility(view, False)"),
+                ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
+                ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
+                ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
 
 
 def drawn(build):
     """{baseline: image error} of all pictures, drawn by the tests."""
     file = pathlib.Path(build) / "pictures.txt"
     file.unlink(missing_ok=True)
-    subprocess.run([SOURCE / "Testing/run_ctest.sh", build, "-R", TESTS], env={**os.environ, "AVIANLIDAR_PICTURES": str(file.resolve())},
-                   stdout=subprocess.DEVNULL, check=False)
+    subprocess.run([SOURCE / "Testing/run_ctest.sh", build, "-R", TESTS],
+                   env={**os.environ, "AVIANLIDAR_PICTURES": str(file.resolve())}, stdout=subprocess.DEVNULL,
+                   check=False)
     rows = [line.rsplit(" ", 1) for line in file.read_text(encoding="utf-8").splitlines()]
     return {name: float(error) for name, error in rows}
 
@@ -73,7 +75,8 @@ def main():
             for file, text in texts.items():
                 file.write_text(text, encoding="utf-8")
         if set(errors) != baselines:
-            sys.exit(f"{name}: no picture of {sorted(baselines - set(errors))}, no baseline of {sorted(set(errors) - baselines)}")
+            sys.exit(f"{name}: no picture of {sorted(baselines - set(errors))}, no baseline of "
+                     f"{sorted(set(errors) - baselines)}")
         for baseline, error in sorted(errors.items()):
             occurs = bool(re.search(where, baseline))
             wrong = error <= MOST if occurs else name == "nothing" and error > MOST

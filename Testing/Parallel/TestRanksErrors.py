@@ -171,12 +171,15 @@ def test_settings_of_every_filter():
         return made
 
     cases = [(lambda: filter_of("ClutterFilter", cloud()), (
-                 ("Window", 9.0), ("ClutterThreshold", 0.5), ("RangeStep", 3.0), ("AzimuthStep", 1.0), ("ElevationStep", 1.0),
-                 ("RangeTolerance", 3), ("AngularTolerance", 4), ("WarmUp", 7))),
+                  ("Window", 9.0), ("ClutterThreshold", 0.5), ("RangeStep", 3.0), ("AzimuthStep", 1.0),
+                  ("ElevationStep", 1.0), ("RangeTolerance", 3), ("AngularTolerance", 4), ("WarmUp", 7))),
              (lambda: filter_of("ClutterFilter", cloud()), (("InputData", cloud(position=(1.0, 2.0, 3.5))),)),
-             (lambda: filter_of("Tracker", cloud()), (("ClusterDistance", 3.0), ("MotionModel", 0), ("SensorPosition", (1.0, 0.0, 0.0)))),
-             (lambda: filter_of("Tracker", cloud()), (("InputData", cloud(position=(1.0, 2.0, 3.5))), ("InputData", cloud(time=2.0)))),
-             (lambda: filter_of("CollisionTree", TOWN), (("SplitRule", 1), ("BoundingVolume", 1), ("MaximumLeafSize", 9), ("Preset", 1))),
+             (lambda: filter_of("Tracker", cloud()),
+              (("ClusterDistance", 3.0), ("MotionModel", 0), ("SensorPosition", (1.0, 0.0, 0.0)))),
+             (lambda: filter_of("Tracker", cloud()),
+              (("InputData", cloud(position=(1.0, 2.0, 3.5))), ("InputData", cloud(time=2.0)))),
+             (lambda: filter_of("CollisionTree", TOWN),
+              (("SplitRule", 1), ("BoundingVolume", 1), ("MaximumLeafSize", 9), ("Preset", 1))),
              (lambda: echotools.scan(TOWN, beams, **SETTINGS), (("ReportMovers", False),)),
              (image, (("Columns", 40), ("Rows", 2)))]
     for make, settings in cases:
@@ -187,9 +190,11 @@ def test_settings_of_every_filter():
             before = made.GetInputDataObject(0, 0) if of_data else getattr(made, "Get" + name)()
             getattr(made, "Set" + name)(mine(before, value))
             update(made)
-            words = "position" if of_data and made.IsA("vtkAvianLidarClutterFilter") else "different times, positions" if of_data else name
+            words = "position" if of_data and made.IsA(
+                "vtkAvianLidarClutterFilter") else "different times, positions" if of_data else name
             for heard in heard_by_all(messages):
-                assert words in heard and (of_data or "expected the same on all ranks" in heard), (made.GetClassName(), name, heard)
+                assert words in heard and (
+                    of_data or "expected the same on all ranks" in heard), (made.GetClassName(), name, heard)
             assert not made.GetOutputDataObject(0).GetNumberOfElements(vtk.vtkDataObject.POINT)
             getattr(made, "Set" + name)(before)
             made.Modified()
@@ -209,7 +214,8 @@ def test_a_rank_without_points_learns_clutter():
             filter_.SetInputData(data)
             yield filter_
 
-    for serial, together in zip(played(slice(None)), played(slice(0, 0) if RANK == 0 and RANKS > 1 else slice(RANK - 1, None, max(1, RANKS - 1)))):
+    for serial, together in zip(played(slice(None)), played(slice(0, 0) if RANK == 0 and RANKS > 1
+                                                            else slice(RANK - 1, None, max(1, RANKS - 1)))):
         serial.SetController(None)
         serial.Update()
         update(together)

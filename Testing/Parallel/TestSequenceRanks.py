@@ -23,7 +23,8 @@ class Ranks(unittest.TestCase):
         done = on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "made")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads((home / "made" / "manifest.json").read_text())["sequences"], wanted)
-        self.assertEqual({path.name for path in (home / "made").iterdir()}, {"datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"})
+        self.assertEqual({path.name for path in (home / "made").iterdir()},
+                         {"datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"})
         al.BirdTracks([home / "made"], learning_scans=1).write(home / "tracks")
         done = on_ranks("-m", "avianlidar", "track", home / "made", "-o", home / "together", "--learn", "1")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -38,8 +39,8 @@ class Ranks(unittest.TestCase):
         self.assertIn("Species is 'dodo'", done.stderr)
 
     def test_ranks_that_would_write_different_things_write_nothing(self):
-        """Scenarios of other seeds or numbers of scans, learned scans, places, a folder that another run has and one that no rank can lock: an
-        error on all ranks in a script of one's own, and nobody waits."""
+        """Scenarios of other seeds or numbers of scans, learned scans, places, a folder that another run has and one
+        that no rank can lock: an error on all ranks in a script of one's own, and nobody waits."""
         home = emptied("sequence", "ranks-differ")
         file = one.scenario_file(home, scans_per_sequence=1, number_of_scans=2, birds=[])
         al.Sequence(file).write(home / "made")
@@ -69,7 +70,8 @@ for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out), l
         for rank in range(2):
             heard = (home / f"heard{rank}.txt").read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(heard), 6, heard)
-            for k, words in enumerate(4 * ("the ranks would write different files",) + ("another run writes there", "")):
+            for k, words in enumerate(4 * ("the ranks would write different files",)
+                                      + ("another run writes there", "")):
                 self.assertIn(words, heard[k])
                 self.assertIn(str(home / f"out{k}"), heard[k])
         self.assertEqual([path for k in range(4) for path in (home / f"out{k}").rglob("*") if path.is_file()], [])

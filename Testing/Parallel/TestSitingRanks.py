@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sites and designs that two ranks share are those of one process; what one rank raises ends or reaches the others. Arguments: mpiexec,
-pvbatch."""
+"""Sites and designs that two ranks share are those of one process; what one rank raises ends or reaches the others.
+Arguments: mpiexec, pvbatch."""
 
 import json
 import sys
@@ -16,7 +16,8 @@ TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicke
 def few(folder, verb="siting", **parts):
     """The airport's plan with few places, candidates and designs. @param parts further parts of it"""
     plan = json.loads((PLAN if verb == "siting" else DESIGN).read_text(encoding="utf-8"))
-    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[], places=50, coverage=TARGET)
+    plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[],
+                places=50, coverage=TARGET)
     plan.update(parts)
     if verb == "siting":
         plan["siting"].update(spacing=800, bounds=[-1200, 1600, -1200, 1200], masts=[5], draws=0, sensors=2)
@@ -33,8 +34,10 @@ class Ranks(unittest.TestCase):
     def test_share_sites_and_designs(self):
         """In the weathers of a year; half is lost, and the ranks go on."""
         year = [{"weather": ["haze:20000"], "share": 0.75}, {"weather": ["fog:700", "rain:5"], "share": 0.25}]
-        for verb, parts, names in (("siting", {"year": year}, ("sites.csv", "sites.geojson", "sites.vtp", "gain.csv", "sites.png")),
-                                   ("design", {"coverage": {**TARGET, "number_of_scans": 2}}, ("design.csv", "sensitivities.csv", "front.png", "design.html"))):
+        for verb, parts, names in (("siting", {"year": year},
+                                    ("sites.csv", "sites.geojson", "sites.vtp", "gain.csv", "sites.png")),
+                                   ("design", {"coverage": {**TARGET, "number_of_scans": 2}},
+                                    ("design.csv", "sensitivities.csv", "front.png", "design.html"))):
             alone, together = fresh("TestSitingRanks", f"{verb}-alone"), fresh("TestSitingRanks", f"{verb}-together")
             done = run(sys.executable, *few(alone, verb, **parts))
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -47,7 +50,8 @@ class Ranks(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             for name in names:
                 self.assertEqual((alone / "out" / name).read_bytes(), (together / "out" / name).read_bytes(), name)
-            self.assertEqual({file.name: file.read_bytes() for file in (together / "out" / "coverage").iterdir()}, wanted)
+            self.assertEqual({file.name: file.read_bytes() for file in (together / "out" / "coverage").iterdir()},
+                             wanted)
 
     def test_an_error_in_the_work_ends_the_job_at_once(self):
         """The other rank would be at its own site for half an hour."""

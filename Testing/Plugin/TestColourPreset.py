@@ -42,7 +42,8 @@ def test_plugin_brings_the_presets():
     """Once, though it is loaded twice."""
     presets = servermanager.vtkSMTransferFunctionPresets.GetInstance()
     names = [presets.GetPresetName(i) for i in range(presets.GetNumberOfPresets())]
-    assert all(names.count(preset) == 1 for preset in (PRESET, "Avian lidar status", "Avian lidar coverage status")), names
+    assert all(names.count(preset) == 1
+               for preset in (PRESET, "Avian lidar status", "Avian lidar coverage status")), names
 
 
 def test_macro():

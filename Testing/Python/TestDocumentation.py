@@ -70,7 +70,8 @@ class Presets(unittest.TestCase):
     def setUpClass(cls):
         head, *rows = page_tables.rows("presets")
         cls.cells = {row[0]: dict(zip((name.strip("`") for name in head[1:]), row[1:])) for row in rows}
-        cls.text = {file: " ".join((SOURCE / file).read_text(encoding="utf-8").replace("///", " ").replace("%%", "%").split())
+        cls.text = {file: " ".join((SOURCE / file).read_text(
+                                       encoding="utf-8").replace("///", " ").replace("%%", "%").split())
                     for file in ("Filters/vtkAvianLidarScanFilter.h", "Plugin/Filters/AvianLidarEchoFilter.xml",
                                  "Python/avianlidar/_command.py", "Documentation/guide/accuracy.md")}
 
@@ -91,15 +92,16 @@ class Presets(unittest.TestCase):
             outdoors = [[float(part.split()[0].lstrip("≤")) for part in cells[preset].split(", ")]
                         for place, cells in self.cells.items() if not place.startswith("corridor")]
             for span, part in ((spans[0], 0), (spans[1], 2)):
-                for said, true in zip(re.findall(r"[\d.]+", span), (min(c[part] for c in outdoors), max(c[part] for c in outdoors))):
+                for said, true in zip(re.findall(r"[\d.]+", span),
+                                      (min(c[part] for c in outdoors), max(c[part] for c in outdoors))):
                     digits = len(said.partition(".")[2])
                     self.assertLessEqual(abs(float(said) - true), 0.5001 * 10**-digits, (preset, span, true))
             self.assertEqual(spans[2].strip(), self.cells["airport, Airport16"][preset].split(", ")[1], preset)
 
 
 class Paper(unittest.TestCase):
-    """The page of the paper's claims has a row for every equation, figure, table and algorithm, verdicts and numbers that agree with
-    the tables, and names tests that exist."""
+    """The page of the paper's claims has a row for every equation, figure, table and algorithm, verdicts and numbers
+    that agree with the tables, and names tests that exist."""
 
     @classmethod
     def setUpClass(cls):

@@ -73,4 +73,5 @@ class Installed(unittest.TestCase):
             self.assertGreater(len(beside), 8)
             for one in beside:
                 installed = PREFIX / one.relative_to(BUILD)
-                self.assertTrue(installed.exists() and (one == file or installed.read_bytes() == one.read_bytes()), installed)
+                self.assertTrue(installed.exists() and (one == file or installed.read_bytes() == one.read_bytes()),
+                                installed)

@@ -13,8 +13,8 @@ from avianlidar._cloud import field_values
 from echotools import CELLS, RAYS
 from needstools import BEAM, BEYOND, Found, airport_filters, compare_units, corridor_filter, needed_and_full
 
-NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths", "note_small_objects",
-         "note_detail_between_rays", "note_planes", "note_perceivable_range")
+NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths",
+         "note_small_objects", "note_detail_between_rays", "note_planes", "note_perceivable_range")
 TOWN = echotools.town(count=20)
 
 
@@ -29,7 +29,8 @@ class ModelNeeds(unittest.TestCase):
         largest = lower / pulse * math.exp(2.0 * f["attenuation_coefficient"] * f["perceivable_range"])
         self.assertEqual(f["rays_per_beam"], 100)
         rays = 100 if f["beam_samples"] == RAYS else 1024 * math.pi  # of the grid
-        self.assertAlmostEqual(f["missed_detail_energy"] / (pulse * largest * (1.0 - 0.05 ** (1.0 / rays))), 1.0, places=6)
+        self.assertAlmostEqual(f["missed_detail_energy"] / (pulse * largest * (1.0 - 0.05 ** (1.0 / rays))), 1.0,
+                               places=6)
         self.assertTrue(0.1 < largest <= 1.0)
 
     def test_full_model_is_within_the_bounds(self):
@@ -97,7 +98,8 @@ def notes_of(echo, port=0):
 
 class ModelNotes(unittest.TestCase):
     def test_numbers_are_those_of_the_fields(self):
-        echo = echotools.scan(TOWN, echotools.given(echotools.sensor(), LowerEnergyLimit=7e-6), LightEnergyFraction=0.25)
+        echo = echotools.scan(TOWN, echotools.given(echotools.sensor(), LowerEnergyLimit=7e-6),
+                              LightEnergyFraction=0.25)
         notes = notes_of(echo)
         self.assertEqual((tuple(notes), notes_of(echo, 1)), (NOTES, notes))
         found = field_values(echo.GetOutput())

@@ -31,7 +31,8 @@ class Notebook(unittest.TestCase):
 
     def test_what_it_says(self):
         self.assertGreater(int(re.match(r"(\d+) echoes", self.said["scan"])[1]), 1400)
-        haze = [(int(echoes), int(rays)) for echoes, rays in re.findall(r"(\d+) echoes, (\d+) rays traced", self.said["haze"])]
+        haze = [(int(echoes), int(rays))
+                for echoes, rays in re.findall(r"(\d+) echoes, (\d+) rays traced", self.said["haze"])]
         # A fresh scan traces thousands; lit again, few paths that were left out before are.
         self.assertTrue(all(rays < 1000 for _, rays in haze), haze)
         self.assertEqual(haze, sorted(haze, key=lambda one: one[0], reverse=True))

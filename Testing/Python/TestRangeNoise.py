@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Noise of ranges against an independent Monte Carlo of the sampled waveform (pulse, noise in each range unit, threshold,
-centroid of the strongest unit and its larger neighbour). Places of false alarms are TestReceiver's (kernel)."""
+"""Noise of ranges against an independent Monte Carlo of the sampled waveform (pulse, noise in each range unit,
+threshold, centroid of the strongest unit and its larger neighbour). Places of false alarms are TestReceiver's
+(kernel)."""
 import unittest
 
 import numpy as np
@@ -32,7 +33,8 @@ def waveform(electrons, threshold, count, seed):
 
 
 def scan(places, electrons, **settings):
-    """Echoes of a wall that gives so many electrons to beams which begin at these places, m before and behind the middle."""
+    """Echoes of a wall that gives so many electrons to beams which begin at these places, m before and behind the
+    middle."""
     corners = [(WALL, -0.5, -50), (WALL, 0.5, -50), (WALL, 0.5, 50), (WALL, -0.5, 50)]
     wall = al.Scene(corners, [(0, 1, 2), (0, 2, 3)], material=(0.3, 0, 1))
     bright = PER_JOULE * 3.6e-4 * 0.3 * 0.0078539816 / (np.pi * WALL**2)  # electrons

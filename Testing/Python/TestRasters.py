@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rasters of heights that are not what they seem: holes, bands and pictures, files that lead to servers, files that declare more
-than they hold, coordinates that PROJ does not know well; and how far the scene's ground is from the file's heights."""
+"""Rasters of heights that are not what they seem: holes, bands and pictures, files that lead to servers, files that
+declare more than they hold, coordinates that PROJ does not know well; and how far the scene's ground is from the file's
+heights."""
 import os
 import pathlib
 import re
@@ -33,7 +34,8 @@ HOLE = (slice(140, 160), slice(140, 160))
 gdal.UseExceptions()
 
 
-def write(name, *bands, kind=gdal.GDT_Float32, spacing=10.0, system=None, low=(-1500.0, -1500.0), driver="GTiff", colours=(), options=(), **settings):
+def write(name, *bands, kind=gdal.GDT_Float32, spacing=10.0, system=None, low=(-1500.0, -1500.0), driver="GTiff",
+          colours=(), options=(), **settings):
     """A raster about HERE, rows from south to north. @param settings of the bands, one value for each"""
     FOLDER.mkdir(parents=True, exist_ok=True)
     rows, columns = bands[0].shape
@@ -69,11 +71,14 @@ class Values(unittest.TestCase):
     def test_holes_of_an_alpha_band_and_of_a_mask(self):
         holed = SLOPE.copy()
         holed[HOLE] = 0.0
-        for kind, full in ((gdal.GDT_Float32, 255), (gdal.GDT_Float32, 1), (gdal.GDT_UInt16, 65535), (gdal.GDT_Int16, 255)):
+        for kind, full in ((gdal.GDT_Float32, 255), (gdal.GDT_Float32, 1), (gdal.GDT_UInt16, 65535),
+                           (gdal.GDT_Int16, 255)):
             alpha = np.full(SLOPE.shape, full)
             alpha[HOLE] = 0
-            self.assert_filled(write("alpha.tif", holed, alpha, kind=kind, colours=(gdal.GCI_GrayIndex, gdal.GCI_AlphaBand)), (kind, full))
-            self.assert_filled(write("first.tif", alpha, holed, kind=kind, colours=(gdal.GCI_AlphaBand, gdal.GCI_Undefined)), (kind, full))
+            self.assert_filled(write("alpha.tif", holed, alpha, kind=kind,
+                                     colours=(gdal.GCI_GrayIndex, gdal.GCI_AlphaBand)), (kind, full))
+            self.assert_filled(write("first.tif", alpha, holed, kind=kind,
+                                     colours=(gdal.GCI_AlphaBand, gdal.GCI_Undefined)), (kind, full))
         gdal.Translate(str(FOLDER / "alpha.vrt"), str(FOLDER / "alpha.tif"))
         self.assert_filled(FOLDER / "alpha.vrt", "of a mosaic")
         with gdal.config_option("GDAL_TIFF_INTERNAL_MASK", "NO") if hasattr(gdal, "config_option") else quiet():
@@ -87,20 +92,24 @@ class Values(unittest.TestCase):
     def test_customary_values_of_holes_in_any_unit(self):
         """32767 in dm and cm, and others, are no heights; their neighbours are."""
         units = {"m": 1.0, "ft": 0.3048, "dm": 0.1, "cm": 0.01, "mm": 0.001}
-        for (unit, metres), value in ((one, value) for one in units.items() for value in (32767, -32768, -32767, -9999, 9999, 65535, 99999)):
+        for (unit, metres), value in ((one, value) for one in units.items()
+                                      for value in (32767, -32768, -32767, -9999, 9999, 65535, 99999)):
             holed = np.round(SLOPE / metres)
             holed[HOLE] = value
             self.assert_filled(write("unit.tif", holed, kind=gdal.GDT_Int32, UnitType=[unit]), (unit, value))
         level = np.full(SLOPE.shape, 32766)
-        self.assertAlmostEqual(read(write("near.tif", level, kind=gdal.GDT_Int16, UnitType=["cm"]))[0].here, 327.66, delta=1e-9)
-        self.assertAlmostEqual(read(write("near.tif", level, kind=gdal.GDT_Int16, Scale=[0.01], Offset=[-300.0]))[0].here, 27.66, delta=1e-9)
+        self.assertAlmostEqual(read(write("near.tif", level, kind=gdal.GDT_Int16, UnitType=["cm"]))[0].here, 327.66,
+                               delta=1e-9)
+        self.assertAlmostEqual(read(write("near.tif", level, kind=gdal.GDT_Int16, Scale=[0.01],
+                                          Offset=[-300.0]))[0].here, 27.66, delta=1e-9)
         with self.assertRaisesRegex(al.Error, "holds no heights"):
             read(write("all.tif", level + 1, kind=gdal.GDT_Int16, UnitType=["dm"]))
 
     def test_the_band_of_heights(self):
         """By names of bands, as BAG's; no picture, whatever its bits."""
         other = np.full(SLOPE.shape, 0.5)
-        for names, at in ((("elevation", "uncertainty"), 0), (("uncertainty", "elevation"), 1), (("Uncertainty", ""), 1), (("", "standard deviation of height"), 0),
+        for names, at in ((("elevation", "uncertainty"), 0), (("uncertainty", "elevation"), 1),
+                          (("Uncertainty", ""), 1), (("", "standard deviation of height"), 0),
                           (("density", "Vertical Uncertainty", "depth"), 2), (("B1", ""), 1), (("", ""), 0)):
             bands = [SLOPE if number == at else other for number in range(len(names))]
             found, said = read(write("named.tif", *bands, Description=names))
@@ -111,17 +120,23 @@ class Values(unittest.TestCase):
         table = gdal.ColorTable()
         table.SetColorEntry(50, (1, 2, 3, 255))
         sixteen, eight = {"kind": gdal.GDT_UInt16}, {"kind": gdal.GDT_Byte}
-        for count, said, settings in ((3, r"colours \(Red\) of UInt16 in 3 bands", {**sixteen, "colours": colours}), (4, "colours", {**sixteen, "colours": colours}),
-                                      (1, "a palette of UInt16 in 1 band,", {**sixteen, "ColorTable": [table]}), (3, "numbers of UInt16", {**sixteen, "colours": (gray, undefined, undefined)}),
-                                      (1, "colours", {"colours": colours[1:2]}), (1, "bytes in 1 band", eight), (2, "bytes", {**eight, "colours": (gray, colours[3])}),
-                                      (1, "complex numbers", {"kind": gdal.GDT_CFloat32}), (1, "classes of Int16", {"kind": gdal.GDT_Int16, "CategoryNames": [["a", "b"]]}),
-                                      (3, "holds B2, B3, B4, expected one band of heights", {"Description": ["B2", "B3", "B4"]}),
+        for count, said, settings in ((3, r"colours \(Red\) of UInt16 in 3 bands", {**sixteen, "colours": colours}),
+                                      (4, "colours", {**sixteen, "colours": colours}),
+                                      (1, "a palette of UInt16 in 1 band,", {**sixteen, "ColorTable": [table]}),
+                                      (3, "numbers of UInt16", {**sixteen, "colours": (gray, undefined, undefined)}),
+                                      (1, "colours", {"colours": colours[1:2]}), (1, "bytes in 1 band", eight),
+                                      (2, "bytes", {**eight, "colours": (gray, colours[3])}),
+                                      (1, "complex numbers", {"kind": gdal.GDT_CFloat32}),
+                                      (1, "classes of Int16", {"kind": gdal.GDT_Int16, "CategoryNames": [["a", "b"]]}),
+                                      (3, "holds B2, B3, B4, expected one band of heights",
+                                       {"Description": ["B2", "B3", "B4"]}),
                                       (1, "holds uncertainty, expected", {"Description": ["uncertainty"]})):
             with self.assertRaisesRegex(al.Error, said):
                 read(write("picture.tif", *[SLOPE] * count, **settings))
 
     def test_the_ground_is_compared_with_the_file(self):
-        """At posts that are far apart, the difference that is said is that of the triangles' heights at the file's posts."""
+        """At posts that are far apart, the difference that is said is that of the triangles' heights at the file's
+        posts."""
         random = np.random.default_rng(3)
         for spacing, count in ((300.0, 11), (10.0, 301)):
             rough = 50 + random.normal(0.0, 20.0, (count, count))
@@ -134,8 +149,9 @@ class Values(unittest.TestCase):
             inside = np.abs(low + spacing * np.arange(count)) <= 1000.0
             places = np.array([(east, north) for north in x for east in x])
             off = ground(places) - rough[np.ix_(inside, inside)].ravel() + _ground.curvature(HERE, *places.T)
-            rms, most, posts = (float(text.replace(",", "")) for text in
-                                re.search(r"by ([\d.]+) m rms and by at most ([\d.]+) m at its ([\d,]+) posts", words).groups())
+            rms, most, posts = (float(text.replace(",", ""))
+                                for text in re.search(r"by ([\d.]+) m rms and by at most ([\d.]+) m at its ([\d,]+) "
+                                                      r"posts", words).groups())
             self.assertEqual(posts, len(x) ** 2)
             self.assertAlmostEqual(rms / np.sqrt(np.mean(off * off)), 1.0, delta=0.06)
             self.assertAlmostEqual(most / np.abs(off).max(), 1.0, delta=0.06)
@@ -158,9 +174,11 @@ class Values(unittest.TestCase):
         self.assertAlmostEqual(whole.posts.std(), 0.26, delta=0.06)
 
     def test_the_accuracy_of_coordinates(self):
-        """PROJ without the grid of the British National Grid: 2 m; unknown for a datum without a name; none to speak of for UTM."""
-        for code, origin, said in ((27700, (52.0, -1.0, 0.0), r"PROJ transforms OSGB.* to WGS84 is (2|1\.5) m"), (32633, HERE, ""),
-                                   ("+proj=tmerc +lat_0=53.6 +lon_0=13.3 +ellps=bessel +units=m", HERE, "is unknown here")):
+        """PROJ without the grid of the British National Grid: 2 m; unknown for a datum without a name; none to speak of
+        for UTM."""
+        for code, origin, said in ((27700, (52.0, -1.0, 0.0), r"PROJ transforms OSGB.* to WGS84 is (2|1\.5) m"),
+                                   (32633, HERE, ""), ("+proj=tmerc +lat_0=53.6 +lon_0=13.3 +ellps=bessel +units=m",
+                                                       HERE, "is unknown here")):
             system = osr.SpatialReference()
             system.SetFromUserInput(code if isinstance(code, str) else f"EPSG:{code}")
             system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
@@ -204,9 +222,8 @@ class Server:
 
 
 def mosaic(source, more="", srs="EPSG:4326", start="", relative=0):
-    return (f'<VRTDataset rasterXSize="100" rasterYSize="100">{start}<SRS>{srs}</SRS><GeoTransform>13.2,.002,0,53.7,0,-.002</GeoTransform>'
-            f'<VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="{relative}">{source}</SourceFilename>'
-            f'<SourceBand>1</SourceBand></SimpleSource>{more}</VRTRasterBand></VRTDataset>')
+    return ('<VRTDataset rasterXSize="100" '
+            f'rasterYSize="100">{start}<SRS>{srs}</SRS><GeoTransform>13.2,.002,0,53.7,0,-.002</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="{relative}">{source}</SourceFilename><SourceBand>1</SourceBand></SimpleSource>{more}</VRTRasterBand></VRTDataset>')
 
 
 class Files(unittest.TestCase):
@@ -228,9 +245,10 @@ class Files(unittest.TestCase):
         """Whatever the suffix: mosaics, services, what lies beside a raster or in its metadata, systems, maps."""
         server, good = Server(), write("good.tif", SLOPE)
         url = server.url
-        remote, service = f"/vsicurl/{url}/x.tif", (f'<GDAL_WMS><Service name="TMS"><ServerUrl>{url}/${{z}}/${{x}}/${{y}}</ServerUrl></Service><DataWindow><UpperLeftX>13'
-                                                    '</UpperLeftX><UpperLeftY>54</UpperLeftY><LowerRightX>14</LowerRightX><LowerRightY>53</LowerRightY><SizeX>99</SizeX>'
-                                                    '<SizeY>99</SizeY></DataWindow><Projection>EPSG:4326</Projection><BandsCount>1</BandsCount></GDAL_WMS>')
+        remote, service = f"/vsicurl/{url}/x.tif", (
+            '<GDAL_WMS><Service '
+            f'name="TMS"><ServerUrl>{url}/${{z}}/${{x}}/${{y}}</ServerUrl></Service><DataWindow><UpperLeftX>13'
+            '</UpperLeftX><UpperLeftY>54</UpperLeftY><LowerRightX>14</LowerRightX><LowerRightY>53</LowerRightY><SizeX>99</SizeX><SizeY>99</SizeY></DataWindow><Projection>EPSG:4326</Projection><BandsCount>1</BandsCount></GDAL_WMS>')
         (FOLDER / "hidden.vrt").write_text(mosaic(remote))
         (FOLDER / "hidden.tif").write_text(mosaic(remote))
         (FOLDER / "wms.tif").write_text(service)
@@ -238,17 +256,26 @@ class Files(unittest.TestCase):
         for name, text in texts.items():
             for suffix in (".tif", ".asc", ".hgt", ".vrt", ".TIF", ".xml", ".txt", ".jp2", ""):
                 self.refused(f"{name}{suffix}", text)
-        for name, text in (("service", mosaic(service.replace("<", "&lt;"))), ("http", mosaic(url + "/x.tif")), ("hidden", mosaic(FOLDER / "hidden.tif")),
-                           ("nested", mosaic(FOLDER / "hidden.vrt")), ("stream", mosaic(remote.replace("vsicurl", "vsicurl_streaming"))), ("s3", mosaic("/vsis3/b/x.tif")),
-                           ("zip", mosaic("/vsizip/" + str(good))), ("netcdf", mosaic(f"NETCDF:{url}/x.nc:z")), ("srs", mosaic(good, srs=url + "/crs")),
-                           ("open", mosaic(good, "<SimpleSource><SourceFilename>a.tif</SourceFilename><OpenOptions/></SimpleSource>")),
-                           ("python", mosaic(good).replace('band="1"', 'band="1" subClass="VRTDerivedRasterBand"')), ("entity", "<!DOCTYPE a [<!ENTITY b 'c'>]>" + mosaic(good)),
-                           ("warped", mosaic(good).replace("<VRTDataset ", '<VRTDataset subClass="VRTWarpedDataset" ')),
-                           ("options", mosaic(good, start=f"<GDALWarpOptions><SourceDataset>{remote}</SourceDataset></GDALWarpOptions>"))):
+        for name, text in (
+                ("service", mosaic(service.replace("<", "&lt;"))), ("http", mosaic(url + "/x.tif")),
+                ("hidden", mosaic(FOLDER / "hidden.tif")), ("nested", mosaic(FOLDER / "hidden.vrt")),
+                ("stream", mosaic(remote.replace("vsicurl", "vsicurl_streaming"))), ("s3", mosaic("/vsis3/b/x.tif")),
+                ("zip", mosaic("/vsizip/" + str(good))), ("netcdf", mosaic(f"NETCDF:{url}/x.nc:z")),
+                ("srs", mosaic(good, srs=url + "/crs")), (
+                    "open",
+                    mosaic(good, "<SimpleSource><SourceFilename>a.tif</SourceFilename><OpenOptions/></SimpleSource>")),
+                ("python", mosaic(good).replace('band="1"', 'band="1" subClass="VRTDerivedRasterBand"')),
+                ("entity", "<!DOCTYPE a [<!ENTITY b 'c'>]>" + mosaic(good)),
+                ("warped", mosaic(good).replace("<VRTDataset ", '<VRTDataset subClass="VRTWarpedDataset" ')),
+                ("options",
+                    mosaic(good, start=f"<GDALWarpOptions><SourceDataset>{remote}</SourceDataset></GDALWarpOptions>"))):
             self.refused(f"{name}.vrt", text, ".")
         for suffix in (".tif.msk", ".msk", ".tif.ovr", ".tif.aux.xml"):
             beside = write("beside.tif", SLOPE)
-            (FOLDER / ("beside" + suffix)).write_text(mosaic(remote) if "xml" not in suffix else f'<PAMDataset><Metadata domain="OVERVIEWS"><MDI key="OVERVIEW_FILE">{remote}</MDI></Metadata></PAMDataset>')
+            (FOLDER / ("beside" + suffix)).write_text(
+                mosaic(remote) if "xml" not in suffix
+                else '<PAMDataset><Metadata domain="OVERVIEWS"><MDI '
+                     f'key="OVERVIEW_FILE">{remote}</MDI></Metadata></PAMDataset>')
             self.refused("", None, "belongs together with", file=beside)
             self.refused("of_beside.vrt", mosaic(beside), "beside.tif: belongs together with")
             (FOLDER / ("beside" + suffix)).unlink()
@@ -261,14 +288,18 @@ class Files(unittest.TestCase):
             gdal.BuildVRT(str(FOLDER / "tagged.vrt"), [str(FOLDER / "tagged.tif")])
         self.assertAlmostEqual(read(FOLDER / "tagged.vrt")[0].here, 50.0, delta=1e-3)
         # Maps, and what GDAL would do within them.
-        (FOLDER / "map.geojson").write_text('{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "%s/crs"}}, "features": []}' % url)
+        (FOLDER / "map.geojson").write_text(
+            '{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "%s/crs"}}, "features": []}'
+            % url)
         with self.assertRaises(al.Error):
             read_extract(FOLDER / "map.geojson", KNOWN)
         (FOLDER / "map.gpkg").unlink(missing_ok=True)
         ogr.GetDriverByName("GPKG").CreateDataSource(str(FOLDER / "map.gpkg")).CreateLayer("a")
         with sqlite3.connect(FOLDER / "map.gpkg") as base:
-            base.execute(f"CREATE VIEW g AS SELECT 1 AS fid, ogr_geocode('x', 'geometry', 'QUERY_TEMPLATE={url}/?q=%s') AS geom")
-            base.execute("INSERT INTO gpkg_contents(table_name, data_type, identifier, srs_id) VALUES('g', 'features', 'g', 4326)")
+            base.execute("CREATE VIEW g AS SELECT 1 AS fid, ogr_geocode('x', 'geometry', "
+                         f"'QUERY_TEMPLATE={url}/?q=%s') AS geom")
+            base.execute("INSERT INTO gpkg_contents(table_name, data_type, identifier, srs_id) VALUES('g', 'features', "
+                         "'g', 4326)")
         with quiet(), self.assertRaises((al.Error, RuntimeError)):
             [*open_file(FOLDER / "map.gpkg", "a map", ["GPKG"], gdal.OF_VECTOR).GetLayerByName("g")]
         # The second line of defence: what GDAL is led to does not leave the machine.
@@ -288,7 +319,8 @@ class Files(unittest.TestCase):
     def test_limits_hold_before_the_work(self):
         """What a file of some hundred bytes declares, is not done."""
         def tiff(name, width, height, options):
-            image = gdal.GetDriverByName("GTiff").Create(str(FOLDER / name), width, height, 1, gdal.GDT_Float32, [*options, "SPARSE_OK=TRUE", "BIGTIFF=YES"])
+            image = gdal.GetDriverByName("GTiff").Create(str(FOLDER / name), width, height, 1, gdal.GDT_Float32,
+                                                         [*options, "SPARSE_OK=TRUE", "BIGTIFF=YES"])
             image.SetGeoTransform((13.2, 0.2 / width, 0, 53.7, 0, -0.2 / height))
             image.SetProjection(osr_wkt)
             del image
@@ -299,9 +331,12 @@ class Files(unittest.TestCase):
         FOLDER.mkdir(parents=True, exist_ok=True)
         for name, width, height, options, said in (
                 ("sparse.tif", 1_000_000, 1_000_000, ["TILED=YES"], "pixels would have to be read"),
-                ("deflate.tif", 300_000, 300_000, ["TILED=YES", "COMPRESS=DEFLATE", "BLOCKXSIZE=4096", "BLOCKYSIZE=4096"], "pixels would have to be read"),
+                ("deflate.tif", 300_000, 300_000,
+                 ["TILED=YES", "COMPRESS=DEFLATE", "BLOCKXSIZE=4096", "BLOCKYSIZE=4096"],
+                 "pixels would have to be read"),
                 ("strips.tif", 100, 100_000_000, ["BLOCKYSIZE=16"], "pixels would have to be read"),
-                ("strip.tif", 20_000, 20_000, ["COMPRESS=DEFLATE", "BLOCKYSIZE=20000"], "its blocks have 20,000 x 20,000 pixels")):
+                ("strip.tif", 20_000, 20_000, ["COMPRESS=DEFLATE", "BLOCKYSIZE=20000"],
+                 "its blocks have 20,000 x 20,000 pixels")):
             tiff(name, width, height, options)
             self.refused("", None, said, file=FOLDER / name)
             picture = f'<SrcRect xOff="0" yOff="0" xSize="{width}" ySize="{height}"/><DstRect xOff="0" yOff="0" xSize="100" ySize="100"/></SimpleSource>'
@@ -317,7 +352,8 @@ class Files(unittest.TestCase):
         self.refused("deep.vrt", "<VRTDataset>" * 100_000, ".")
         self.refused("self.vrt", mosaic("self.vrt", relative=1), "names")
         os.path.lexists(FOLDER / "pipe.prj") or os.mkfifo(FOLDER / "pipe.prj")
-        self.refused("pipe.asc", header.format(3, 1, 0.1) + "1 2 3\n", "belongs together with pipe.prj, which is not a regular file")
+        self.refused("pipe.asc", header.format(3, 1, 0.1) + "1 2 3\n",
+                     "belongs together with pipe.prj, which is not a regular file")
 
     def test_a_mosaic_of_files(self):
         """As gdalbuildvrt makes it of files in other folders, one of them far away."""

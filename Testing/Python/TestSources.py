@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every source names its licence, the lists of files in CMake are complete, modules of the kernel and of Python depend in one
-direction, and whoever writes VTK's XML files chooses a data mode that every libexpat reads back."""
+"""Every source names its licence, the lists of files in CMake are complete, modules of the kernel and of Python depend
+in one direction, and whoever writes VTK's XML files chooses a data mode that every libexpat reads back."""
 
 import ast
 import graphlib
@@ -85,9 +85,11 @@ def check_folders(root, listed, cmake):
 check_folders("Filters/Kernel", "kernel_folders", "Filters/Kernel/CMakeLists.txt")
 check_folders("Filters/Private", "private_folders", "CMake/AvianLidarPrivateFolders.cmake")
 
-# The kernel does not know the library beside it; IO uses Filters, never the reverse; what the classes of IO share knows none of them.
+# The kernel does not know the library beside it; IO uses Filters, never the reverse; what the classes of IO share knows
+# none of them.
 of_io, shared = (list(files(folder, ".h")) for folder in ("IO", "IO/Private"))
-for folder, headers in (("Filters/Kernel", files("Filters/VolumeTree", ".h")), ("Filters", of_io), ("IO/Private", set(of_io) - set(shared))):
+for folder, headers in (("Filters/Kernel", files("Filters/VolumeTree", ".h")), ("Filters", of_io),
+                        ("IO/Private", set(of_io) - set(shared))):
     forbidden = {os.path.basename(path) for path in headers}
     assert forbidden, folder
     for path in files(folder, ".h", ".cxx"):
@@ -136,7 +138,8 @@ for path in (*files("Filters/Kernel", ".h"), *files("Filters/VolumeTree", ".h"))
     held = re.findall(r"\w+\.(?:cxx|py|h)\b", re.search(r" \* Test: (.*?)\*/", read(path), re.DOTALL)[1])
     assert held and tests.issuperset(held), f"{path} names {set(held) - tests}, which are not there"
 
-# VTK 9.1 and 9.2 do not read the default, Appended, back with today's libexpat: whoever leaves XML files chooses Binary or
+# VTK 9.1 and 9.2 do not read the default, Appended, back with today's libexpat: whoever leaves XML files chooses Binary
+# or
 # Ascii, within a few lines of the writer, or in the call of ParaView's Save Data.
 XML_WRITER = re.compile(r"\bvtkXML\w*Writer\b")
 PARAVIEW = re.compile(r"\b(?:SaveData|CreateWriter|XML\w*Writer)\((?:[^()]|\([^()]*\))*\)")
@@ -147,13 +150,16 @@ MODE = re.compile(r"(?:SetDataModeTo|DataMode\b\W{1,4})(?:Ascii|Binary|\{mode\})
 def without_a_mode(text):
     """The writers of VTK's XML files in a text that leave the data mode as it is."""
     lines = [line for line in text.splitlines() if not re.match(r"\s*(?:#include|from|import)\b", line)]
-    found = [line.strip() for number, line in enumerate(lines) if XML_WRITER.search(line) and not MODE.search(" ".join(lines[number:number + 10]))]
+    found = [line.strip() for number, line in enumerate(lines) if XML_WRITER.search(line)
+             and not MODE.search(" ".join(lines[number:number + 10]))]
     if re.search(r"[.\"'`]p?vt[a-z]\b", text):
-        found += [call[0] for call in PARAVIEW.finditer(text) if not OURS.search(call[0]) and not MODE.search(call[0] if "**" not in call[0] else text)]
+        found += [call[0] for call in PARAVIEW.finditer(text) if not OURS.search(call[0])
+                  and not MODE.search(call[0] if "**" not in call[0] else text)]
     return found
 
 
-assert without_a_mode("vtkNew<vtkXMLPolyDataWriter> writer;\nwriter->Write();") and without_a_mode('SaveData("a.vtp", proxy=f(1))')
+assert without_a_mode("vtkNew<vtkXMLPolyDataWriter> "
+                      "writer;\nwriter->Write();") and without_a_mode('SaveData("a.vtp", proxy=f(1))')
 writers = 0
 folders = ("Documentation", "Examples", "Filters", "IO", "Plugin", "Python", "Testing")
 for path in ["README.md", *(path for folder in folders

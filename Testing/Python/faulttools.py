@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of faults share: each class with small inputs that are good, what it reads of them, and how that is spoilt."""
+"""What the tests of faults share: each class with small inputs that are good, what it reads of them, and how that is
+spoilt."""
 import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -55,7 +56,8 @@ SPOILERS = {
 
 
 def spoil(data, where, name, how):
-    """A copy with that array, or the points, changed: a key of SPOILERS, "missing", or a value (or tuple) for one element."""
+    """A copy with that array, or the points, changed: a key of SPOILERS, "missing", or a value (or tuple) for one
+    element."""
     data = copy_of(data)
     if where == "points":
         data.GetPoints().SetPoint(PLACE_OF_VALUE, how, 0, 0)
@@ -86,20 +88,21 @@ ARRAY = ("text", "wide", "short")
 FINITE = ARRAY + (NAN, INF)
 WHOLE = FINITE + (0.5, 1e300)
 ONE = ("text", "two", NAN, INF)
-LIMITS = {
-    "half_beamwidth": (0.0, -1e-3, 1.05, "missing"), "half_beamwidth_across": (0.2,), "beam_outline": (2,), "beam_rotation": (),
-    "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2), "pulse_energy": (0.0, 1e200, "missing"),
-    "pulse_width": (-1e-9, 1e-5, "missing"), "frequency": (0.0, "missing"), "sampling_interval": (0.0, 1e300, "missing"),
-    "range_gate": (0.0, 1e17, "missing"), "noise_photon_rate": (-1.0, "missing"), "lower_energy_limit": (-1e-9, "missing"),
-    "upper_energy_limit": (1e-6, "missing"), "receiver_aperture": (-1.0, "missing"), "display_length": (-1.0,),
-    "revolution": (0.5, 1e300)}
+LIMITS = {"half_beamwidth": (0.0, -1e-3, 1.05, "missing"), "half_beamwidth_across": (0.2,), "beam_outline": (2,),
+          "beam_rotation": (), "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2),
+          "pulse_energy": (0.0, 1e200, "missing"), "pulse_width": (-1e-9, 1e-5, "missing"),
+          "frequency": (0.0, "missing"), "sampling_interval": (0.0, 1e300, "missing"),
+          "range_gate": (0.0, 1e17, "missing"), "noise_photon_rate": (-1.0, "missing"),
+          "lower_energy_limit": (-1e-9, "missing"), "upper_energy_limit": (1e-6, "missing"),
+          "receiver_aperture": (-1.0, "missing"), "display_length": (-1.0,), "revolution": (0.5, 1e300)}
 OF_BEAMS = [("points", "position", (NAN, 1.1e30)), ("point", "direction", FINITE + ((0, 0, 0), "missing")),
-            ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE + (-1, "twice")), ("point", "laser_id", WHOLE),
-            ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "timestamp", FINITE)]
+            ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE + (-1, "twice")),
+            ("point", "laser_id", WHOLE), ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE),
+            ("point", "timestamp", FINITE)]
 OF_BEAMS += [("field", name, ONE + values) for name, values in LIMITS.items()]
 OF_SURFACES = [("points", "point", (NAN, INF, 1e31)), ("cell", "object_id", WHOLE), ("cell", "material_id", WHOLE),
-               ("cell", "kd", FINITE + (-0.1,)), ("cell", "ks", FINITE + (0.99, "missing")), ("cell", "kp", FINITE + (2e6,)),
-               ("field", "object_classes", ("numbers",)),
+               ("cell", "kd", FINITE + (-0.1,)), ("cell", "ks", FINITE + (0.99, "missing")),
+               ("cell", "kp", FINITE + (2e6,)), ("field", "object_classes", ("numbers",)),
                ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))]
 OF_REPORT = [("point", name, ("text", "wide", "short", 0.5, NAN)) for name in (
     "beam_id", "laser_id", "status", "skipped", "candidates", "nodes_visited", "rays_traced")]
@@ -131,15 +134,17 @@ def algorithms():
         ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE),
         ("point", "number_of_returns", WHOLE), ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE),
         ("point", "object_id", WHOLE), ("point", "energy", ARRAY), CLASSES, ORIGIN]]
-    yield writer("KITTI"), [cloud], [[("points", "point", (1e39, NAN)), ("point", "intensity", FINITE), ("point", "object_id", WHOLE), CLASSES] + PLACE]
+    yield writer("KITTI"), [cloud], [[("points", "point", (1e39, NAN)), ("point", "intensity", FINITE),
+                                      ("point", "object_id", WHOLE), CLASSES] + PLACE]
     yield writer("KITTI", LabelSource=1), [cloud], [[("point", "material_id", WHOLE)]]
     yield writer("PCD", Organisation=1), [cloud], [
-        [("points", "point", (1e39,)), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE), ("point", "energy_received", FINITE),
-         ("point", "intensity", ARRAY)] + PLACE + [("field", name, ONE) for name in (
-             "number_of_channels", "azimuth_step", "minimum_elevation", "elevation_step")]
+        [("points", "point", (1e39,)), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE),
+         ("point", "energy_received", FINITE), ("point", "intensity", ARRAY)] + PLACE
+        + [("field", name, ONE)
+           for name in ("number_of_channels", "azimuth_step", "minimum_elevation", "elevation_step")]
         + [("field", "azimuth_range", ("text", "two"))]]
     yield writer("PLY"), [cloud], [[("points", "point", (1e39,)), ("point", "energy", ("short",))]]
-    yield writer("GeoJSON"), [cloud], [
-        [("point", "energy", FINITE + ("missing",)), ("point", "object_id", WHOLE), ("point", "material_id", WHOLE), ORIGIN,
-         ("field", "lower_energy_limit", ONE), ("field", "object_names", ("numbers",)), CLASSES,
-         ("field", "material_names", ("numbers",))]]
+    yield writer("GeoJSON"), [cloud], [[("point", "energy", FINITE + ("missing",)), ("point", "object_id", WHOLE),
+                                        ("point", "material_id", WHOLE), ORIGIN, ("field", "lower_energy_limit", ONE),
+                                        ("field", "object_names", ("numbers",)), CLASSES,
+                                        ("field", "material_names", ("numbers",))]]

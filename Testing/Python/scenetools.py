@@ -84,12 +84,14 @@ def write_scene(folder, name, scene):
 
 
 def frame(origin, place):
-    """Position and rotation of the tangent frame of a place in that of the origin, by ECEF (WGS84, the textbook's formula)."""
+    """Position and rotation of the tangent frame of a place in that of the origin, by ECEF (WGS84, the textbook's
+    formula)."""
     def ecef(p):
         a, f = 6378137.0, 1 / 298.257223563
         lat, lon = math.radians(p["latitude"]), math.radians(p["longitude"])
         n = a / math.sqrt(1 - f * (2 - f) * math.sin(lat) ** 2)
-        return np.array([(n + p["height"]) * math.cos(lat) * math.cos(lon), (n + p["height"]) * math.cos(lat) * math.sin(lon),
+        return np.array([(n + p["height"]) * math.cos(lat) * math.cos(lon),
+                         (n + p["height"]) * math.cos(lat) * math.sin(lon),
                          (n * (1 - f) ** 2 + p["height"]) * math.sin(lat)])
 
     def axes(p):
