@@ -205,7 +205,7 @@ class Files(unittest.TestCase):
         """The disk is full at the picture, after two tables."""
         out = OUTPUT / "full"
         shutil.rmtree(out, ignore_errors=True)
-        with unittest.mock.patch.object(_bench.pictures, "draw", side_effect=OSError(28, "No space left on device")), \
+        with unittest.mock.patch.object(_bench.drawing, "draw", side_effect=OSError(28, "No space left on device")), \
                 self.assertRaises(OSError):
             write_bench([self.home], [OUTPUT / "right"], out)
         self.assertFalse(out.exists())

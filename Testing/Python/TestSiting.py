@@ -26,7 +26,7 @@ from avianlidar.apps.coverage._plan import Plan
 from avianlidar.apps.coverage._sites import Sites
 from avianlidar.apps.inputs._json import load_json, packaged
 from avianlidar.apps.inputs._read import read_plan
-from avianlidar.apps.pages._drawing import drawn
+from avianlidar.apps.pages import _drawing
 from avianlidar.apps.places._candidates import Surfaces, code_of, pierced
 from avianlidar.apps.places._features import properties_of
 from helpertools import error_of
@@ -83,7 +83,7 @@ class Candidates(unittest.TestCase):
                 canvas.draw()
                 places = axes.transData.transform([(0, 0), (2.5, 0.3), (4.6, 0.3)]).astype(int)
                 shown.extend(np.asarray(canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
-            drawn((4, 4), draw)
+            _drawing.drawn((4, 4), draw)
             np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 
     def test_two_in_one_place_are_one(self):
