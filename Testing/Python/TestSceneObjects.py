@@ -32,6 +32,22 @@ def canonical(triangles):
     return np.array(sorted(rows))
 
 
+def notes(scene):
+    """The report of a scene as one text."""
+    return " ".join(scene.strings("scene_report"))
+
+
+def features(*rows):
+    """GeoJSON. @param rows kind, coordinates, properties; no kind: no geometry"""
+    return json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": properties,
+         "geometry": {"type": kind, "coordinates": coordinates} if kind else None}
+        for kind, coordinates, properties in rows]})
+
+
+BOX, NULL_ISLAND = CORNERS[np.array(TRIANGLES)], {"latitude": 0, "longitude": 0, "height": 0}
+
+
 class SceneObjects(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -106,9 +122,9 @@ class SceneObjects(unittest.TestCase):
     # --- formats
 
     def test_all_formats_give_the_same_box(self):
-        expected = canonical(CORNERS[np.array(TRIANGLES)])
-        for name in ("box.obj", "box.stl", "box.ply", "box.gltf", "y.dae", "z.dae", "packed.obj.gz", "box.3ds",
-                     "box.ac", "box.ifc", "box.vtp", "box.vtk", "box.vtm"):
+        expected = canonical(BOX)
+        for name in ("box.obj box.stl box.ply box.gltf y.dae z.dae packed.obj.gz box.3ds box.ac box.ifc box.vtp "
+                     "box.vtk box.vtm").split():
             with self.subTest(file=name):
                 block = self.read({"file": name}).blocks[0]
                 self.assertEqual(block.GetNumberOfPoints(), 8)
@@ -130,7 +146,7 @@ class SceneObjects(unittest.TestCase):
     # --- material names
 
     def test_names_are_mapped_by_the_first_pattern_that_fits(self):
-        """Of an object's own map, then of the scene's; an object's material comes before names."""
+        """The object's own map comes first, then the scene's. A material of the object comes before both."""
         of_scene = {"p?inted": "metal", "paint*": "glass", "*": "wood"}
         for item, names, expected in (({}, of_scene, {2: 6, 3: 6}), ({}, dict(reversed(of_scene.items())), {3: 12}),
                                       ({}, {"paint*": "glass", "p?inted": "metal", "*": "wood"}, {1: 6, 3: 6}),
@@ -167,18 +183,15 @@ class SceneObjects(unittest.TestCase):
         expected = np.column_stack([scaled[:, 1], -scaled[:, 0], scaled[:, 2]]) + [100, 200, 300]
         np.testing.assert_allclose(got, expected[np.array(TRIANGLES)], atol=1e-9)
         matrix = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
-        np.testing.assert_allclose(self.box(rotation=matrix), CORNERS[np.array(TRIANGLES)] @ np.array(matrix).T,
-                                   atol=1e-12)
+        np.testing.assert_allclose(self.box(rotation=matrix), BOX @ np.transpose(matrix), atol=1e-12)
         for yaw in (30, 200):  # clockwise from north
             c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
-            np.testing.assert_allclose(self.box(rotation=yaw),
-                                       CORNERS[np.array(TRIANGLES)] @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]).T,
-                                       atol=1e-12)
+            np.testing.assert_allclose(self.box(rotation=yaw), BOX @ [[c, -s, 0], [s, c, 0], [0, 0, 1]], atol=1e-12)
 
     def test_direction_is_where_north_goes(self):
         level = [math.sin(math.radians(30)), math.cos(math.radians(30)), 0]
         np.testing.assert_allclose(self.box(rotation=[5 * c for c in level]), self.box(rotation=30), atol=1e-12)
-        got, start = self.box(rotation=[1, 2, 0.5]), CORNERS[np.array(TRIANGLES)]
+        got, start = self.box(rotation=[1, 2, 0.5]), BOX
         # which points and their images fix
         matrix = np.linalg.lstsq(start.reshape(-1, 3), got.reshape(-1, 3), rcond=None)[0].T
         np.testing.assert_allclose(matrix @ [0, 1, 0], np.array([1, 2, 0.5]) / math.sqrt(5.25), atol=1e-12)
@@ -212,11 +225,9 @@ class SceneObjects(unittest.TestCase):
 
     # --- footprints
 
-    def plan(self, file, *features, **keys):
-        """Features (kind, coordinates, properties) in metres, and a scene of them."""
-        self.save(file, json.dumps({"type": "FeatureCollection", "features": [
-            {"type": "Feature", "properties": p, "geometry": {"type": kind, "coordinates": c}}
-            for kind, c, p in features]}))
+    def plan(self, file, *rows, **keys):
+        """A scene of features in metres."""
+        self.save(file, features(*rows))
         return self.read({"footprints": file, "crs": "local", **keys})
 
     SQUARE = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]
@@ -228,8 +239,7 @@ class SceneObjects(unittest.TestCase):
         self.assertAlmostEqual(st.volume(st.corners(scene.blocks[0])), 600, places=9)
         scene = self.plan("bow.geojson", ("Polygon", [[[0, 0], [10, 10], [10, 0], [0, 10], [0, 0]]], {}), height=2)
         self.assertAlmostEqual(st.volume(st.corners(scene.blocks[0])), 2 * 50, places=9)
-        self.assertIn("1 footprints with crossing or overlapping rings were repaired",
-                      " ".join(scene.strings("scene_report")))
+        self.assertIn("1 footprints with crossing or overlapping rings were repaired", notes(scene))
 
     def test_rings_that_are_no_rings(self):
         spike = [*self.SQUARE[:3], [30, 10], *self.SQUARE[2:]]
@@ -260,13 +270,12 @@ class SceneObjects(unittest.TestCase):
         """One true, false or list among numbers does not spoil the others; a list of one value is this value."""
         for wrong in (True, False, [3, 4], [], {"a": 1}, "true", None, [[5]]):
             for right in (7, 7.5, "7.5 m"):
-                features = [("Polygon", [self.SQUARE], {"h": h, "w": False}) for h in (right, wrong)]
-                scene = self.plan("odd.geojson", *features, features="separate", height_attribute="h", height=3,
-                                  name="House")
+                scene = self.plan("odd.geojson", *(("Polygon", [self.SQUARE], {"h": h, "w": False})
+                                                   for h in (right, wrong)),
+                                  features="separate", height_attribute="h", height=3, name="House")
                 self.assertEqual([st.corners(b)[:, :, 2].max() for b in scene.blocks],
                                  [float(str(right).split()[0]), 3], (right, wrong))
-                self.assertIn("House: 1 features have no usable height attribute",
-                              " ".join(scene.strings("scene_report")))
+                self.assertIn("House: 1 features have no usable height attribute", notes(scene))
         scene = self.plan("odd.geojson", *(("Polygon", [self.SQUARE], {"h": h}) for h in (7, [9])), features="separate",
                           height_attribute="h", height=3)
         self.assertEqual([st.corners(b)[:, :, 2].max() for b in scene.blocks], [7, 9])
@@ -280,26 +289,24 @@ class SceneObjects(unittest.TestCase):
         self.assertTrue((st.normals(triangles)[:, 2] > 0).all())
 
     def test_attributes(self):
-        features = [("Polygon", [self.SQUARE], {"kind": "house", "h": "7.5 m", "label": "A", "n": 2}),
-                    ("Polygon", [self.SQUARE], {"kind": "hut", "h": None, "label": "", "n": 3}),
-                    ("Polygon", [self.SQUARE], {"kind": "house", "h": "two storeys", "n": 2}),
-                    ("Point", [0, 0], {"kind": "house", "n": 2})]
+        rows = [*(("Polygon", [self.SQUARE], properties) for properties in (
+            {"kind": "house", "h": "7.5 m", "label": "A", "n": 2}, {"kind": "hut", "h": None, "label": "", "n": 3},
+            {"kind": "house", "h": "two storeys", "n": 2})), ("Point", [0, 0], {"kind": "house", "n": 2})]
         options = {"height_attribute": "h", "height": 3, "name_attribute": "label", "name": "House"}
-        scene = self.plan("town.geojson", *features, features="separate", **options)
+        scene = self.plan("town.geojson", *rows, features="separate", **options)
         self.assertEqual(scene.names, ["A", "House 2", "House 3"])
         self.assertEqual([st.corners(b)[:, :, 2].max() for b in scene.blocks], [7.5, 3, 3])
-        report = " ".join(scene.strings("scene_report"))
         self.assertIn("House: 2 features have no usable height attribute and got the default height: House 2, House 3 "
-                      "(\"two storeys\")", report)
-        self.assertIn("House: 1 points were left out", report)
-        scene = self.plan("town.geojson", *features, **options)
+                      '("two storeys")', notes(scene))
+        self.assertIn("House: 1 points were left out", notes(scene))
+        scene = self.plan("town.geojson", *rows, **options)
         self.assertEqual((scene.names, scene.blocks[0].GetNumberOfCells()), (["House"], 36))
         for height, expected in (("12m", 12), ("0", 3), ("1e999", 3), ("40 ft", 12.192), (True, 3), ([12], 12),
                                  ([12, 13], 3)):
             scene = self.plan("tall.geojson", ("Polygon", [self.SQUARE], {"h": height}), features="together", **options)
             self.assertEqual(st.corners(scene.blocks[0])[:, :, 2].max(), expected, height)
         for chosen, count in (({"kind": "ho*"}, 2), ({"label": "*"}, 2), ({"kind": "h*", "n": 3}, 1)):
-            scene = self.plan("town.geojson", *features, filter=chosen, **options)
+            scene = self.plan("town.geojson", *rows, filter=chosen, **options)
             self.assertEqual(scene.blocks[0].GetNumberOfCells(), 12 * count, msg=chosen)
 
     def test_lengths_are_read_as_the_command_airport_reads_them(self):
@@ -324,24 +331,22 @@ class SceneObjects(unittest.TestCase):
         origin = {"latitude": 53.6, "longitude": 13.3, "height": 0}
         good = [[13.3, 53.6], [13.301, 53.6], [13.301, 53.601], [13.3, 53.6]]
         far = [[0, 0], [1e9, 0], [1e9, 1], [0, 0]]
+        outside = ("1 features that cannot be made (coordinates lie outside their coordinate reference system) were "
+                   "left out: B")
         for coordinates, more, note in (
-                ([[*good[:1], [13.3, 95], *good[2:]]], {},
-                 "1 features that cannot be made (coordinates lie outside their coordinate reference system) were left "
-                 "out: B"), ([[*good[:1], [math.nan, 53.6], *good[2:]]], {},
-                             "1 features that cannot be made (coordinates lie outside"),
+                ([[*good[:1], [13.3, 95], *good[2:]]], {}, outside),
+                ([[*good[:1], [math.nan, 53.6], *good[2:]]], {}, outside),
                 ([[*good[:1], ["a", "b"], *good[2:]]], {}, "1 features without a geometry were left out: B"),
                 ([good], {"height_attribute": "h"}, 'there is no height to assume) were left out: B'),
                 ([far], {"crs": "local", "height": 1, "glazing": {"share": 0.5, "bay": 2}},
                  "bays of 2 m: a coordinate or 'bay' is wrong) were left out: B")):
             local = [[[1000 * (x - 13), 1000 * (y - 53)] for x, y in good]] if "crs" in more else [good]
-            text = json.dumps({"type": "FeatureCollection", "features": [
-                {"type": "Feature", "properties": p, "geometry": {"type": "Polygon", "coordinates": c}}
-                for p, c in (({"name": "A", "h": 1}, local), ({"name": "B"}, coordinates))]})
-            self.save("bad.geojson", text)
+            self.save("bad.geojson", features(("Polygon", local, {"name": "A", "h": 1}),
+                                              ("Polygon", coordinates, {"name": "B"})))
             scene = self.read({"footprints": "bad.geojson", **({"height": 1} if not more else more)}, origin=origin)
             alone = self.plan("alone.geojson", ("Polygon", local, {"h": 1}),
                               **{"height": 1, "crs": "EPSG:4326", **more}) if "crs" in more else None
-            self.assertIn(note, " ".join(scene.strings("scene_report")))
+            self.assertIn(note, notes(scene))
             self.assertTrue(st.is_closed(st.corners(scene.blocks[0])))
             self.assertEqual(len(scene.blocks), 1)
             if alone:
@@ -411,8 +416,7 @@ class SceneObjects(unittest.TestCase):
                           height_attribute="h", height=3, min_height_attribute="u", base=0.5, features="separate")
         self.assertEqual([(z.min(), z.max()) for z in (st.corners(block)[:, :, 2] for block in scene.blocks)],
                          [(6.5, 8.5), (0.5, 5.5), (0.5, 5.5)])
-        self.assertIn("1 features have a least height that is not below their height",
-                      " ".join(scene.strings("scene_report")))
+        self.assertIn("1 features have a least height that is not below their height", notes(scene))
         for under, is_wrong in (("abc", True), ("-5", True), ("0", False), ("0.0 m", False), ("", False), (0, False)):
             scene = self.plan("roofs.geojson", ("Polygon", [self.SQUARE], {"u": under, "name": "A"}), height=3,
                               min_height_attribute="u")
@@ -421,24 +425,21 @@ class SceneObjects(unittest.TestCase):
 
     def test_features_without_places(self):
         """What is left out is counted, and an error says what is wrong, whether there is a filter or not."""
-        origin = {"latitude": 0, "longitude": 0, "height": 0}
-        feature = '{"type":"Feature","properties":{"k":"a"},"geometry":%s}'
-        whole = '{"type":"FeatureCollection","features":[%s]}'
-        square = '{"type":"Polygon","coordinates":[[[0,0],[0.001,0],[0.001,0.001],[0,0]]]}'
-        for name, text, chosen, words in (("null.geojson", whole % ",".join([feature % "null"] * 2), {"k": "*"},
-                                           "none of its 2 features that fit the filter has a geometry"),
-                                          ("none.geojson", whole % "", {}, "holds no features"),
-                                          ("city.json",
-                                           '{"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": []}',
-                                           {}, "is CityJSON, which is not read"),
-                                          ("A.CSV", "id,height\n1,2\n", {}, "a table needs the columns x and y")):
+        nowhere, origin = (None, None, {"k": "a"}), NULL_ISLAND
+        for name, text, chosen, words in (
+                ("null.geojson", features(nowhere, nowhere), {"k": "*"},
+                 "none of its 2 features that fit the filter has a geometry"),
+                ("none.geojson", features(), {}, "holds no features"),
+                ("city.json", '{"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": []}', {},
+                 "is CityJSON, which is not read"),
+                ("A.CSV", "id,height\n1,2\n", {}, "a table needs the columns x and y")):
             self.save(name, text)
             item = {"footprints": name, "height": 3, "crs": "EPSG:4326", **({"filter": chosen} if chosen else {})}
             file = st.write_scene(self.folder, "scene", {"version": 1, "origin": origin, "objects": [item]})
             self.assertIn(words, " ".join(st.Read(file).errors))
-        self.save("some.geojson", whole % ",".join([feature % "null", feature % square]))
+        self.save("some.geojson", features(nowhere, ("Polygon", [[[0, 0], [0.001, 0], [0.001, 0.001], [0, 0]]], {})))
         scene = self.read({"footprints": "some.geojson", "height": 3}, origin=origin)
-        self.assertIn("1 features without a geometry were left out", " ".join(scene.strings("scene_report")))
+        self.assertIn("1 features without a geometry were left out", notes(scene))
         self.save("dof.csv", "OAS,LATDEC,LONDEC,AGL,AMSL\n01-1,0.001,0.002,00100,00200\n")
         for name, feet in (("AGL", 100), ("AMSL", 200)):
             scene = self.read({"footprints": "dof.csv", "height_attribute": name, "width": 2, "crs": "EPSG:4326"},
@@ -468,13 +469,12 @@ class SceneObjects(unittest.TestCase):
 
     def test_tags_of_a_raw_osm_file(self):
         """With negative ids, as an editor writes them, in falling order."""
-        nodes = [(1, 0, 0), (2, 0, 0.001), (3, 0.001, 0.001), (4, 0.001, 0)]
-        self.save("town.osm", '<osm version="0.6">' + "".join(
-            f'<node id="{-i}" lat="{lat}" lon="{lon}" version="1"/>' for i, lat, lon in nodes)
-            + '<way id="-9" version="1">' + "".join(f'<nd ref="{-i}"/>' for i in (1, 2, 3, 4, 1))
-            + '<tag k="building" v="yes"/><tag k="height" v="33"/></way></osm>')
+        nodes = "".join(f'<node id="{-i}" lat="{lat}" lon="{lon}" version="1"/>' for i, lat, lon in (
+            (1, 0, 0), (2, 0, 0.001), (3, 0.001, 0.001), (4, 0.001, 0)))
+        way = self.way(-9, -1, -2, -3, -4, -1, more=self.BUILDING + '<tag k="height" v="33"/>')
+        self.save("town.osm", f'<osm version="0.6">{nodes}{way}</osm>')
         scene = self.read({"footprints": "town.osm", "layer": "multipolygons", "filter": {"building": "*"},
-                           "height_attribute": "height"}, origin={"latitude": 0, "longitude": 0, "height": 0})
+                           "height_attribute": "height"}, origin=NULL_ISLAND)
         triangles = st.corners(scene.blocks[0])
         self.assertEqual(triangles[:, :, 2].max(), 33)
         # A thousandth of a degree on the equator: 111.3195 m along it, 110.5743 m across.
@@ -489,15 +489,14 @@ class SceneObjects(unittest.TestCase):
             for form in ('<node id="{}" note="a>b" lat="{}" lon="{}"/>',
                          "<node\n id='{}' lat = '{}' lon='{}' ><tag k='note' v='>'/></node>"):
                 town = "".join(form.format(i, lat if i == 3 else y, lon if i == 3 else x) for i, y, x in whole)
-                self.save("town.osm",
-                          f'<osm version="0.6">{town}<way id="9"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd '
-                          'ref="4"/><nd ref="1"/>' '<tag k="building" v="yes"/></way></osm>')
+                way = self.way(9, 1, 2, 3, 4, 1, more=self.BUILDING)
+                self.save("town.osm", f'<osm version="0.6">{town}{way}</osm>')
                 scene = self.read({"footprints": "town.osm", "layer": "multipolygons", "height": 3},
-                                  origin={"latitude": 0, "longitude": 0, "height": 0})
+                                  origin=NULL_ISLAND)
                 self.assertIn("town: 1 nodes whose place is not in degrees were left out: 3",
                               scene.strings("scene_report"))
-                roof = np.unique(np.vstack([one for one in st.corners(scene.blocks[0])
-                                            if (one[:, 2] == 3).all()])[:, :2].round(3), axis=0)
+                corners = st.corners(scene.blocks[0]).reshape(-1, 3)
+                roof = np.unique(corners[corners[:, 2] == 3, :2].round(3), axis=0)
                 np.testing.assert_allclose(roof, [(0, 0), (0, 110.574), (111.320, 0)], atol=0.01)
 
     def osm(self, body, name="town.osm", **keys):
@@ -507,13 +506,16 @@ class SceneObjects(unittest.TestCase):
                 "objects": [{"name": "town", "footprints": name, "layer": "multipolygons", "filter": {"building": "*"},
                              "height": 3, "features": "separate", "material": "Wall", **keys}]}
 
-    def volumes(self, body, *notes, **keys):
-        """The buildings' volumes as shares of one whole square, and whether the notes are there, and no more."""
+    def volumes(self, body, *said, **keys):
+        """The buildings' volumes as shares of one whole square; the report has these notes alone."""
         scene = st.Read(st.write_scene(self.folder, "town", self.osm(body, **keys)))
         self.assertEqual(scene.errors, [], body)
         self.assertEqual([one for one in scene.strings("scene_report") if "triangles" not in one],
-                         [f"town: {note}" for note in notes], body)
+                         [f"town: {note}" for note in said], body)
         return [round(st.volume(st.corners(block)) / 22104, 2) for block in scene.blocks]
+
+    def refused(self, body, words):
+        self.assertIn(words, " ".join(st.Read(st.write_scene(self.folder, "town", self.osm(body))).errors))
 
     @staticmethod
     def way(number, *nodes, more=""):
@@ -537,19 +539,15 @@ class SceneObjects(unittest.TestCase):
         ring, court = self.way(1, 1, 2, 3, 4, 1), self.way(2, 5, 6, 7, 8, 5)
         other = self.way(19, 11, 12, 13, 14, 11, more=self.BUILDING)
         half = self.way(1, 1, 2, 3), self.way(3, 3, 4, 1)
-        with_court = self.area(200, (1, "outer"), (2, "inner"))
-        for body, expected, *notes in (
+        with_court, of_two = self.area(200, (1, "outer"), (2, "inner")), self.area(200, (1, "outer"), (3, "outer"))
+        lacks, missing = "lack courtyards whose ways are missing or do not close", "with missing ways were left out"
+        for body, expected, *said in (
                 (ring + court + with_court, [0.64, 1]), (with_court + court + ring, [0.64, 1]),
-                (ring + with_court, [1, 1],
-                 "1 relations lack courtyards whose ways are missing or do not close: relation 200"),
-                (ring + self.way(2, 5, 6, 7) + with_court, [1, 1],
-                 "1 relations lack courtyards whose ways are missing or do not close: relation 200"),
-                (court + with_court, [1], "1 relations with missing ways were left out: relation 200"),
-                (half[0] + self.area(200, (1, "outer"), (3, "outer")), [1],
-                 "1 relations with missing ways were left out: relation 200"),
-                ("".join(half) + self.area(200, (1, "outer"), (3, "outer")), [1, 1]),
-                ('<node id="33" lat="53.601" lon="13.301"/>' + half[0] + self.way(3, 33, 4, 1)
-                 + self.area(200, (1, "outer"), (3, "outer")), [1, 1]),
+                (ring + with_court, [1, 1], f"1 relations {lacks}: relation 200"),
+                (ring + self.way(2, 5, 6, 7) + with_court, [1, 1], f"1 relations {lacks}: relation 200"),
+                (court + with_court, [1], f"1 relations {missing}: relation 200"),
+                (half[0] + of_two, [1], f"1 relations {missing}: relation 200"), ("".join(half) + of_two, [1, 1]),
+                ('<node id="33" lat="53.601" lon="13.301"/>' + half[0] + self.way(3, 33, 4, 1) + of_two, [1, 1]),
                 (half[0] + self.area(200, (1, "outer")), [1],
                  "1 relations whose outer ways do not close were left out: relation 200"),
                 (self.area(200), [1], "1 relations without ways were left out: relation 200"),
@@ -563,12 +561,10 @@ class SceneObjects(unittest.TestCase):
                 (self.way(1, 1, 2, 77, 78, 1, more=self.BUILDING), [1],
                  "1 ways of which too few nodes are in the file were left out: way 1"),
                 (ring + self.area(200, (1, "outer"), (1, "outer")), [1, 1]),
-                (ring + self.way(3, 3, 4, 1, 2, 3) + self.area(200, (1, "outer"), (3, "outer")), [1, 1],
-                 "1 footprints with crossing or overlapping rings were repaired: town N")):
+                (ring + self.way(3, 3, 4, 1, 2, 3) + of_two, [1, 1],
+                 "1 footprints with crossing or overlapping rings were repaired: town 1")):
             for text in (self.NODES + body + other, body + other + self.NODES):
-                found = self.volumes(text,
-                                     *(note.replace("N", "1" if text.startswith("<node") else "1") for note in notes))
-                self.assertEqual(sorted(found), sorted(expected), body)
+                self.assertEqual(sorted(self.volumes(text, *said)), sorted(expected), body)
 
     def test_ways_of_other_relations_and_closed_lines_of_osm(self):
         """A building that is also the outline of a school stands, and a closed wall around an industrial site is a
@@ -581,26 +577,23 @@ class SceneObjects(unittest.TestCase):
                          self.area(9, (1, "outer"), (77, "outer"), more=schools)):
             self.assertEqual(self.volumes(self.NODES + ring + other + relation), [1, 1], relation)
         tank = self.way(1, 1, 2, 3, 4, 1, more='<tag k="man_made" v="storage_tank"/><tag k="building:part" v="yes"/>')
-        self.assertEqual(self.volumes(self.NODES + tank
-                                      + other.replace("</way>", '<tag k="building:part" v="yes"/></way>'),
-                                      "1 closed ways that are lines by GDAL's rules were left out: way 1",
-                                      filter={"building:part": "*"}), [1])
+        part = other.replace("</way>", '<tag k="building:part" v="yes"/></way>')
+        self.assertEqual(self.volumes(self.NODES + tank + part, "1 closed ways that are lines by GDAL's rules were "
+                                      "left out: way 1", filter={"building:part": "*"}), [1])
         whole = self.area(200, (1, "outer"))
-        for body, expected, *notes in ((ring + whole.replace("multipolygon", "site"), [1, 1],
-                                        "1 relations that are not multipolygons were left out: relation 200"),
-                                       (self.way(1, 1, 2, 3, 4, 1)
-                                        + whole.replace('<tag', '<member type="relation" ref="5" role="outer"/><tag',
-                                                        1), [1, 1],
-                                        "1 relations lack parts that are relations: relation 200"),
-                                       (ring.replace('ref="4"', 'ref="4x"'), [0.5, 1],
-                                        "1 ways and relations lack corners whose nodes are missing: way 1"),
-                                       (self.way(1, 1, 2, 3, 4, 1)
-                                        + whole.replace('<tag', '<member type="way" ref="18x" role="outer"/><tag', 1),
-                                        [1], "1 relations with missing ways were left out: relation 200")):
-            self.assertEqual(sorted(self.volumes(self.NODES + other + body, *notes)), expected, body)
-        change = st.write_scene(self.folder, "town", self.osm(
-                                    '<osmChange version="0.6"><create>' + self.NODES + ring + "</create></osmChange>"))
-        self.assertIn("is a change of OpenStreetMap's data, expected a map", " ".join(st.Read(change).errors))
+        plain, member = self.way(1, 1, 2, 3, 4, 1), '<member type="{}" ref="{}" role="outer"/><tag'.format
+        for body, expected, said in (
+                (ring + whole.replace("multipolygon", "site"), [1, 1],
+                 "1 relations that are not multipolygons were left out: relation 200"),
+                (plain + whole.replace("<tag", member("relation", 5), 1), [1, 1],
+                 "1 relations lack parts that are relations: relation 200"),
+                (ring.replace('ref="4"', 'ref="4x"'), [0.5, 1],
+                 "1 ways and relations lack corners whose nodes are missing: way 1"),
+                (plain + whole.replace("<tag", member("way", "18x"), 1), [1],
+                 "1 relations with missing ways were left out: relation 200")):
+            self.assertEqual(sorted(self.volumes(self.NODES + other + body, said)), expected, body)
+        self.refused(f'<osmChange version="0.6"><create>{self.NODES}{ring}</create></osmChange>',
+                     "is a change of OpenStreetMap's data, expected a map")
         walls = [self.way(1, 1, 2, 3, 4, 1, more=f'<tag k="barrier" v="wall"/>{more}')
                  for more in ("", '<tag k="landuse" v="industrial"/>', self.BUILDING, '<tag k="area" v="yes"/>',
                               '<tag k="leisure" v="pitch"/><tag k="area" v="no"/>')]
@@ -635,13 +628,11 @@ class SceneObjects(unittest.TestCase):
                 self.assertEqual(self.volumes(text, "1 nodes whose place is not in degrees were left out: 3",
                                               "1 ways and relations lack corners whose nodes are missing: way 1",
                                               name=name), [0.5])
-        nowhere = st.write_scene(self.folder, "town", self.osm(self.NODES.replace('lat="53', 'lat="253') + ring))
-        self.assertIn("holds no features; 12 nodes whose place is not in degrees were left out: 1, 2, 3, 4, 5, ...; 1 "
-                      "ways of which too few", " ".join(st.Read(nowhere).errors))
+        self.refused(self.NODES.replace('lat="53', 'lat="253') + ring, "holds no features; 12 nodes whose place is not "
+                     "in degrees were left out: 1, 2, 3, 4, 5, ...; 1 ways of which too few")
         self.assertEqual(self.volumes(self.NODES + ring + '<node id="1&#10;x" lat="1" lon="1"/>',
                                       '1 objects without a whole number as id were left out: node "1\\x0ax"'), [1])
-        cut = st.write_scene(self.folder, "town", self.osm('<osm version="0.6">' + self.NODES + ring))
-        self.assertIn("GDAL cannot read all of it: ", " ".join(st.Read(cut).errors))
+        self.refused('<osm version="0.6">' + self.NODES + ring, "GDAL cannot read all of it: ")
 
     def test_long_names_and_line_breaks(self):
         square = [self.SQUARE]
@@ -660,14 +651,14 @@ class SceneObjects(unittest.TestCase):
         box, ground = {"file": "box.obj", "name": "Box"}, {"ground": {"size": 100}}
         far = {"file": "box.obj", "position": [678016, 5403455, 412]}
         inside = {"position": [1.5, 3, 1]}
-        # under a roof
-        for objects, lidar, words in (([box], inside, "the lidar is inside Box"),
-                                      ([box], {**inside, "inside": True}, ""),
-                                      ([ground], {"position": [0, 0, -1]}, "the lidar is under the scene"),
-                                      ([ground, {"ground": {"size": 10, "height": 5}}], {"position": [0, 0, 1]}, ""),
-                                      ([far], inside, "box reaches more than 100 km from the origin"),
-                                      ([{**far, "name": name} for name in "ABC"], inside,
-                                       "A and 2 more objects reach more than 100 km from the origin")):
+        roof = {"ground": {"size": 10, "height": 5}}
+        for objects, lidar, words in (
+                ([box], inside, "the lidar is inside Box"), ([box], {**inside, "inside": True}, ""),
+                ([ground], {"position": [0, 0, -1]}, "the lidar is under the scene"),
+                ([ground, roof], {"position": [0, 0, 1]}, ""),
+                ([far], inside, "box reaches more than 100 km from the origin"),
+                ([{**far, "name": name} for name in "ABC"], inside,
+                 "A and 2 more objects reach more than 100 km from the origin")):
             scene = self.read(*objects, silent=False, lidar=lidar)
             self.assertEqual(len(scene.warnings), int(bool(words)))
             self.assertIn(words, "".join(scene.warnings))
@@ -678,19 +669,16 @@ class SceneObjects(unittest.TestCase):
         self.assertIn("Flat: 3 triangles, 2 degenerate, east 0.00 to 2.00, north 0.00 to 3.00, up 0.00 to 1.00 m",
                       scene.strings("scene_report"))
         self.assertIn("Flat: 1 points or lines were left out", scene.strings("scene_report"))
-        self.save("trees.geojson", json.dumps(
-                      {"type": "FeatureCollection", "features": [
-                           {"type": "Feature", "properties": {}, "geometry": g}
-                           for g in ({"type": "Point", "coordinates": [3, 4]},
-                                     {"type": "GeometryCollection",
-                                      "geometries": [{"type": "Point", "coordinates": [9, 4]}]})]}))
+        point = '{"type": "Point", "coordinates": [9, 4]}'
+        self.save("trees.geojson", features(("Point", [3, 4], {}), ("Point", [9, 4], {})).replace(
+            point, f'{{"type": "GeometryCollection", "geometries": [{point}]}}'))
         leaves = {"kind": "foliage", "leaf_area_density": 1}
         fog = self.read({"name": "Fog", "medium": {"kind": "fog", "visibility": 300, "shape": "everywhere"}},
                         {"footprints": "trees.geojson", "name": "Trees", "crs": "local", "height": 6, "width": 2,
                          "medium": leaves})
-        self.assertEqual(fog.strings("scene_report")[-2:], ["Fog: a medium that is not bounded by triangles",
-                                                            "Trees: 2 ellipsoids, east 2.00 to 10.00, north 3.00 to "
-                                                            "5.00, up 0.00 to 6.00 m"])
+        self.assertEqual(fog.strings("scene_report")[-2:], [
+            "Fog: a medium that is not bounded by triangles",
+            "Trees: 2 ellipsoids, east 2.00 to 10.00, north 3.00 to 5.00, up 0.00 to 6.00 m"])
         self.assertEqual([scene.reader.CanReadFile(os.path.join(self.folder, name))
                           for name in ("scene.lidarscene.json", "flat.obj", "none.lidarscene.json", "")], [1, 0, 0, 0])
 
@@ -699,9 +687,8 @@ class SceneObjects(unittest.TestCase):
                   {"material_map": {"glazed": "Glass", "*": "Wood"}, "position": [0, 7, 0], "up_axis": "z"}]
         for name in ("quads.obj", "box.gltf", "box.vtp"):
             objects = [{"file": name, "name": str(i), **more} for i, more in enumerate(placed)]
-            scene = st.Read(st.write_scene(self.folder, "many", {"version": 1,
-                                                                 "objects": [
-                                                                     *objects[:2], {"file": "box.stl"}, *objects[2:]]}))
+            scene = st.Read(st.write_scene(self.folder, "many", {
+                "version": 1, "objects": [*objects[:2], {"file": "box.stl"}, *objects[2:]]}))
             for one in objects:
                 block = scene.block(one["name"])
                 own = st.Read(st.write_scene(self.folder, "one", {"version": 1, "objects": [one]})).blocks[0]
