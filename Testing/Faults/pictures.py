@@ -15,32 +15,31 @@ import re
 import subprocess
 import sys
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
-MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text(encoding="utf-8"),
-                       re.M)[1])
+from faults import SOURCE, planted
+
+MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text("utf-8"), re.M)[1])
 TESTS = "TestExamplePictures|TestImage|Plugin-Test(Pipeline|Macros-more)$"
 ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline)"
 OUTPUT, SCAN = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/Scan.cxx"
 BAR, NOTHING = "axes.figure.colorbar(", "(lambda *_, **__: None)("
 # Name, baselines in which it can occur, and for each file what is replaced by what.
-CHANGES = (("nothing", "^$", ()), (
-               "energies times 0.9", ENERGIES, (
-                   (OUTPUT, "{ return all[i].energy; }", "{ return 0.9 * all[i].energy; }"),
-                   (OUTPUT, "{ return all[i].energyReceived; }", "{ return 0.9 * all[i].energyReceived; }"))),
-           ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds|^TestImageRange",
-            ((SCAN, "      block.beamOfEcho.resize(block.echoes.size(), b);\n",
-              "      block.echoes.resize(b % 10 == 0 ? block.beamOfEcho.size() : block.echoes.size());\n      "
-              "block.beamOfEcho.resize(block.echoes.size(), b);\n"),)),
-           ("a missing legend", ".", (
-                ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
-                ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
-                ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
-                ("Plugin/Macros/avian_lidar_coverage.py", "SetScalarBarVisibility(view, True)",
-                 "SetScalarBarVisibility(view, False)"),
-                ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
-                ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
-                ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
+CHANGES = (
+    ("nothing", "^$", ()),
+    ("energies times 0.9", ENERGIES, (
+        (OUTPUT, "{ return all[i].energy; }", "{ return 0.9 * all[i].energy; }"),
+        (OUTPUT, "{ return all[i].energyReceived; }", "{ return 0.9 * all[i].energyReceived; }"))),
+    ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds|^TestImageRange", (
+        (SCAN, "      block.beamOfEcho.resize(block.echoes.size(), b);\n",
+         "      block.echoes.resize(b % 10 == 0 ? block.beamOfEcho.size() : block.echoes.size());\n"
+         "      block.beamOfEcho.resize(block.echoes.size(), b);\n"),)),
+    ("a missing legend", ".", (
+        ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
+        ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
+        ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
+        ("Plugin/Macros/avian_lidar_coverage.py", "BarVisibility(view, True)", "BarVisibility(view, False)"),
+        ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
+        ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
+        ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
 
 
 def drawn(build):
@@ -62,18 +61,9 @@ def main():
     baselines = {file.name for file in (SOURCE / "Testing/Data/Baseline").glob("*.png")}
     rows, missed = [], 0
     for name, where, patches in CHANGES:
-        texts = {SOURCE / file: (SOURCE / file).read_text(encoding="utf-8") for file, *_ in patches}
-        try:
-            for file, old, new in patches:
-                text = (SOURCE / file).read_text(encoding="utf-8")
-                if text.count(old) != 1:
-                    sys.exit(f"{name}: its text is {text.count(old)} times in {file}, expected once")
-                (SOURCE / file).write_text(text.replace(old, new), encoding="utf-8")
+        with planted(patches):
             subprocess.run(["cmake", "--build", options.build], stdout=subprocess.DEVNULL, check=True)
             errors = drawn(options.build)
-        finally:
-            for file, text in texts.items():
-                file.write_text(text, encoding="utf-8")
         if set(errors) != baselines:
             sys.exit(f"{name}: no picture of {sorted(baselines - set(errors))}, no baseline of "
                      f"{sorted(set(errors) - baselines)}")

@@ -15,7 +15,7 @@ RELEASE = re.search(r"project\(AvianLidar\s+VERSION ([\d.]+)",
                     (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
 VERSION = f"{RELEASE}-1"
 PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
-PLUGINS = f"usr/lib/{PARAVIEW}/plugins/"
+PLUGINS, PACKAGE = f"usr/lib/{PARAVIEW}/plugins/", r"usr/lib/python3/dist-packages/avianlidar/"
 DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.gz)"
 # Of each package: the fields, and where its files may be.
 PACKAGES = {"avian-lidar": ({"Section": "science", "Recommends": "python3-avianlidar",
@@ -28,9 +28,9 @@ PACKAGES = {"avian-lidar": ({"Section": "science", "Recommends": "python3-avianl
             "python3-avianlidar": (
                 {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
                  "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, "
-                            r"python3-tqdm, "}, [
-                    r"usr/bin/avianlidar", r"usr/lib/python3/dist-packages/avianlidar/(apps/(\w+/)?)?[\w.]+",
-                    r"usr/lib/python3/dist-packages/avianlidar/scene/(LICENSE-ODbL\.md|hongqiao\.(geojson|lidarscene\.json))",
+                            r"python3-tqdm, "},
+                [r"usr/bin/avianlidar", PACKAGE + r"(apps/(\w+/)?)?[\w.]+",
+                 PACKAGE + r"scene/(LICENSE-ODbL\.md|hongqiao\.(geojson|lidarscene\.json))",
                     r"usr/share/man/man1/avianlidar\.1\.gz", r"usr/share/bash-completion/completions/avianlidar",
                     r"usr/share/zsh/vendor-completions/_avianlidar"]),
             "libavian-lidar-dev": (

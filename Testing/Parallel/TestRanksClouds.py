@@ -8,7 +8,8 @@ import numpy as np
 import vtk
 from vtk.util import numpy_support
 
-from paralleltools import LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, point_arrays, table, total, update
+from paralleltools import (LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, point_arrays, table,
+                           total, update)
 import cloudtools
 import echotools
 from avianlidar import vtkAvianLidar as al

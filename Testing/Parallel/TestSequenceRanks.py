@@ -52,9 +52,11 @@ from avianlidar import siting
 from avianlidar._ranks import Ranks
 rank, home, file = Ranks().rank, pathlib.Path({str(home)!r}), {str(file)!r}
 wall = al.Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material="Wall")
-for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out), lambda out: al.Sequence(file, number_of_scans=1 + rank).write(out),
+narrow = al.Sensor(azimuth_range=(-1.0, 1.0))
+for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out),
+                          lambda out: al.Sequence(file, number_of_scans=1 + rank).write(out),
                           lambda out: al.BirdTracks([home / "made"], learning_scans=rank).write(out),
-                          lambda out: siting.look(wall, al.Sensor(azimuth_range=(-1.0, 1.0)), [(rank, 0, 2)], [(0, 200, 1)], ["crow"], out),
+                          lambda out: siting.look(wall, narrow, [(rank, 0, 2)], [(0, 200, 1)], ["crow"], out),
                           lambda out: al.Sequence(file).write(out), lambda out: al.Sequence(file).write(out))):
     try:
         work(home / f"out{{k}}")

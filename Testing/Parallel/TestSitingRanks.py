@@ -87,9 +87,11 @@ def stop(done, total):
     if ranks.rank == 1:
         raise KeyError("mine")
 wall = al.Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material="Wall")
-again = al.Sequence({str(SOURCE / 'Examples' / 'sequence' / 'hongqiao.scenario.json')!r}, number_of_scans=4, scans_per_sequence=1,
-                    scan={{"rays_per_beam": 20}}, sensor={{"preset": "Airport16", "azimuth_step": 5.0}})
-for work in (lambda: siting.look(wall, al.Sensor(azimuth_range=(-1.0, 1.0)), [(k, 0, 2) for k in range(4)], [(0, 200, 1)], ["crow"], home, ranks, stop),
+again = al.Sequence({str(SOURCE / 'Examples' / 'sequence' / 'hongqiao.scenario.json')!r}, number_of_scans=4,
+                    scans_per_sequence=1, scan={{"rays_per_beam": 20}},
+                    sensor={{"preset": "Airport16", "azimuth_step": 5.0}})
+narrow, sites = al.Sensor(azimuth_range=(-1.0, 1.0)), [(k, 0, 2) for k in range(4)]
+for work in (lambda: siting.look(wall, narrow, sites, [(0, 200, 1)], ["crow"], home, ranks, stop),
              lambda: again.write(home + "/sequence", ranks, lambda *_: stop(0, 0))):
     try:
         work()

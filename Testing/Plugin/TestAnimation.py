@@ -111,16 +111,16 @@ def test_sweeps():
     def look():
         simple.Render(view)
         extent, status = tuple(image.GetDataInformation().GetExtent()), image.PointData["status"].GetRange()[0]
-        return scene.TimeKeeper.Time, count(beams), count(beams, 1), count(echoes), count(
-            echoes, 1), extent, status >= 0
+        counts = (count(data, port) for data in (beams, echoes) for port in (0, 1))
+        return scene.TimeKeeper.Time, *counts, extent, status >= 0
 
     times, *fired, received, reported, extents, full = zip(*frames_of(scene, look))
     assert list(times) == steps, times
     expected = [COLUMNS * 16 * (k % 6 + 1) // 6 for k in range(12)]
-    assert [*map(list, fired)] == [expected,
-                                   [2 * one for one in expected]] and list(reported) == expected, (fired, reported)
-    assert 0 < received[1] < received[2] < received[5] == len(
-        whole["energy"]) and received[:6] == received[6:], received
+    assert [*map(list, fired)] == [expected, [2 * one for one in expected]], fired
+    assert list(reported) == expected, reported
+    assert 0 < received[1] < received[2] < received[5] == len(whole["energy"]), received
+    assert received[:6] == received[6:], received
     assert {*extents} == {(0, COLUMNS - 1, 0, 15, 0, 0)} and list(full) == ([False] * 5 + [True]) * 2, (extents, full)
     # Played by ParaView itself.
     scene.GoToFirst()

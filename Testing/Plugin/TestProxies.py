@@ -62,7 +62,8 @@ def core_of(writer):
 def pairs(instance):
     """The properties of a class that Set and Get have."""
     methods = set(dir(instance)) - set(dir(vtkPolyDataAlgorithm))
-    return {name[3:] for name in methods if name.startswith("Set") and "Get" + name[3:] in methods} - NOT_SHOWN - NO_PAIR
+    found = {name[3:] for name in methods if name.startswith("Set") and "Get" + name[3:] in methods}
+    return found - NOT_SHOWN - NO_PAIR
 
 
 def words(name):
@@ -124,10 +125,9 @@ class TestProxies(unittest.TestCase):
         cls.source = simple.AvianLidarBeamSource()
         cls.proxies = {}
         for name in sorted(word for word in vars(simple) if word.startswith("AvianLidar")):
-            prototype = servermanager.ProxyManager().GetPrototypeProxy(
-                "filters", name) or servermanager.ProxyManager().GetPrototypeProxy("sources", name)
-            if prototype and prototype.GetVTKClassName().replace(
-                    "vtkAvianLidar", "") != "" and prototype.GetVTKClassName() not in WRITERS:
+            known = servermanager.ProxyManager()
+            prototype = known.GetPrototypeProxy("filters", name) or known.GetPrototypeProxy("sources", name)
+            if prototype and prototype.GetVTKClassName() not in ("", "vtkAvianLidar", *WRITERS):
                 cls.proxies[name] = getattr(simple, name)()
         cls.cores = {writer[len("vtk"):] + "Core": core_of(writer) for writer in WRITERS}
         cls.inputs = {name: {prop for prop in proxy.ListProperties()
@@ -440,8 +440,8 @@ class TestProxies(unittest.TestCase):
         first = {n for n in cover.ListProperties() if cover.SMProxy.GetProperty(n).GetPanelVisibility() == "default"}
         self.assertEqual(first, set("Beams Surfaces Places Bounds Spacing Species Reflectance EffectiveArea "
                                     "MeteorologicalVisibility RequiredDetections NumberOfScans HeightLimits".split()))
-        factory = simple.AvianLidarPointCloudReader(
-            FileName="x.pcd").SMProxy.GetHints().FindNestedElementByName("ReaderFactory")
+        hints = simple.AvianLidarPointCloudReader(FileName="x.pcd").SMProxy.GetHints()
+        factory = hints.FindNestedElementByName("ReaderFactory")
         self.assertEqual({"." + one for one in factory.GetAttribute("extensions").split()}, set(_suffixes.READERS))
 
 

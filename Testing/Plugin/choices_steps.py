@@ -139,8 +139,8 @@ def beam():
     rows = range(table.GetNumberOfRows())
     for name in ("solid_angle_share", "energy_share"):
         assert abs(sum(table.GetValueByName(i, name).ToDouble() for i in rows) - 1) < 1e-6, name
-    assert len(rows) > 1 and beam.GetDataInformation(0).GetNumberOfCells() > 0 and shown(beam, view) and shown(
-        beam, view, 1)
+    assert len(rows) > 1 and beam.GetDataInformation(0).GetNumberOfCells() > 0
+    assert shown(beam, view) and shown(beam, view, 1)
     simple.ClearSelection()
     look_at(beam, view)
     yield 0.5

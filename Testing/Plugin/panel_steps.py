@@ -146,10 +146,11 @@ def advise():
     advised = {name: prop.GetUncheckedElement(0) for name, prop in properties.items()}
     assert {name: prop.GetElement(0) for name, prop in properties.items()} == before, "applied"
     assert (before["Preset"], advised["Preset"], advised["NumberOfReflections"]) == (2, 0, 1), (before, advised)
-    assert find("Preset", parent=panel()).findChild(
-        QtWidgets.QComboBox).currentText() == "Custom" and apply_button().isEnabled()
+    preset = find("Preset", parent=panel()).findChild(QtWidgets.QComboBox)
+    assert preset.currentText() == "Custom" and apply_button().isEnabled()
     # A convex body cannot light itself.
-    assert "One reflection is enough" in answer.text() and f"{advised['RaysPerBeam']}" in answer.toolTip(), answer.toolTip()
+    assert "One reflection is enough" in answer.text(), answer.text()
+    assert f"{advised['RaysPerBeam']}" in answer.toolTip(), answer.toolTip()
     yield from apply()
     assert {name: prop.GetElement(0) for name, prop in properties.items()} == advised, "not applied"
     take()

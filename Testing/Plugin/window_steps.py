@@ -106,11 +106,11 @@ def look(source, view, representation, mode):
     """Coloured by energy over the receiver's limits, with a legend."""
     display, table = simple.GetDisplayProperties(source, view), simple.GetColorTransferFunction("energy")
     bar = simple.GetScalarBar(table, view)
-    assert list(display.ColorArrayName) == [
-        "POINTS", "energy"] and representation in display.Representation, display.Representation
+    assert list(display.ColorArrayName) == ["POINTS", "energy"], display.ColorArrayName
+    assert representation in display.Representation, display.Representation
     assert (table.RGBPoints[0], table.RGBPoints[-4]) == (2e-6, 6.25e-5), table.RGBPoints
-    assert (bar.Title, bar.Visibility) == ("energy (J)", 1) and mode in view.InteractionMode, (
-        bar.Title, view.InteractionMode)
+    assert (bar.Title, bar.Visibility) == ("energy (J)", 1), bar.Title
+    assert mode in view.InteractionMode, view.InteractionMode
 
 
 def image():

@@ -86,7 +86,8 @@ class Scores(unittest.TestCase):
         One that stays counts nowhere."""
         runways = [Runway("a", (0.0, 0.0), (1000.0, 0.0), 45.0), Runway("b", (0.0, 400.0), (1000.0, 400.0), 45.0)]
         scans = []
-        # north from strip to strip, 20 m a scan; east over a runway from one glide path to the other, 100 m a scan; and back and forth
+        # Bird 1 flies north from strip to strip, 20 m a scan. Bird 2 flies east over a runway from one glide path to
+        # the other, 100 m a scan. Bird 3 flies back and forth.
         for k in range(20):
             rows = [row(1, 2.0 * k, (500.0, 20.0 * k, 10.0)), row(2, 2.0 * k, (100.0 * k - 450.0, 0.0, 40.0)),
                     row(3, 2.0 * k, (500.0, 160.0 * (k % 2), 10.0))]

@@ -8,7 +8,8 @@ import unittest
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkVersion
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import (vtkImageData, vtkPointSet, vtkPolyData, vtkRectilinearGrid,
+                                           vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersCore import vtkPassThrough
 
 import avianlidar as al

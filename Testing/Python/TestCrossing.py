@@ -98,9 +98,8 @@ class Crossings(unittest.TestCase):
             every = _crossing._seen(cover, places, ways)
             computed = []
             seen = _crossing._seen
-            with unittest.mock.patch.object(_crossing, "PROBED", 100), unittest.mock.patch.object(
-                    _crossing, "_seen",
-                    lambda cover, places, ways: computed.append(len(places)) or seen(cover, places, ways)):
+            with unittest.mock.patch.multiple(_crossing, PROBED=100, _seen=lambda cover, places, ways: (
+                    computed.append(len(places)) or seen(cover, places, ways))):
                 np.testing.assert_array_equal(_crossing._seen_near(cover, places, ways),
                                               np.where(every > 1e-5, every, _crossing._seen_near(cover, places, ways)))
             self.assertGreater(every.max(), 0.01)
@@ -112,10 +111,9 @@ class Crossings(unittest.TestCase):
         before = [getattr(asked.regions, name) for name in names]
         for work in (_crossing.crossing, lambda plan: plan.in_airs([{"visibility": 5e3}]),
                      lambda plan: plan.mixed(plan.regions)):
-            with unittest.mock.patch.object(Coverage, "data", new_callable=unittest.mock.PropertyMock,
-                                            side_effect=KeyboardInterrupt), unittest.mock.patch.object(
-                    Coverage, "table", new_callable=unittest.mock.PropertyMock,
-                    side_effect=KeyboardInterrupt), self.assertRaises(KeyboardInterrupt):
+            stopped = unittest.mock.PropertyMock(side_effect=KeyboardInterrupt)
+            with unittest.mock.patch.multiple(Coverage, data=stopped, table=stopped), \
+                    self.assertRaises(KeyboardInterrupt):
                 work(asked)
             self.assertEqual([getattr(asked.regions, name) for name in names], before)
 

@@ -58,8 +58,8 @@ def of_advisor():
         met = all(table.GetValueByName(row, name).ToDouble() <= most for name, most in asked.items())
         assert (table.GetValueByName(row, "verdict").ToInt() == 2) == met, row
     assert table.GetNumberOfRows() == 37
-    arrays = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())] + [
-        table.GetFieldData().GetAbstractArray(name) for name in ("advised", "advice")]
+    arrays = [*map(table.GetColumn, range(table.GetNumberOfColumns())),
+              *map(table.GetFieldData().GetAbstractArray, ("advised", "advice"))]
     return {array.GetName(): array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or "" for array in arrays}
 
 

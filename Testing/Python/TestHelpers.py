@@ -57,7 +57,8 @@ class Properties(unittest.TestCase):
         scene, sensor = al.Scene(WALL), al.Sensor(azimuth_step=10)
 
         def read():
-            return scene.objects, scene.materials, scene.number_of_triangles, scene.bounds, sensor.beams.number_of_points
+            return [scene.objects, scene.materials, scene.number_of_triangles, scene.bounds,
+                    sensor.beams.number_of_points]
         known = read()
         with mock.patch("avianlidar._scene.update") as one, mock.patch("avianlidar._sensor.update") as other:
             self.assertEqual(read(), known)

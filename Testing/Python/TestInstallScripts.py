@@ -16,9 +16,11 @@ APT = """#!/bin/sh
 echo "$@" >> "$HERE/calls"
 case " $* " in
   *" --print-uris "*) [ -e "$HERE/lists" ] || { echo "E: no lists" >&2; exit 100; }
-    echo "'https://there/a.deb' a.deb 400000000 MD5Sum:0"; echo "'https://there/b.deb' b.deb 160400000 MD5Sum:0"; exit ;;
+    echo "'https://there/a.deb' a.deb 400000000 MD5Sum:0"
+    echo "'https://there/b.deb' b.deb 160400000 MD5Sum:0"; exit ;;
   *" update "*) touch "$HERE/lists" ;;
-  *" --download-only "*) echo "Get:1 a"; [ "$BAD" = once ] && [ ! -e "$HERE/once" ] && { touch "$HERE/once"; echo "E: 404" >&2; exit 100; } ;;
+  *" --download-only "*) echo "Get:1 a"
+    [ "$BAD" = once ] && [ ! -e "$HERE/once" ] && { touch "$HERE/once"; echo "E: 404" >&2; exit 100; } ;;
   *) echo "Unpacking a"; [ "$BAD" = ever ] && { echo "E: broken" >&2; exit 100; } ;;
 esac
 exit 0

@@ -9,7 +9,8 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource
 
 import avianlidar as al
-from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter, vtkAvianLidarMedium
+from avianlidar.vtkAvianLidar import (vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter,
+                                      vtkAvianLidarMedium)
 from cloudtools import field as texts
 from echotools import InFolder, Messages, array, box, given, group
 

@@ -118,20 +118,24 @@ class ModelNotes(unittest.TestCase):
             return echotools.scan(TOWN, echotools.given(echotools.sensor(), **dict(sensor)), **settings)
 
         for echo, expected in (
-                (scanned(), {"all_left_out": "at most", "further_reflections": "not modelled: [^,]*$", "noise": "left out", "two_reflections": "modelled, without", "faint_paths": "left out",
-                             "small_objects": "more rays", "planes": "integrated", "perceivable_range": "nothing beyond .* km"}),
+                (scanned(), {"all_left_out": "at most", "further_reflections": "not modelled: [^,]*$",
+                             "noise": "left out", "two_reflections": "modelled, without", "faint_paths": "left out",
+                             "small_objects": "more rays", "planes": "integrated",
+                             "perceivable_range": "nothing beyond .* km"}),
                 # No light after two reflections reaches such a limit.
                 (scanned({"PulseEnergy": 1e-3, "LowerEnergyLimit": 10.0, "UpperEnergyLimit": 20.0}),
-                 {"two_reflections": "left out", "further_reflections": "not modelled: .*, which return at most", "perceivable_range": "nothing beyond 0 m"}),
+                 {"two_reflections": "left out", "further_reflections": "not modelled: .*, which return at most",
+                  "perceivable_range": "nothing beyond 0 m"}),
                 (scanned(AttenuationCoefficient=0.0, FullModel=True),
-                 {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$", "faint_paths": "followed",
-                  "perceivable_range": "without end"}),
+                 {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$",
+                  "faint_paths": "followed", "perceivable_range": "without end"}),
                 # Each faint path is below the limit, but the bound of their sum is far above it.
-                (scanned(LightEnergyThreshold=1), {"all_left_out": "paths with two reflections below the lower energy limit$",
-                                                   "faint_paths": "left out below the lower energy limit$"}),
+                (scanned(LightEnergyThreshold=1),
+                 {"all_left_out": "paths with two reflections below the lower energy limit$",
+                  "faint_paths": "left out below the lower energy limit$"}),
                 (scanned({"ReceiverAperture": 0.01}, NumberOfReflections=1, Noise=False, BeamSamples=echotools.RAYS),
-                 {"noise": "not modelled", "two_reflections": "not modelled", "further_reflections": "not modelled: paths over two",
-                  "planes": "sampled"})):
+                 {"noise": "not modelled", "two_reflections": "not modelled",
+                  "further_reflections": "not modelled: paths over two", "planes": "sampled"})):
             notes = notes_of(echo)
             for name, text in expected.items():
                 self.assertRegex(notes["note_" + name], "^" + text, name)

@@ -14,7 +14,8 @@ from vtkmodules.vtkIOPLY import vtkPLYReader
 
 import avianlidar
 from avianlidar import vtkAvianLidar as al
-from cloudtools import add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read, read_error, write
+from cloudtools import (add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read,
+                        read_error, write)
 from echotools import InFolder, array
 
 FILE, OTHER = "TestPLY.ply", "TestPLY.pcd"
@@ -53,7 +54,8 @@ class Reader(InFolder):
             assert_extremes(read(FILE), rows, kinds)
 
     def test_other_elements_are_passed_over(self):
-        before = "element camera 2\nproperty float f\nproperty short s\nelement strip 2\nproperty list uchar int v\nproperty int w\n"
+        before = ("element camera 2\nproperty float f\nproperty short s\nelement strip 2\nproperty list uchar int v\n"
+                  "property int w\n")
         after = "element face 1\nproperty list uchar int vertex_indices\n"
         put(b"1.5 2\n2.5 3\n2 7 8 9\n0 1\n" + LINES + b"3 0 1 1\n", before + VERTEX + after)
         self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]])
@@ -69,9 +71,9 @@ class Reader(InFolder):
             self.assertEqual(read(FILE).GetNumberOfPoints(), 0)
 
     def test_names_colours_and_holes(self):
-        properties = "uchar red\nproperty uchar green\nproperty uchar blue\nproperty ushort ring\nproperty float azimuth\n"
-        put(b"0 1 0 9 8 7 6 5\nnan 0 0 1 1 1 1 1\n",
-            f"comment by hand\nobj_info of nothing\n{VERTEX}property {properties}")
+        properties = "".join(f"property {name}\n" for name in (
+            "uchar red", "uchar green", "uchar blue", "ushort ring", "float azimuth"))
+        put(b"0 1 0 9 8 7 6 5\nnan 0 0 1 1 1 1 1\n", f"comment by hand\nobj_info of nothing\n{VERTEX}{properties}")
         data = read(FILE, said=["1 points whose coordinates are not finite are left out"])
         self.assertEqual(data.GetNumberOfPoints(), 1)
         self.assertEqual(set(names(data)), {"rgb", "laser_id", "file_azimuth"})

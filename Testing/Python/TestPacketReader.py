@@ -198,8 +198,8 @@ class TestPacketReader(InFolder):
         later = payload(500, time=1327, value=lambda block, shot: (1000, 100))
         for address, port, exact in ((202, 2368, "192.168.1.202"), (201, 2369, "192.168.1.201:2369")):
             write(pcap([ethernet(near), ethernet(far, last=address, port=port), ethernet(later)]))
-            listed = f"(--sensor-address) of one of these: 192.168.1.201:2368 (2 packets), 192.168.1.{address}:{port} (1 packets)"
-            self.assertIn(listed, read_error(FILE))
+            self.assertIn("(--sensor-address) of one of these: 192.168.1.201:2368 (2 packets), "
+                          f"192.168.1.{address}:{port} (1 packets)", read_error(FILE))
             self.assertEqual(set(array(read(FILE, SensorAddress=exact), "distance_m")), {6.0})
             cloud = avianlidar.load_cloud(FILE, sensor_address="192.168.1.201:2368")
             self.assertEqual((cloud.number_of_points, set(cloud["distance_m"])), (768, {2.0}))

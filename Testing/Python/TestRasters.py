@@ -222,8 +222,10 @@ class Server:
 
 
 def mosaic(source, more="", srs="EPSG:4326", start="", relative=0):
-    return ('<VRTDataset rasterXSize="100" '
-            f'rasterYSize="100">{start}<SRS>{srs}</SRS><GeoTransform>13.2,.002,0,53.7,0,-.002</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="{relative}">{source}</SourceFilename><SourceBand>1</SourceBand></SimpleSource>{more}</VRTRasterBand></VRTDataset>')
+    return (f'<VRTDataset rasterXSize="100" rasterYSize="100">{start}<SRS>{srs}</SRS>'
+            '<GeoTransform>13.2,.002,0,53.7,0,-.002</GeoTransform><VRTRasterBand dataType="Float32" band="1">'
+            f'<SimpleSource><SourceFilename relativeToVRT="{relative}">{source}</SourceFilename>'
+            f'<SourceBand>1</SourceBand></SimpleSource>{more}</VRTRasterBand></VRTDataset>')
 
 
 class Files(unittest.TestCase):
@@ -245,10 +247,13 @@ class Files(unittest.TestCase):
         """Whatever the suffix: mosaics, services, what lies beside a raster or in its metadata, systems, maps."""
         server, good = Server(), write("good.tif", SLOPE)
         url = server.url
-        remote, service = f"/vsicurl/{url}/x.tif", (
-            '<GDAL_WMS><Service '
-            f'name="TMS"><ServerUrl>{url}/${{z}}/${{x}}/${{y}}</ServerUrl></Service><DataWindow><UpperLeftX>13'
-            '</UpperLeftX><UpperLeftY>54</UpperLeftY><LowerRightX>14</LowerRightX><LowerRightY>53</LowerRightY><SizeX>99</SizeX><SizeY>99</SizeY></DataWindow><Projection>EPSG:4326</Projection><BandsCount>1</BandsCount></GDAL_WMS>')
+        window = "".join(f"<{name}>{value}</{name}>" for name, value in (
+            ("UpperLeftX", 13), ("UpperLeftY", 54), ("LowerRightX", 14), ("LowerRightY", 53), ("SizeX", 99),
+            ("SizeY", 99)))
+        service = (f'<GDAL_WMS><Service name="TMS"><ServerUrl>{url}/${{z}}/${{x}}/${{y}}</ServerUrl></Service>'
+                   f'<DataWindow>{window}</DataWindow><Projection>EPSG:4326</Projection><BandsCount>1</BandsCount>'
+                   '</GDAL_WMS>')
+        remote = f"/vsicurl/{url}/x.tif"
         (FOLDER / "hidden.vrt").write_text(mosaic(remote))
         (FOLDER / "hidden.tif").write_text(mosaic(remote))
         (FOLDER / "wms.tif").write_text(service)
@@ -339,7 +344,8 @@ class Files(unittest.TestCase):
                  "its blocks have 20,000 x 20,000 pixels")):
             tiff(name, width, height, options)
             self.refused("", None, said, file=FOLDER / name)
-            picture = f'<SrcRect xOff="0" yOff="0" xSize="{width}" ySize="{height}"/><DstRect xOff="0" yOff="0" xSize="100" ySize="100"/></SimpleSource>'
+            picture = (f'<SrcRect xOff="0" yOff="0" xSize="{width}" ySize="{height}"/>'
+                       '<DstRect xOff="0" yOff="0" xSize="100" ySize="100"/></SimpleSource>')
             self.refused(f"of_{name}.vrt", mosaic(FOLDER / name).replace("</SimpleSource>", picture), said)
         tiff("plain.tif", 4000, 4000, ["TILED=YES"])
         source = re.search("<SimpleSource>.*</SimpleSource>", mosaic(FOLDER / "plain.tif"))[0]

@@ -152,9 +152,8 @@ class Less(unittest.TestCase):
         curve = reach.within_beams(al.Sensor("Search905"), "herring gull", np.array([distance]), visibility=23e3)
         self.assertLess(curve.error.max(), 0.02)
         random = np.random.default_rng(5)
-        air = Coverage(
-            al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray(
-            "attenuation_coefficient").GetValue(0)
+        cover = Coverage(al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)])
+        air = cover.data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
         about, up = random.uniform(0, 2 * np.pi, birds), np.radians(random.uniform(0.0, 5.625, birds))
         lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
         seen, _ = flown.fly(al.Scene(), al.Sensor("Search905"), distance * lines, 1, "herring gull", air, 2000,

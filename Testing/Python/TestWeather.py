@@ -65,8 +65,8 @@ def of_air(visibility, sampling_interval, gate):
     length = LIGHT * sampling_interval / 2
     units = np.floor(np.array(echoes["distance_m"]) / length).astype(int)
     order = np.argsort(units)
-    return (units[order] + 0.5) * length, np.array(echoes["energy_received"])[
-        order] / sensor.pulse_energy / sensor.receiver_aperture
+    energies = np.array(echoes["energy_received"])[order]
+    return (units[order] + 0.5) * length, energies / sensor.pulse_energy / sensor.receiver_aperture
 
 
 class Law(unittest.TestCase):

@@ -118,7 +118,7 @@ class Year(unittest.TestCase):
         self.assertAlmostEqual(float(told[1]), 100 * in_fog, delta=0.51)
         year = sum(part["share"] * rows[name, "map"]
                    for part, name in zip(YEAR, ("visibility of 20,000 m", "fog of 500 m", "rain of 10 mm/h")))
-        told = re.search("Over the year, by the hours of its weather, the share is ([0-9.]+ ± [0-9.]+)\u00a0%", text)[1]
+        told = re.search("Over the year, by the hours of its weather, the share is ([0-9.]+ ± [0-9.]+)\xa0%", text)[1]
         self.assertAlmostEqual(float(told.partition(" ")[0]), 100 * year, delta=0.51)
         self.assertIn(f", {told}\u00a0% over the year", text)
 

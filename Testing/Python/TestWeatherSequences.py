@@ -14,9 +14,9 @@ from helpertools import error_of
 HOUSE = {"version": 1, "lidar": {"position": [0, 0, 3]}, "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"}]}
 SCENARIO = {"scene": "field.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 5,
-            "sensor": {"preset": "Search905", "azimuth_step": 1.5}, "birds": [
-                {"pattern": "Circles", "species": "herring gull", "number_of_birds": 60, "radius": 500,
-                 "heights": [5, 40]}]}
+            "sensor": {"preset": "Search905", "azimuth_step": 1.5},
+            "birds": [{"pattern": "Circles", "species": "herring gull", "number_of_birds": 60, "radius": 500,
+                       "heights": [5, 40]}]}
 
 
 def rows_of(out):

@@ -73,8 +73,8 @@ def collada(points, faces, up):
 <library_materials><material id="m" name="painted"><instance_effect url="#e"/></material></library_materials>
 <library_geometries><geometry id="g" name="g"><mesh>
 <source id="p"><float_array id="a" count="24">{" ".join(repr(float(c)) for c in points.ravel())}</float_array>
-<technique_common><accessor source="#a" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source>
+<technique_common><accessor source="#a" count="8" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="{len(faces)}" material="m"><input semantic="VERTEX" source="#v" offset="0"/>
 <p>{" ".join(str(k) for f in faces for k in f)}</p></triangles></mesh></geometry></library_geometries>

@@ -46,7 +46,8 @@ class Browser:
 
     def picture_between(self, first, end, file):
         """Write what is shown from an element to before another (CSS selectors), as PNG."""
-        top, bottom, width = self.run(f"""const y = s => document.querySelector(s).getBoundingClientRect().top + scrollY;
+        top, bottom, width = self.run(f"""
+            const y = s => document.querySelector(s).getBoundingClientRect().top + scrollY;
             return [y('{first}'), y('{end}'), document.documentElement.scrollWidth]""")
         found = self.driver.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": {
             "x": 0, "y": max(top - 8, 0), "width": width, "height": bottom - top, "scale": 1}})
