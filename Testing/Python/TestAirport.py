@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from osgeo import gdal, osr
+from osgeo import gdal
 
 import avianlidar as al
 import exampletools
@@ -57,8 +57,7 @@ def made(name, file, *words):
 
 
 # What an eye without the cones of long, and of middle wavelengths sees of light in linear sRGB: Machado, Oliveira and
-# Fernandes, IEEE
-# TVCG 15(6), 2009, severity 1.
+# Fernandes, IEEE TVCG 15(6), 2009, severity 1.
 EYES = {"all": np.eye(3), "without long": np.array([(0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216),
                                                     (-0.003882, -0.048116, 1.051998)]),
         "without middle": np.array([(0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413),
@@ -199,6 +198,18 @@ def crossing():
     return plan
 
 
+def rows(folder):
+    """The properties of the features of an airport."""
+    whole = json.loads((folder / "airport.geojson").read_text("utf-8"))
+    return [feature["properties"] for feature in whole["features"]]
+
+
+def features(*several):
+    """GeoJSON. @param several properties and geometries"""
+    return {"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": properties, "geometry": shape} for properties, shape in several]}
+
+
 def blocks(folder):
     """By name: class, triangles."""
     scene = al.load_scene(folder / "airport.lidarscene.json")
@@ -229,6 +240,12 @@ def write_heights(name, heights, low, spacing, driver="GTiff"):
     return FOLDER / name
 
 
+def slope(name):
+    """A raster of heights that rise from 100 m at HERE by 4 % to the east."""
+    x = np.arange(-3200, 3201, 50.0)
+    return write_heights(name, np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
+
+
 class Extracts(unittest.TestCase):
     def test_level_ground_lies_at_the_airports_elevation(self):
         """From --heights, else from the map, else at 0 m with a warning; heights above the sea then fit."""
@@ -242,7 +259,7 @@ class Extracts(unittest.TestCase):
             origin = json.loads((folder / "airport.lidarscene.json").read_text())["origin"]
             self.assertAlmostEqual(origin["height"], height, places=3)
             self.assertEqual("does not say the aerodrome's elevation" in said, warned, said)
-            self.assertIn(f"the ground is level at {height:g} m", (folder / "README.txt").read_text(encoding="utf-8"))
+            self.assertIn(f"the ground is level at {height:g} m", (folder / "README.txt").read_text("utf-8"))
         code, said = run("airport", plan.write("elevation.osm"), "--heights", "30000", "-o", fresh("elevation-high"))
         self.assertEqual(code, 2, said)
         self.assertIn("--heights 30000: expected a raster, or the height of level ground", said)
@@ -286,8 +303,7 @@ class Extracts(unittest.TestCase):
         (folder / "small.coverage.json").write_text(json.dumps(small))
         code, words = run("coverage", folder / "small.coverage.json", "-o", folder / "maps")
         self.assertEqual(code, 0, words)
-        lines = re.findall(r"avianlidar ((\w+) .*?)(?:;.*)?$", (folder / "README.txt").read_text(encoding="utf-8"),
-                           re.MULTILINE)
+        lines = re.findall(r"avianlidar ((\w+) .*?)(?:;.*)?$", (folder / "README.txt").read_text("utf-8"), re.M)
         self.assertEqual([verb for _, verb in lines], ["coverage", "report", "sequence", "track"])
         for line, _ in lines:
             asked = vars(parser().parse_args(line.split()))
@@ -323,10 +339,8 @@ class Extracts(unittest.TestCase):
         plan.way([(-200, 240), (-180, 240)], True, building="yes", name="two nodes")
         plan.way([(-200, 260), (-200, 260)], barrier="wall")
         folder, _ = made("tags", plan.write("tags.osm"), "--icao", "XREL")
-        kinds = [feature["properties"]["kind"]
-                 for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
-        self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "wall", "building")],
-                         [3, 0, 1, 0, 1])
+        kinds = [row["kind"] for row in rows(folder)]
+        self.assertEqual([*map(kinds.count, ("runway", "road", "tree", "wall", "building"))], [3, 0, 1, 0, 1])
         scene, parts = blocks(folder)
         runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
         self.assertEqual({name: (round(one.axis()[1], 1), round(one.width, 1)) for name, one in runways.items()},
@@ -341,9 +355,7 @@ class Extracts(unittest.TestCase):
         plan.point(-300, 500, natural="tree", height="10")
         plan.area((-300, 300), (-200, 340), building="hangar", height="10")
         plan.way([(-500, -300), (500, -300)], barrier="fence", height="3")
-        x = np.arange(-3200, 3201, 50.0)
-        dem = write_heights("slope.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
-        folder, _ = made("slope", plan.write("slope.osm"), "--heights", dem)
+        folder, _ = made("slope", plan.write("slope.osm"), "--heights", slope("slope.tif"))
         scene, found = blocks(folder)
         self.assertAlmostEqual(scene.geodetic_origin[2], 100.0, delta=0.01)
         error = KNOWN["terrain_error"]
@@ -443,7 +455,7 @@ class Extracts(unittest.TestCase):
         file = plan.write("none.osm")
         folder, _ = made("none", file)
         mapped = json.loads((folder / "airport.geojson").read_text())
-        row = next(row["properties"] for row in mapped["features"] if row["properties"]["kind"] == "building")
+        row = next(one["properties"] for one in mapped["features"] if one["properties"]["kind"] == "building")
         self.assertEqual(row["height"], 8.0)
         self.assertIn("assumed: height is 'eleven'", (folder / "assumed.csv").read_text())
         for edit, words in (({"height": 0}, "height is 0, expected metres above 0"),
@@ -473,13 +485,12 @@ class Extracts(unittest.TestCase):
         plan = crossing()
         file = FOLDER / "long.geojson"
         gdal.VectorTranslate(str(file), str(plan.write("long.osm")), layers=["lines"])
-        text = json.loads(file.read_text(encoding="utf-8"))
-        for properties, shape in (({"aeroway": "aerodrome", "name": 5000 * "N"},
-                                   {"type": "Point", "coordinates": [13.3, 53.6]}),
-                                  ({"man_made": "mast", "name": 5000 * "M", "height": "9"},
-                                   {"type": "Point", "coordinates": [13.301, 53.603]})):
-            text["features"].append({"type": "Feature", "properties": properties, "geometry": shape})
-        file.write_text(json.dumps(text), encoding="utf-8")
+        text = json.loads(file.read_text("utf-8"))
+        text["features"] += features(
+            ({"aeroway": "aerodrome", "name": 5000 * "N"}, {"type": "Point", "coordinates": [13.3, 53.6]}),
+            ({"man_made": "mast", "name": 5000 * "M", "height": "9"},
+             {"type": "Point", "coordinates": [13.301, 53.603]}))["features"]
+        file.write_text(json.dumps(text))
         folder, said = made("long", file)
         self.assertIn(f"{80 * 'N'}..., 2 runways", said)
         self.assertTrue((folder / "airport.png").exists())
@@ -568,85 +579,6 @@ class Terrains(unittest.TestCase):
                                                        (-1000.0, 1000.0, -1000.0, 1000.0), KNOWN)
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
-    def test_units_and_holes_that_a_raster_does_not_name(self):
-        """Units of the band and of a compound system, a scale, a vertical datum, values that no ground has without a
-        word of them."""
-        around = (-1000.0, 1000.0, -1000.0, 1000.0)
-        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
-        truth = _ground.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, KNOWN)
-        plain = gdal.Open(str(FOLDER / "metres.tif"))
-
-        def changed(values, unit="", kind=gdal.GDT_Float64, system=None, places=None, **settings):
-            """@param settings of the band, @param system a compound one, which GeoTIFF has no word for @param places as
-            rows of a geotransform"""
-            image = gdal.GetDriverByName("MEM").Create("", plain.RasterXSize, plain.RasterYSize, 1, kind)
-            image.SetGeoTransform(places or plain.GetGeoTransform())
-            image.SetProjection(system if places else plain.GetProjection())
-            image.GetRasterBand(1).WriteArray(values[::-1])
-            image.GetRasterBand(1).SetUnitType(unit)
-            for name, value in settings.items():
-                getattr(image.GetRasterBand(1), f"Set{name}")(value)
-            gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "changed.tif"), image)
-            if system is None or places:
-                return _ground.read_heights(FOLDER / "changed.tif", HERE, around, KNOWN)
-            gdal.Translate(str(FOLDER / "changed.vrt"), str(FOLDER / "changed.tif"), outputSRS=system)
-            return _ground.read_heights(FOLDER / "changed.vrt", HERE, around, KNOWN)
-
-        def above_geoid(unit, metres):
-            return (f'COMPD_CS["with heights",{plain.GetProjection()},VERT_CS["EGM96 height",VERT_DATUM["EGM96 '
-                    f'geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
-        units = {"ft": 0.3048, "yd": 0.9144, "Foot_US": 1200 / 3937, "decimetres": 0.1, "km": 1000.0}
-        for posts, _, here, words, *_ in (*(changed(smooth / metres, unit) for unit, metres in units.items()),
-                                          changed(np.round(1000 * (smooth - 20)), kind=gdal.GDT_Int32, Scale=0.001,
-                                                  Offset=20.0), changed(smooth, system=above_geoid("metre", 1.0)),
-                                          changed(smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):
-            np.testing.assert_allclose(posts, truth[0], atol=2e-3, err_msg=words)
-            self.assertAlmostEqual(here, truth[2], delta=1e-3)
-            self.assertIn("40.0 to 60.0 m", words)
-        for value, unit, metres, declared in ((-501.0, "m", 1.0, {}), (9001.0, "", 1.0, {"NoDataValue": -9998.0}),
-                                              (np.nan, "", 1.0, {}), (30000.0, "ft", 0.3048, {})):
-            holed = smooth / metres
-            holed[140:160, 140:160] = value
-            posts, _, here, words, *_ = changed(holed, unit, **declared)
-            self.assertAlmostEqual(here, 50.0, delta=1.0, msg=(value, unit, declared))
-            self.assertTrue(35.0 < posts.min() and posts.max() < 65.0, (value, unit, declared))
-            self.assertIn("have no height in the file", words)
-        for unit, more, said in (("furlong", {}, "'furlong'"), ("", {"kind": gdal.GDT_Byte}, "holds bytes"),
-                                 ("m", {"system": above_geoid("foot", 0.3048)},
-                                  "heights in 'm' and its vertical system in 'foot'")):
-            with self.assertRaisesRegex(al.Error, said):
-                changed(smooth, unit, **more)
-        state_plane = osr.SpatialReference()
-        state_plane.ImportFromWkt(plain.GetProjection())
-        state_plane.SetLinearUnitsAndUpdateParameters("US survey foot", 1200 / 3937)
-        with self.assertWarnsRegex(RuntimeWarning, "says no unit of its heights, .* are likely in US survey foot"):
-            posts = changed(smooth, system=state_plane.ExportToWkt(),
-                            places=[value * 3937 / 1200 for value in plain.GetGeoTransform()])[0]
-        np.testing.assert_allclose(posts[:200, :200], truth[0][:200, :200], atol=2e-3)
-
-    def test_formats_of_heights(self):
-        """A tile of SRTM, in degrees, and a raster whose holes are in a mask."""
-        around = (-1000.0, 1000.0, -1000.0, 1000.0)
-        image = gdal.GetDriverByName("MEM").Create("", 1201, 1201, 1, gdal.GDT_Int16)
-        image.SetGeoTransform((13 - 1 / 2400, 1 / 1200, 0, 54 + 1 / 2400, 0, -1 / 1200))
-        degrees = osr.SpatialReference()
-        degrees.ImportFromEPSG(4326)
-        image.SetProjection(degrees.ExportToWkt())
-        image.GetRasterBand(1).WriteArray(np.full((1201, 1201), 77, np.int16))
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        tile = FOLDER / "N53E013.hgt"
-        gdal.GetDriverByName("SRTMHGT").CreateCopy(str(tile), image)
-        self.assertAlmostEqual(_ground.read_heights(tile, HERE, around, KNOWN)[2], 77.0, delta=1e-6)
-        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
-        masked = gdal.Open(str(write_heights("masked.tif", smooth, (-1500, -1500), 10.0)), gdal.GA_Update)
-        masked.GetRasterBand(1).DeleteNoDataValue()
-        masked.CreateMaskBand(gdal.GMF_PER_DATASET)
-        mask = np.full(smooth.shape, 255, np.uint8)
-        mask[140:160, 140:160] = 0
-        masked.GetRasterBand(1).GetMaskBand().WriteArray(mask)
-        del masked
-        self.assertIn("have no height in the file", _ground.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
-
 
 class Wrong(unittest.TestCase):
     def test_extracts_that_are_wrong(self):
@@ -662,13 +594,11 @@ class Wrong(unittest.TestCase):
                  (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"),
                  (FOLDER / "missing.osm", "no such file"), (FOLDER, "is not an extract by its name")]
         for name, content, said in (
-                ("text.gpkg", "no map", "GDAL cannot"), *(
-                    (f"{at}.geojson",
-                     '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"aeroway": '
-                     '"runway"}, '
-                     f'"geometry": {{"type": "LineString", "coordinates": [[{at}, {at}], [{at}, {at + 1}]]}}}}]}}',
-                     f"{at}.geojson: holds no runway, expected lines or areas with the tag aeroway=runway; left out: "
-                     "coordinates that are not degrees") for at in (95, 5940000)),
+                ("text.gpkg", "no map", "GDAL cannot"),
+                *((f"{at}.geojson", json.dumps(features(({"aeroway": "runway"}, {
+                    "type": "LineString", "coordinates": [[at, at], [at, at + 1]]}))),
+                   f"{at}.geojson: holds no runway, expected lines or areas with the tag aeroway=runway; left out: "
+                   "coordinates that are not degrees") for at in (95, 5940000)),
                 ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read")):
             (FOLDER / name).write_text(content)
             files.append((FOLDER / name, said))
@@ -708,8 +638,9 @@ class Wrong(unittest.TestCase):
             if begun:
                 made(airport.Kept(folder), "1")
             write = unittest.mock.Mock(side_effect=[*stop * [None], KeyboardInterrupt])
-            with unittest.mock.patch.object(airport, "write_whole", lambda path, content: write(path)
-                                            or path.write_bytes(content)), self.assertRaises(KeyboardInterrupt):
+            stopped = unittest.mock.patch.object(airport, "write_whole", lambda path, content: (
+                write(path) or path.write_bytes(content)))
+            with stopped, self.assertRaises(KeyboardInterrupt):
                 made(airport.Kept(folder), "2")
             kept = airport.Kept(folder)
             self.assertEqual((made(kept, "3"), kept.edited),
@@ -725,8 +656,7 @@ class StandsOn(unittest.TestCase):
         shapes = [{"type": "Polygon", "coordinates": [[[-10, -10], [10, -10], [10, 10], [-10, 10], [-10, -10]]]},
                   {"type": "Polygon", "coordinates": [[[90, 90], [95, 90], [95, 95], [90, 90]]]},
                   {"type": "Point", "coordinates": [20, 0]}]
-        (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-            {"type": "Feature", "properties": {}, "geometry": shape} for shape in shapes]}))
+        (FOLDER / "shapes.geojson").write_text(json.dumps(features(*(({}, shape) for shape in shapes))))
         return {"version": 1, "objects": [{"name": "Plane", "file": str(FOLDER / "plane.obj"), "material": "Wall"},
                                           {"name": "Things", "footprints": str(FOLDER / "shapes.geojson"),
                                            "crs": "local", "material": "Wall", "on": "Plane", **more}]}
@@ -754,8 +684,7 @@ class StandsOn(unittest.TestCase):
         """Triangles of a footprint on a ground (OBJ)."""
         scene = self.scene(**more)
         (FOLDER / "plane.obj").write_text(ground)
-        (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-            {"type": "Feature", "properties": {}, "geometry": shape}]}))
+        (FOLDER / "shapes.geojson").write_text(json.dumps(features(({}, shape))))
         return next(triangles for name, _, triangles in airport_pages.parts_of(al.Scene(scene)) if name == "Things")
 
     def test_a_closed_body_is_no_terrain(self):
@@ -792,4 +721,4 @@ class RealAirports(unittest.TestCase):
         self.assertEqual([round(runways[name].axis()[1]) for name in ("18L/36R", "18R/36L")], [3398, 3292])
         self.assertGreater(plan_area(found["18L/36R"][1]), 57.6 * 3398)
         self.assertNotIn("says no height", words)
-        self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
+        self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text("utf-8"))

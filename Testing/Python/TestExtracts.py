@@ -58,11 +58,6 @@ def left(file):
     return found
 
 
-def rows(folder):
-    whole = json.loads((folder / "airport.geojson").read_text("utf-8"))
-    return [feature["properties"] for feature in whole["features"]]
-
-
 def runway(**tags):
     plan = ta.Map()
     plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="45", **tags)
@@ -91,7 +86,7 @@ def geojson(name, *features):
     file = ta.FOLDER / name
     gdal.VectorTranslate(str(file), str(runway().write("whole.osm")), layers=["lines"])
     whole = json.loads(file.read_text("utf-8"))
-    whole["features"] += [{"type": "Feature", "properties": tags, "geometry": shape} for tags, shape in features]
+    whole["features"] += ta.features(*features)["features"]
     file.write_text(json.dumps(whole).replace("Infinity", "1e400"), "utf-8")
     return file
 
@@ -155,8 +150,7 @@ class Formats(unittest.TestCase):
                 lines.insert(-1, (tags, shaped("Polygon", [corners])))
             nest.append(({"type": "way", "id": 1, "tags": tags}, shape))
         for out, all_ in ((twice, lines), (nested, nest)):
-            out.write_text(json.dumps({"type": "FeatureCollection", "features": [
-                {"type": "Feature", "properties": tags, "geometry": shape} for tags, shape in all_]}))
+            out.write_text(json.dumps(ta.features(*all_)))
         for other in (ta.pbf(file), geopackage, twice, nested):
             found = things(other)
             self.assertEqual([row[:3] for row in found], [row[:3] for row in expected], other)
@@ -585,7 +579,7 @@ class LeftOut(unittest.TestCase):
         counted = {what: sum(int(row[4]) for row in table if row[3] == what) for what in ("left out", "in the scene")}
         self.assertEqual(counted, {"left out": 14, "in the scene": 4})
         self.assertIn("assumed: no rule knows power=generator", [row[5] for row in table])
-        mast = next(row for row in rows(folder) if row["kind"] == "obstacle")
+        mast = next(row for row in ta.rows(folder) if row["kind"] == "obstacle")
         self.assertEqual((mast["top"], mast["top_from"]), (30.0, "height"))
 
     def test_all_runways_come_first(self):
@@ -633,7 +627,7 @@ class LeftOut(unittest.TestCase):
                       "'-30', 'abc', '0', '1e3'\n", words)
         self.assertIn("strange.osm says no height of any building", words)
         self.assertNotIn("are from assumed", (folder / "README.txt").read_text("utf-8"))
-        self.assertEqual(sorted(row["width"] for row in rows(folder) if row["kind"] == "runway"), 5 * [45] + [61])
+        self.assertEqual(sorted(row["width"] for row in ta.rows(folder) if row["kind"] == "runway"), 5 * [45] + [61])
 
     def test_storeys_and_layers(self):
         """`layer` orders drawings and is not a height; `level` is a storey; `indoor` is in a building. A feature with
@@ -665,10 +659,10 @@ class LeftOut(unittest.TestCase):
                                (100, "on_roof", "man_made=mast, height=5"), (12, "on_roof", "natural=tree, height=4")):
             plan.point(x, 320, location=where, name=str(x), **tagged(tags))
         plan.area((2, 302), (8, 308), **tagged("power=generator, height=2, location=roof, name=solar"))
-        dem, file = slope("roofs.tif"), plan.write("roofs.osm")
+        dem, file = ta.slope("roofs.tif"), plan.write("roofs.osm")
         for words, rise in (((), 0.0), (("--heights", dem), 0.04)):
             folder, said = ta.made("roofs", file, *words)
-            found = {row["name"]: (row.get("min_height", 0.0), row["top"]) for row in rows(folder) if "name" in row}
+            found = {row["name"]: (row.get("min_height", 0.0), row["top"]) for row in ta.rows(folder) if "name" in row}
             for name, low, high, at in (("10", 20, 26, 10), ("30", 30, 36, 10), ("5", 20, 26, 0), ("220", 8, 28, 20),
                                         ("-0.5", 20, 25, -0.5), ("solar", 20, 22, 5)):
                 np.testing.assert_allclose(found.pop(name), np.array((low, high)) - rise * at, atol=0.05, err_msg=name)
@@ -679,14 +673,8 @@ class LeftOut(unittest.TestCase):
         mast = next(triangles for name, _, triangles in parts if name == "Mast")
         near = mast[np.abs(mast[:, :, 0].mean(axis=1) - 10) < 1]
         self.assertAlmostEqual(np.ptp(near[:, :, 2]), 6, delta=0.05)
-        self.assertEqual({row["min_height_from"] for row in rows(folder) if row.get("name") == "220"},
+        self.assertEqual({row["min_height_from"] for row in ta.rows(folder) if row.get("name") == "220"},
                          {"the roof, assumed"})
-
-
-def slope(name):
-    """A raster of heights that rise from 100 m at HERE by 4 % to the east."""
-    x = np.arange(-3200, 3201, 50.0)
-    return ta.write_heights(name, np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
 
 
 class Holes(unittest.TestCase):
@@ -847,9 +835,9 @@ class Published(unittest.TestCase):
         self.assertEqual([(one.kind, one.name, one.reason) for one in out], [("pole", "NOWHERE", obstacles.NO_PLACE)])
         self.assertEqual([found[i].shape.GetPoint_2D() for i in (0, 2)], [(13.302, 53.603), (13.305, 53.603)])
         self.assertAlmostEqual(float(found[0].tags["height"]), 45.72, delta=1e-3)
-        folder, _ = ta.made("survey", runway().write("survey.osm"), "--heights", slope("survey.tif"),
+        folder, _ = ta.made("survey", runway().write("survey.osm"), "--heights", ta.slope("survey.tif"),
                             "--obstacles", ta.FOLDER / "one.xml")
-        tops = {row["id"]: row for row in rows(folder) if row["id"] in "ABC"}
+        tops = {row["id"]: row for row in ta.rows(folder) if row["id"] in "ABC"}
         east = siting.to_enu([(13.305, 53.603)], ta.HERE)[0, 0]
         self.assertAlmostEqual(tops["C"]["top"], 400 * 0.3048 - (100 + 0.04 * east), delta=0.1)
         self.assertEqual((tops["B"]["height"], tops["B"]["height_from"]), (12.0, "height: surveyed, one.xml"))

@@ -53,6 +53,13 @@ def write(name, *bands, kind=gdal.GDT_Float32, spacing=10.0, system=None, low=(-
     return FOLDER / name
 
 
+def degrees():
+    """The system of latitudes and longitudes, in this order."""
+    system = osr.SpatialReference()
+    system.ImportFromEPSG(4326)
+    return system
+
+
 def read(file, origin=HERE, around=AROUND):
     """Its heights, and its warnings."""
     with warnings.catch_warnings(record=True) as heard:
@@ -104,6 +111,58 @@ class Values(unittest.TestCase):
                                           Offset=[-300.0]))[0].here, 27.66, delta=1e-9)
         with self.assertRaisesRegex(al.Error, "holds no heights"):
             read(write("all.tif", level + 1, kind=gdal.GDT_Int16, UnitType=["dm"]))
+
+    def test_values_that_no_ground_has(self):
+        for value, unit, metres, declared in ((-501.0, "m", 1.0, {}), (9001.0, "", 1.0, {"NoDataValue": [-9998.0]}),
+                                              (np.nan, "", 1.0, {}), (30000.0, "ft", 0.3048, {})):
+            holed = SLOPE / metres
+            holed[HOLE] = value
+            self.assert_filled(write("unit.tif", holed, UnitType=[unit], **declared), (value, unit))
+
+    def test_units(self):
+        """Units of the band and of a compound system, and a scale."""
+        plain = coordinate_system(HERE).ExportToWkt()
+
+        def above_geoid(name, unit, metres, values):
+            """GeoTIFF has no word for such a system."""
+            file = write(f"{name}.tif", values, kind=gdal.GDT_Float64, UnitType=["m" if name == "two" else ""])
+            system = (f'COMPD_CS["with heights",{plain},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],'
+                      f'UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
+            gdal.Translate(str(FOLDER / f"{name}.vrt"), str(file), outputSRS=system)
+            return FOLDER / f"{name}.vrt"
+
+        units = {"ft": 0.3048, "yd": 0.9144, "Foot_US": 1200 / 3937, "decimetres": 0.1, "km": 1000.0}
+        truth, _ = read(write("metres.tif", SLOPE, kind=gdal.GDT_Float64))
+        for file in (*(write(f"{unit}.tif", SLOPE / metres, kind=gdal.GDT_Float64, UnitType=[unit])
+                       for unit, metres in units.items()),
+                     write("scaled.tif", np.round(1000 * (SLOPE - 20)), kind=gdal.GDT_Int32, Scale=[0.001],
+                           Offset=[20.0]), above_geoid("metre", "metre", 1.0, SLOPE),
+                     above_geoid("yard", "Indian yard", 0.9144, SLOPE / 0.9144)):
+            found, _ = read(file)
+            np.testing.assert_allclose(found.posts, truth.posts, atol=2e-3, err_msg=str(file))
+            self.assertAlmostEqual(found.here, truth.here, delta=1e-3)
+            self.assertIn("40.0 to 60.0 m", found.words)
+        for file, said in ((write("furlong.tif", SLOPE, UnitType=["furlong"]), "'furlong'"),
+                           (above_geoid("two", "foot", 0.3048, SLOPE),
+                            "heights in 'm' and its vertical system in 'foot'")):
+            with self.assertRaisesRegex(al.Error, said):
+                read(file)
+        plane, foot = osr.SpatialReference(), 1200 / 3937
+        plane.ImportFromWkt(plain)
+        plane.SetLinearUnitsAndUpdateParameters("US survey foot", foot)
+        found, said = read(write("plane.tif", SLOPE, kind=gdal.GDT_Float64, system=plane.ExportToWkt(),
+                                 spacing=10.0 / foot, low=(-1500.0 / foot, -1500.0 / foot)))
+        self.assertRegex(said, "says no unit of its heights, .* are likely in US survey foot")
+        np.testing.assert_allclose(found.posts[:200, :200], truth.posts[:200, :200], atol=2e-3)
+
+    def test_a_tile_of_srtm(self):
+        image = gdal.GetDriverByName("MEM").Create("", 1201, 1201, 1, gdal.GDT_Int16)
+        image.SetGeoTransform((13 - 1 / 2400, 1 / 1200, 0, 54 + 1 / 2400, 0, -1 / 1200))
+        image.SetProjection(degrees().ExportToWkt())
+        image.GetRasterBand(1).WriteArray(np.full((1201, 1201), 77, np.int16))
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        gdal.GetDriverByName("SRTMHGT").CreateCopy(str(FOLDER / "N53E013.hgt"), image)
+        self.assertAlmostEqual(read(FOLDER / "N53E013.hgt")[0].here, 77.0, delta=1e-6)
 
     def test_the_band_of_heights(self):
         """By names of bands, as BAG's; no picture, whatever its bits."""
@@ -182,9 +241,7 @@ class Values(unittest.TestCase):
             system = osr.SpatialReference()
             system.SetFromUserInput(code if isinstance(code, str) else f"EPSG:{code}")
             system.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
-            degrees = osr.SpatialReference()
-            degrees.ImportFromEPSG(4326)
-            x, y, _ = osr.CoordinateTransformation(degrees, system).TransformPoint(*origin[:2])
+            x, y, _ = osr.CoordinateTransformation(degrees(), system).TransformPoint(*origin[:2])
             found, heard = read(write("grid.tif", SLOPE, low=(x - 1500, y - 1500), system=system.ExportToWkt()), origin)
             self.assertRegex(heard, said or "^$")
             self.assertEqual(("accuracy" in found.words, "accuracy" in heard), (bool(said),) * 2, code)
