@@ -22,7 +22,7 @@ def share(taken, of):
 
 
 def counts(tree):
-    """Of each file: lines, lines that ran, branches, branches taken."""
+    """Lines, lines that ran, branches and branches taken, by file."""
     files = {}
     for file in (file for name in ("branches", "kernel")
                  for file in json.loads((tree / f"{name}.json").read_text(encoding="utf-8"))["files"]):

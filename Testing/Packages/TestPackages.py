@@ -17,7 +17,7 @@ VERSION = f"{RELEASE}-1"
 PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
 PLUGINS, PACKAGE = f"usr/lib/{PARAVIEW}/plugins/", r"usr/lib/python3/dist-packages/avianlidar/"
 DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.gz)"
-# Of each package: the fields, and where its files may be.
+# Fields of each package, and the places where its files may be.
 PACKAGES = {"avian-lidar": ({"Section": "science", "Recommends": "python3-avianlidar",
                              "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= "
                                         r"(5\.\d+).*paraview \(<< \2"},

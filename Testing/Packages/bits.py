@@ -29,7 +29,7 @@ def town(count=60):
 
 
 def checksum(data):
-    """Of all its arrays over points, by name."""
+    """Checksums of all arrays over points, by name."""
     digest = hashlib.sha256()
     arrays = data.GetPointData()
     for name in sorted(arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())):

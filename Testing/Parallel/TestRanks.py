@@ -310,7 +310,7 @@ def test_controllers_of_ones_own():
 
 
 def test_work_of_ones_own():
-    """A piece of one's own making is no concern of other ranks: only one of them does it."""
+    """A piece that one rank makes by itself needs no other rank."""
     if RANK == LAST:
         echo = echotools.scan(TOWN, **SETTINGS)
         echo.UpdatePiece(1, RANKS + 1, 0)

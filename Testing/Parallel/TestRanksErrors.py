@@ -34,7 +34,7 @@ def heard_by_all(messages):
 
 
 def echoes_of(surfaces, beams=None):
-    """Of one process."""
+    """The result of one process."""
     alone = echotools.scan(surfaces, beams, **SETTINGS)
     alone.Update()
     return in_order(point_arrays(alone.GetOutput()))

@@ -127,7 +127,7 @@ def test_a_few_bytes_that_are_missing():
 
 
 def test_no_memory_for_a_message():
-    """What another rank sends is left out by VTK where there is no memory for it."""
+    """VTK leaves out messages of other ranks for which there is no memory."""
     echo = echotools.scan(TOWN, **SETTINGS)
     if RANK == LAST:
         echo.SetInputData(1, METAL[0])

@@ -299,7 +299,7 @@ class Macros(Case):
         self.assertTrue(counts[1] > counts[0] > counts[2], counts)
 
     def test_class_colours(self):
-        """Of a sequence of two scans, whose times the reader gives."""
+        """A sequence of two scans, whose times the reader gives."""
         folder = self.enterContext(tempfile.TemporaryDirectory())
         for name, kind, content in (("velodyne", "bin", struct.pack("<8f", *range(8))),
                                     ("labels", "label", struct.pack("<2I", 50, 99))):

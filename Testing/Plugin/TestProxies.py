@@ -27,7 +27,7 @@ PRESETS = {"AvianLidar" + name.replace("_", ""): "SetPresetTo" + name for name i
 WRITERS = {*_suffixes.WRITERS.values()}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
 READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader", "AvianLidarSequenceReader")
-# Of a class, and no property: for programs, or the same in another unit.
+# Methods of classes that are not properties: for programs, or the same value in another unit.
 NOT_SHOWN = {"Controller", "Frequency", "Text", "NumberOfChannelElevations", "ChannelElevation", "HeightLimit"}
 # Properties without a pair of Set and Get: buttons, lists, time steps, a preset's tables.
 NO_PAIR = {"Advise", "KnownSpecies", "Reload", "TimestepValues", "TablesOfPreset", "ErrorsAsData", "EnergyArray"}

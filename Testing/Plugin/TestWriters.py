@@ -69,7 +69,7 @@ class TestWriters(unittest.TestCase):
         os.remove(path("ply"))
 
     def test_field_data_come_through(self):
-        """Of all ranks together: the organised grid, the sensor's frame and the origin are in field data."""
+        """The organised grid, the sensor's frame and the origin of all ranks are in field data."""
         self.save("pcd", Organisation="Organised")
         with open(path("pcd"), "rb") as file:
             lines = [next(file) for _ in range(12)]

@@ -116,7 +116,7 @@ def wizard():
 
 
 def beam():
-    """Of an echo of the airport's scan that is selected, then of another one."""
+    """The beam of a selected echo of the airport's scan, then of another echo."""
     button, scan, view = action("avian_lidar_show_beam"), simple.FindSource("Scan"), simple.GetActiveView()
     before = names()
     simple.SetActiveSource(scan)

@@ -73,7 +73,7 @@ class Advice(unittest.TestCase):
         energy, wrong = errors_of(scan.echoes, truth.echoes, limit)
         self.assertLess(energy, 0.01)
         self.assertLess(wrong, 0.02)
-        # Of those that surely fail, the best one does so on the whole scan, too.
+        # The best of the settings that surely fail also fails on the whole scan.
         table = advice.table
         failed = np.flatnonzero((table["verdict"] == 0) & (table["energy_error"] > 0.012))
         worst = failed[np.argmin(table["energy_error"][failed])]
@@ -166,7 +166,7 @@ class Advice(unittest.TestCase):
             self.assertEqual(m.beaten, expected is None)
 
     def test_more_beams_where_the_share_of_wrong_echoes_is_undecided(self):
-        """Of 100 beams some 65 have an echo: a share below 3/65 cannot be told from 0."""
+        """Some 65 of 100 beams have an echo: a share below 3/65 cannot be distinguished from 0."""
         scan = al.Scan(sphere(), SENSOR)
         advice = scan.advise(energy=0.05, range=0.2, missed=0.03, beams=100)
         measured, echoes = map(int, re.search(r"Measured on (\d+) of 5120 beams with (\d+) echoes",

@@ -217,7 +217,7 @@ def blocks(folder):
 
 
 def plan_area(triangles):
-    """Of the sides that are seen from above, m2."""
+    """Area of the sides that are seen from above, m2."""
     area = scenetools.normals(triangles)[:, 2]
     return area[area > 1e-9].sum()
 
@@ -320,7 +320,7 @@ class Extracts(unittest.TestCase):
         np.testing.assert_allclose(lab("#ff0000", "all"), (53.24, 80.09, 67.20), atol=0.05)
 
     def test_tags_as_they_are_found(self):
-        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken
+        """As in real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken
         ways."""
         plan = Map()
         plan.area((-800, -22.5), (800, 22.5), aeroway="runway", ref="09/27")

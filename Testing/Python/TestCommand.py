@@ -365,8 +365,7 @@ class Surroundings(unittest.TestCase):
             self.assertLess(len(done.stderr), 400)
 
     def test_control_characters_of_names_do_not_reach_the_terminal(self):
-        """Of files, of what they name and of wrong words, whoever writes the message: Python, VTK, Assimp, GDAL, the
-        parser."""
+        """Names of files, names in files, and wrong words, in messages of Python, VTK, Assimp, GDAL and the parser."""
         odd = "a\x1b[31m\r\x07\nb\u202e\x9bc"
         shown = r"a\x1b[31m\x0d\x07\x0ab\u202e\x9bc"
         folder = pathlib.Path(exampletools.OUTPUT) / "TestCommand" / odd
@@ -394,7 +393,7 @@ class Surroundings(unittest.TestCase):
         self.assertEqual(_terminal.shown("\udcff\u2028é\n"), "\\xff\\u2028é\n")
 
     def test_streams_that_are_closed(self):
-        """As of `| head`, and of daemons."""
+        """Such as the streams of `| head` and of daemons."""
         done = subprocess.run(["bash", "-c", f"set -o pipefail; {shlex.join(self.command('sensors'))} | true"],
                               stderr=subprocess.PIPE, check=False)
         self.assertEqual((done.returncode, done.stderr), (141, b""))

@@ -120,7 +120,7 @@ class Airport(unittest.TestCase):
         self.assertAlmostEqual(1.0 - shares["share_shadowed"], 0.997, delta=0.01)
 
     def test_shares_by_the_full_definition(self):
-        """Of gulls as points, the mean over their effective areas; birds are no points: they are deep, and borders of
+        """Mean share of gulls as points over their effective areas. Birds are not points: they are deep, and borders of
         beams cross them."""
         cover, shares = self.cover("Search905", species=""), []
         for area in self.relative:

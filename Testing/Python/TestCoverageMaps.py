@@ -63,7 +63,7 @@ class Maps(unittest.TestCase):
             self.assertIn(f"{number}: {word}", names)
         said = json.loads(run("gdalinfo", "-json", "-stats",
                               os.path.join(self.folder, "minimum_effective_area_30m.tif")))["bands"][0]
-        self.assertTrue(np.isfinite(said["maximum"]) and np.isfinite(said["mean"]))  # what is no number is marked
+        self.assertTrue(np.isfinite(said["maximum"]) and np.isfinite(said["mean"]))  # missing values are marked
         self.assertGreater(al.load_cloud(os.path.join(self.folder, "clutter.vtp")).number_of_points, 100)
 
     def test_the_birds_of_a_mix_are_named(self):

@@ -23,7 +23,7 @@ NOT_OURS = {"table.md", "tables.md", "example.py", "X.h", "X.cxx", "TestX.cxx", 
 
 
 def anchors(text):
-    """Of the headings of a page, as web pages of repositories make them."""
+    """Anchors of the headings of a page, as web pages of repositories make them."""
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
             for heading in re.findall(r"^#+ (.*)$", text, re.M)}
 

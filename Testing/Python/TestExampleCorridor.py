@@ -72,7 +72,7 @@ class Corridor(unittest.TestCase):
                                      for material in (WALL, WOOD, GLASS))
                 self.assertGreater(wall, wood, (low, energy))
                 self.assertGreater(wood, 3 * glass, (low, energy))
-            # Of what is met in whole, the weakest wall is stronger than the strongest wood.
+            # Among surfaces that fill the beam, the weakest wall is stronger than the strongest wood.
             weakest = found["return_energy"][self.on("North wall", here)].min()
             self.assertGreater(weakest, found["return_energy"][self.on("Door", here)].max(), low)
 

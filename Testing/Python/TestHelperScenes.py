@@ -116,7 +116,7 @@ class Sources(unittest.TestCase):
         self.assertEqual(cells(given, "roughness").tolist(), rows[:, 3].tolist())
         self.assertEqual((len(set(cells(even, "material_id"))), set(cells(even, "roughness"))), (3, {0}))
         self.assertEqual(len(set(cells(al.Scene(*WALL, material=["wall", "Wall"] * 6), "material_id"))), 1)
-        count = 5000  # rows that all differ are no work
+        count = 5000  # rows that all differ take no time
         points = np.random.default_rng(3).uniform(-50, 50, (3 * count, 3))
         scene = al.Scene(points, np.arange(3 * count).reshape(-1, 3),
                          material=np.random.default_rng(4).uniform(0, 0.4, (count, 3)))

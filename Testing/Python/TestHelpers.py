@@ -103,7 +103,7 @@ class Properties(unittest.TestCase):
         self.assertEqual(scan.properties(), before)  # nothing is set if one name is unknown
 
     def test_switches(self):
-        """A text is no switch: "off" would turn it on."""
+        """A text is not a switch: "off" would turn it on."""
         scan = al.Scan(al.Scene(), noise=False)
         for value in ("off", None, 2):
             for call in (lambda v=value: scan.set(Noise=v),

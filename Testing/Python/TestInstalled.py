@@ -31,7 +31,7 @@ print(scan.echoes.number_of_points, al.load_cloud("echoes.vtp").number_of_points
 
 
 def names(folder):
-    """Of the files in a folder and those in it."""
+    """Checksums of the files in a folder and its subfolders."""
     return {str(file.relative_to(folder)) for file in folder.rglob("*") if file.is_file()}
 
 

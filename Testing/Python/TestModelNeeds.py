@@ -25,7 +25,7 @@ class ModelNeeds(unittest.TestCase):
         self.assertEqual((f["noise_modelled"], full.fields["noise_modelled"]), (0, 1))
         self.assertEqual(f["secondary_reflections_modelled"], 1)
         self.assertAlmostEqual(f["skipped_energy_bound"] / (1e-3 * lower + f["noise_bound"]), 1.0, places=12)
-        # Of the largest kd + ks, from the range at which air leaves Qlow of it.
+        # The limit is that of the largest kd + ks, at the range where the air leaves Qlow.
         largest = lower / pulse * math.exp(2.0 * f["attenuation_coefficient"] * f["perceivable_range"])
         self.assertEqual(f["rays_per_beam"], 100)
         rays = 100 if f["beam_samples"] == RAYS else 1024 * math.pi  # of the grid

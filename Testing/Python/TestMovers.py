@@ -104,7 +104,7 @@ class Movers(unittest.TestCase):
         self.assertTrue(type(scan.algorithm)().GetReportMovers())
 
     def test_ids_and_names(self):
-        """Of an object that is there already, of two that share a number, and of numbers that leave a gap."""
+        """Numbers of an existing object, of two objects, and numbers with a gap."""
         for ids, expected in (((1, 2), [3, 4]), ((10, 12), [10, 12])):
             gulls = [al.mover(bird(ObjectId=k), [(0, 30, 1)]) for k in ids]
             names = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK),
@@ -143,7 +143,7 @@ class Movers(unittest.TestCase):
             scan.update()
 
     def test_shapes_are_checked(self):
-        """Turned or flat arrays are no rows: they used to be read in another order."""
+        """Turned or flat arrays are not rows; older versions read them in another order."""
         row = np.array([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)])
         turn = np.array([(1.0, 0.0, 0.0, 0.0)] * 3)
         for kind, words, arguments in (

@@ -83,7 +83,7 @@ class Points:
             words = np.fromfile(folder / "sequences" / "00" / "labels" / f"{file.stem}.label", "<u4")
             x, y, z, _ = points.astype(float).T
             kind, nothing = words & 0xffff, np.arange(len(words)) + 10**6 * (number + 1)
-            # Of a bird its id and the scan, of a post its number, of all others the point.
+            # The key is the id and the scan for a bird, the number for a post, and the point for other echoes.
             owner = np.where(kind == 99, (words >> 16) + 10**5 * (number + 1),
                              np.where(kind == 80, cKDTree(middles).query(np.column_stack([-y, x, z]))[1], nothing))
             columns.append((np.full(len(words), number + 100 * first), np.arange(len(words)), points, kind,

@@ -154,7 +154,7 @@ class TestPointCloudReader(InFolder):
                     self.assertEqual({array(data, name).shape[0] for name in names(data)}, {len(kept)})
 
     def test_las_colours(self):
-        """Of 8 bits in fields of 16: as they are, unless a channel of the file is above 255."""
+        """Colours of 8 bits in fields of 16 stay as they are, unless a channel of the file is above 255."""
         for colour, wanted in (((0, 255, 1), (0, 255, 1)), ((0, 256, 255), (0, 1, 0)),
                                ((51400, 25700, 12850), (200, 100, 50))):
             las(3, colour=colour)

@@ -258,7 +258,7 @@ class Tables(unittest.TestCase):
                          r"left out: rows without a height \(2\)$")
 
     def test_times(self):
-        """Of ISO 8601 in its basic form, of other hands, and of leap seconds."""
+        """ISO 8601 in its basic form, times that people have written, and leap seconds."""
         for text, second in (("20210504T102233Z", 37353), ("20210504T102233.5+0200", 30153.5),
                              ("2021-05-04 9:30:00", 34200), ("2021-05-04T1022Z", 37320),
                              ("2021-05-04T24:00:00Z", 86400), ("2021-05-04T23:59:60Z", 86400),

@@ -48,7 +48,7 @@ def scan(places, electrons, **settings):
 class RangeNoise(unittest.TestCase):
     def test_against_the_waveform(self):
         places = np.random.default_rng(5).uniform(-0.5 * UNIT, 0.5 * UNIT, 10000)
-        # Of the whole pulse, n/sqrt(sigma0^2 + F n); at 8 two in five are not perceived, and noise chose the others.
+        # The ratio of the whole pulse is n/sqrt(sigma0^2 + F n). At 8, noise decides which three in five are perceived.
         for ratio, most in ((8, 0.25), (25, 0.14), (300, 0.1)):
             with self.subTest(ratio=ratio):
                 electrons = 0.5 * (EXCESS * ratio**2 + np.sqrt(EXCESS**2 * ratio**4 + 4 * ratio**2 * DARK**2))

@@ -97,7 +97,7 @@ class Values(unittest.TestCase):
         self.assert_filled(FOLDER / "masked.tif", "beside it")
 
     def test_customary_values_of_holes_in_any_unit(self):
-        """32767 in dm and cm, and others, are no heights; their neighbours are."""
+        """32767 and other values stand for holes, also in dm and cm; their neighbours are heights."""
         units = {"m": 1.0, "ft": 0.3048, "dm": 0.1, "cm": 0.01, "mm": 0.001}
         for (unit, metres), value in ((one, value) for one in units.items()
                                       for value in (32767, -32768, -32767, -9999, 9999, 65535, 99999)):
@@ -245,7 +245,7 @@ class Values(unittest.TestCase):
             found, heard = read(write("grid.tif", SLOPE, low=(x - 1500, y - 1500), system=system.ExportToWkt()), origin)
             self.assertRegex(heard, said or "^$")
             self.assertEqual(("accuracy" in found.words, "accuracy" in heard), (bool(said),) * 2, code)
-            # Of a map, too.
+            # Maps give the same warning.
             file = FOLDER / "grid.gpkg"
             file.unlink(missing_ok=True)
             base = ogr.GetDriverByName("GPKG").CreateDataSource(str(file))

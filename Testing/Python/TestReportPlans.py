@@ -36,8 +36,8 @@ SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goos
 
 class Less(unittest.TestCase):
     def test_a_plan_of_a_map_alone(self):
-        """Of two receivers, one of which is changed, and without sites and runways; the mean of the map within four
-        standard errors."""
+        """Two receivers, one of them changed, without sites and runways. The mean of the map is within four standard
+        errors."""
         twice = {**SENSOR, "name": "twice the pulse", "pulse_energy": 7.2e-4}
         page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage=TARGET))
         with Browser() as browser:

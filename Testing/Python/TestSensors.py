@@ -290,7 +290,7 @@ class Own(unittest.TestCase):
                 ("times and positions", {"times": [0]})):
             with self.subTest(words), self.assertRaisesRegex((ValueError, TypeError, al.Error), words):
                 al.Sensor(**arguments).beams  # noqa: B018
-        # Text is no array that is missing; what was refused changes nothing.
+        # Text does not count as a missing array; refused values change nothing.
         source = al.Sensor().algorithm
         beams, text = vtkPolyData(), text_array(2)
         beams.ShallowCopy(al.Sensor(directions=[(0, 1, 0), (1, 0, 0)], times=[0, 1e-3]).beams.data)

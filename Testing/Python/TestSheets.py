@@ -44,7 +44,7 @@ class Sheets(unittest.TestCase):
                for point, board in zip(points(_sheet.Receiver(start), (3e-4, 10.0, 2.0), *rows[:2]), (0.5, 2.0))]
         own = [{**point, "range": _sheet.Receiver(start).range(point, 3e-4, 10.0, np.nan)} for point in own]
         self.assertAlmostEqual(_sheet.fit(start, own).numbers["receiver_aperture"] / 3e-4, 1, delta=1e-3)
-        # Of one number one point is enough, and none can be left out.
+        # One point is enough to fit one number, and then no point can be left out.
         one = _sheet.fit(start, points(_sheet.Receiver(start), (3e-4, 10.0, np.nan), (0.1, 0.5, 0)))
         self.assertAlmostEqual(one.numbers["receiver_aperture"] / 3e-4, 1, delta=1e-3)
         self.assertTrue(np.isnan(one.left_out[0]) and np.isnan(one.board) and np.isnan(one.bar))

@@ -170,8 +170,8 @@ class ObstacleLimits(unittest.TestCase):
     def test_heights_by_hand(self):
         slanted = siting.Runway("04/22", (100.0, -50.0), (100.0 + 3000 * 0.6, -50.0 + 3000 * 0.8), 45.0)
         inf = np.inf
-        # Of code 4, precision. 285 m beyond the end and 174 m aside is 225 m from the inner edge, where the approach is
-        # 173.75 m wide.
+        # Code 4, precision. The point 285 m beyond the end and 174 m aside is 225 m from the inner edge, where the
+        # approach is 173.75 m wide.
         rows = (((285, 174), inf, 4.5 + 0.143 * 0.25), ((285, -173.7), 4.5, inf), ((310, 0), 5.0, inf),
                 ((60 + 3000 + 1000, 500), 85.0, inf), ((60 + 6600 + 8000, -2000), 150.0, inf),
                 ((60 + 15001, 0), inf, inf), ((-1500, 185), inf, 45 * 0.143), ((-1500, -454.6), inf, 314.6 * 0.143),

@@ -135,7 +135,7 @@ class MovingScene(unittest.TestCase):
 
     @staticmethod
     def distance(data):
-        """Of the wall in front, m."""
+        """Range of the wall in front, m."""
         return array(data, "distance_m").min()
 
     def test_ranges_follow_by_revolution_and_not_within_one(self):

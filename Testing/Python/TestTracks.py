@@ -140,7 +140,7 @@ class Tracks(InFolder):
             self.assertAlmostEqual(np.degrees(field(block, "flap_amplitude")[1]), 35)
 
     def test_trails(self):
-        """Of a file with a comment and an empty line."""
+        """A file with a comment and an empty line."""
         source = tracks(Pattern=pattern("File"), FileName=self.file("# radar\n" + HEADER + "\n" + ROWS))
         blocks = movers(source)
         self.assertNotEqual(*(field(block, "flap_phase")[0] for block in blocks))

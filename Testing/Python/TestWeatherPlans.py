@@ -81,7 +81,7 @@ class Year(unittest.TestCase):
         np.testing.assert_allclose(sites.values, wanted, rtol=1e-9)
         np.testing.assert_allclose(sites.by_air, np.transpose([one.values for one in alone]), rtol=1e-9)
         self.assertGreater(len(sites.values), 3)
-        # Of two sensors each weather has its own probability that one of them detects.
+        # In each weather, two sensors have their own probability that one of them detects.
         pair = sites.networks[1]
         of_pair = sum(part["share"] * siting.value_of(one.found, one.weights, pair.sites)
                       for part, one in zip(YEAR, alone))

@@ -61,7 +61,7 @@ def cells(block, name):
 
 
 def volume(triangles):
-    """Of a closed surface with its normals outwards, by the divergence theorem, about its own centre."""
+    """Volume of a closed surface with normals outwards, by the divergence theorem about its own centre."""
     about = triangles - triangles.mean(axis=(0, 1))
     return np.einsum("ij,ij->i", about[:, 0], np.cross(about[:, 1], about[:, 2])).sum() / 6
 
