@@ -58,6 +58,17 @@ class Files(InFolder):
             np.testing.assert_allclose(table[:, column], echoes[name.split(" [")[0]], rtol=1e-14, err_msg=name)
         al.save(self.scan.sensor.beams, file)
         self.assertIn("direction_2", file.read_text(encoding="utf-8").splitlines()[0])
+        # Numbers come back with 15 digits, units (but for pure numbers), colours as bytes, and whole numbers as such.
+        echoes = echoes.annotated()
+        al.save(echoes, file)
+        found = al.load_cloud(file)
+        self.assertEqual((list(found), found.fields), (list(echoes), {}))
+        for name, values in (("points", echoes.points), *echoes.items()):
+            again = found.points if name == "points" else found[name]
+            np.testing.assert_allclose(again, values, rtol=1e-14, err_msg=name)
+            self.assertEqual(again.dtype.kind == "f", not (values == np.round(values)).all(), name)
+        self.assertEqual(found["rgb"].dtype, np.uint8)
+        self.assertEqual(found.units, {name: unit * (unit != "1") for name, unit in echoes.units.items()})
 
     def test_tables_of_other_programs(self):
         """First lines of ParaView, VeloView, CloudCompare, LAStools and spreadsheets; HELIOS++ and .xyz without one."""
@@ -67,11 +78,13 @@ class Files(InFolder):
         for suffix, text, arrays in (
                 (".csv", "Points:0,Points:1,Points:2,energy\n1.5,-2,3,4\n", {"energy": 4}),
                 (".csv", '"Point ID","Points_0","Points_1","Points_2","Points_Magnitude"\n0,1.5,-2,3,4\n',
-                 {"Point ID": 0, "Points_Magnitude": 4}), (
-                    ".csv", '"intensity","Points_m_XYZ:0","Points_m_XYZ:1","Points_m_XYZ:2"\n7,1.5,-2,3\n',
-                    {"intensity": 7}), (
-                    ".csv", "Normals:0,Normals:1,Normals:2,Points:0,Points:1,Points:2\n0,0,1,1.5,-2,3\n",
-                    {"Normals": [0, 0, 1]}), (".csv", bom + b"X (m);Y (m);Z (m);i\r\n1,5;-2;3;0,25\r\n", {"i": 0.25}),
+                 {"Point ID": 0, "Points_Magnitude": 4}),
+                (".csv", '"intensity","Points_m_XYZ:0","Points_m_XYZ:1","Points_m_XYZ:2"\n7,1.5,-2,3\n',
+                 {"intensity": 7}),
+                (".csv", "Normals:0,Normals:1,Normals:2,Points:0,Points:1,Points:2\n0,0,1,1.5,-2,3\n",
+                 {"Normals": [0, 0, 1]}), (".csv", bom + b"X (m);Y (m);Z (m);i\r\n1,5;-2;3;0,25\r\n", {"i": 0.25}),
+                (".csv", '\ufeffx,y [m],z,"a, b [1/s]",n_0,n_1,m_0\r\n1.5,-2,"3",-1e3,1,2.5,7\r\n',
+                 {"a, b": -1000, "n": [1, 2.5], "m_0": 7}),
                 (".csv", "sep=;\nx;y;z\n1,5;-2;3\n", {}), (".csv", "x\ty\tz\n1.5\t-2\t3\n", {}),
                 (".xyz", "1.5  -2\t3\n", {}), (".xyz", "1.5,-2,3,8\n", {"column_4": 8}),
                 (".xyz", "//X Y Z c\n1.5 -2 3 8\n", {"c": 8}),
@@ -86,10 +99,10 @@ class Files(InFolder):
                 (".xyz", "#x y z i\n1.5 -2 3 4\n", {"i": 4}),
                 (".xyz", "# a cloud\n\n# x, y, z\n1.5 -2 3 8\n", {"column_4": 8}),
                 (".xyz", "# the columns x y z\n1.5 -2 3\n", {}), (".xyz", "% y x z\n-2,1.5,3 # first\n", {}),
-                (".xyz", "x y z\n1.5 -2 3\n", {}), (
-                    ".xyz", helios, {
-                        "intensity": 0.25, "echo_width": 0, "return_number": 1, "number_of_returns": 2,
-                        "fullwave_index": 7, "hit_object_id": 12, "classification": 6, "gps_time": 300000.5})):
+                (".xyz", "x y z\n1.5 -2 3\n", {}),
+                (".xyz", helios, {"intensity": 0.25, "echo_width": 0, "return_number": 1, "number_of_returns": 2,
+                                  "fullwave_index": 7, "hit_object_id": 12, "classification": 6,
+                                  "gps_time": 300000.5})):
             with self.subTest(text):
                 file = self.folder / f"table{suffix}"
                 file.write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -103,11 +116,13 @@ class Files(InFolder):
                 (".xyz", "3\nwater\nO 0 0 0\n", "one word, as files of molecules"), (".xyz", "1 2\n", "no column z"),
                 (".csv", "x;y;z\n1.234,5;2;3\n", "points and commas"),
                 (".csv", "X (mm),Y (mm),Z (mm)\n1,2,3\n", "no column x in metres"),
-                (".xyz", "1 2 3\n1 2\n", "columns")):
+                (".xyz", "1 2 3\n1 2\n", "columns"), (".csv", "", "no column x"), (".csv", "x,y,z\n1,2\n", "2 cells"),
+                (".csv", "x,y,z,x\n1,2,3,4\n", "'x' is there twice"), (".csv", "x,y,z\n1,2,word\n", "word"),
+                (".csv", b"x,y,z,\xe4\n1,2,3,4\n", "decode")):
             with self.subTest(text):
                 file = self.folder / f"table{suffix}"
-                file.write_text(text, encoding="ascii")
-                with self.assertRaisesRegex(ValueError, words):
+                file.write_bytes(text if isinstance(text, bytes) else text.encode())
+                with self.assertRaisesRegex(ValueError, f"table{suffix}: is not a cloud .*{words}"):
                     al.load_cloud(file)
         for suffix, text in ((".csv", "x,y,z,i\n1,2,nan,5\n1,2,3,6\n1,1e400,2,7\n"),
                              (".xyz", "1 2 inf 5\n1 2 3 6\n-inf 2 2 7\n")):
@@ -122,9 +137,9 @@ class Files(InFolder):
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             cloud = al.load_cloud(file)
-        self.assertEqual([str(one.message) for one in said], [f"{file}: 2 empty cells are read as NaN",
-                                                              f"{file}: 1 points whose coordinates are not finite are "
-                                                              "left out"])
+        self.assertEqual([str(one.message) for one in said], [
+            f"{file}: 2 empty cells are read as NaN",
+            f"{file}: 1 points whose coordinates are not finite are left out"])
         np.testing.assert_array_equal(np.column_stack([cloud.points, cloud["i"], cloud["j"]]),
                                       [(1, 2, 3, np.nan, 5), (4, 5, 6, 7, np.nan)])
 
@@ -183,8 +198,8 @@ class Files(InFolder):
             signal.raise_signal(signal.SIGINT)
             return held
 
-        with mock.patch.object(_disk, "_hold", interrupted), self.assertRaises(
-                KeyboardInterrupt), _disk.only_run("taken"):
+        with mock.patch.object(_disk, "_hold", interrupted), self.assertRaises(KeyboardInterrupt), \
+                _disk.only_run("taken"):
             self.fail("it goes on")
         self.assertFalse(os.path.exists("taken"))
 
