@@ -220,7 +220,7 @@ class Advice(unittest.TestCase):
         for name in set(of[0]) - {"seconds_per_beam", "turns"}:
             self.assertTrue(np.array_equal(of[0][name], of[1][name]), name)
 
-    def test_what_cannot_be_met(self):
+    def test_limits_that_cannot_be_kept(self):
         advice = al.Scan(al.Scene(CORNER), SENSOR).advise(energy=1e-9, beams=50)
         self.assertEqual((advice.settings, advice.row), (None, -1))
         self.assertRegex(advice.lines[1], "^Advised: none of 37 settings surely keeps the limits. The best setting, ")

@@ -448,7 +448,7 @@ class Extracts(unittest.TestCase):
         self.assertIn("its coastlines do not part the scene",
                       run("airport", open_.write("open_coast.osm"), "-o", fresh("open_coast"))[1])
 
-    def test_heights_that_are_none(self):
+    def test_wrong_heights_and_records_are_named(self):
         plan = Map()
         plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
         plan.area((300, 300), (340, 340), building="yes", height="eleven")
@@ -687,7 +687,7 @@ class StandsOn(unittest.TestCase):
         (FOLDER / "shapes.geojson").write_text(json.dumps(features(({}, shape))))
         return next(triangles for name, _, triangles in airport_pages.parts_of(al.Scene(scene)) if name == "Things")
 
-    def test_a_closed_body_is_no_terrain(self):
+    def test_a_closed_body_is_not_a_terrain(self):
         corners = [(x, y, z) for z in (0, 10) for y in (-50, 50) for x in (-50, 50)]
         sides = "1 3 4,1 4 2,5 6 8,5 8 7,1 2 6,1 6 5,3 7 8,3 8 4,1 5 7,1 7 3,2 4 8,2 8 6".split(",")
         points = "".join("v %g %g %g\n" % corner for corner in corners)

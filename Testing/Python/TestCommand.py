@@ -325,7 +325,7 @@ class Surroundings(unittest.TestCase):
         self.assertEqual([_terminal.in_time(seconds) for seconds in (3.4, 99, 119, 5940, 7200)],
                          ["3 s", "99 s", "2 min", "99 min", "2.0 h"])
 
-    def test_a_word_that_is_no_name_of_a_file_is_shortened(self):
+    def test_long_words_are_shortened(self):
         for verb, *more in (["info"], ["scan", "-o", OUTPUT / "none.vtp"]):
             done = subprocess.run(self.command(verb, 5000 * "x" + ".lidarscene.json", *more), capture_output=True,
                                   text=True, check=False)
@@ -401,7 +401,7 @@ class Surroundings(unittest.TestCase):
         table = np.genfromtxt(OUTPUT / "reach.csv", delimiter=",", skip_header=1)
         np.testing.assert_allclose(table[:, 2:4], np.column_stack([found.ranges, found.one_scan]), rtol=1e-5)
 
-    def test_reach_says_first_what_nobody_sells(self):
+    def test_reach_says_first_which_lidars_are_ideas(self):
         with unittest.mock.patch.object(reach, "RANGES", 6):
             code, lines, _ = run("reach", "--sensor", "Search905", "--species", "herring gull")
         self.assertEqual(code, 0)

@@ -371,7 +371,7 @@ class Work(unittest.TestCase):
         self.assertEqual(len(kept["status"]), 2)
         self.assertEqual((kept.number_of_traced_rays, kept.clutter_map.number_of_points), (0, found.number_of_points))
 
-    def test_nothing_to_look_at_is_no_error(self):
+    def test_an_empty_scene_is_not_an_error(self):
         scene = al.Scene(NOTHING, material="Wall")
         cover = al.Coverage(scene, al.Sensor("Search905"), places=np.zeros((0, 3)), **TARGET)
         self.assertEqual(len(cover["status"]), 0)

@@ -232,7 +232,7 @@ class Work(unittest.TestCase):
             study = looked(study_of(fresh("sold"), {"bounds": bounds}, sensor={"preset": sensor}, places=20))
             self.assertEqual("nobody sells these lidars" in _design_page.answers(study)[0], idea)
 
-    def test_what_no_design_has(self):
+    def test_shares_that_no_design_reaches(self):
         study = looked(study_of(fresh("none"), {"share": 0.999}))
         self.assertIsNone(study.chosen)
         self.assertEqual(study.about.share.value, max(one.share.value for one in study.candidates))

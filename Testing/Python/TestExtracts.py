@@ -180,7 +180,7 @@ class Formats(unittest.TestCase):
             other.write_text(f'<?xml version="1.0"?><osm version="0.6">{body}</osm>', "utf-8")
             self.assertEqual(things(other), expected, name)
 
-    def test_what_the_border_cuts(self):
+    def test_objects_that_the_border_cuts(self):
         """Closed ways with one, two and three of their four nodes, a way without nodes, and a relation whose way is
         missing."""
         places = {900: (0, 0), 901: (1, 0), 903: (1, 1), 902: (0, 1)}
@@ -309,7 +309,7 @@ class Formats(unittest.TestCase):
             for shape in found:
                 self.assertAlmostEqual(shape.Area() * 1e6, 1.0 - 0.16 * holes, delta=1e-6, msg=str(number))
 
-    def test_what_is_not_a_whole_extract(self):
+    def test_incomplete_extracts_are_named(self):
         whole = fenced().write("whole.osm")
 
         def system(**crs):
@@ -384,7 +384,7 @@ class Formats(unittest.TestCase):
                      if one.kind == "building"]
             self.assertEqual(tuple(found), expected, values)
 
-    def test_what_is_drawn_twice(self):
+    def test_features_drawn_twice(self):
         """Parts above one another are two. At one place the highest feature counts; others are counted as left out."""
         plan = runway()
         for tags in ("height=10", "height=60, min_height=40", "height=60, min_height=45"):
@@ -461,7 +461,7 @@ class Runways(unittest.TestCase):
         found, _ = self.runways(([(900, 0), (-900, 0)], "ref=09/27"), thresholds=[(-890, 0), (700, 3), (500, 200)])
         self.assertEqual(found, [("09/27", 1800, 90, None, 0, 200)])
 
-    def test_what_is_not_a_runway(self):
+    def test_runways_that_are_left_out(self):
         real = ([(-800, 0), (800, 0)], "ref=09/27")
         other, strip, short = ([(-x, 550), (x, 550)] for x in (200, 100, 70))
         for reason, points, several, areas in (
@@ -587,7 +587,7 @@ class LeftOut(unittest.TestCase):
             said = " ".join(f"{name} {value}" for name, value in tags.items())
             self.assertTrue(any(word in said for word in _osm.FIRST), said)
 
-    def test_what_lies_apart_makes_no_difference(self):
+    def test_distant_features_make_no_difference(self):
         """The scene is the same as if the rules had looked at everything, in XML and GeoJSON, with bounds and
         without."""
         plan = runway()
@@ -718,7 +718,7 @@ class Tables(unittest.TestCase):
         found, _ = self.read(pylons.format("TRANSMISSION_LINE", "T-L"))
         self.assertEqual([one[0] for one in found], ["mast", "mast"])
 
-    def test_what_is_left_out(self):
+    def test_obstacles_that_are_left_out(self):
         for text, expected in (("13.302,53.603,100,ft,mast\n13.302,53.603,30.48,m,mast\n13.302,53.603,31,m,mast",
                                 [aixm.TWICE]),
                                ("13.302,53.603,45,m,mast\n13.303,53.603,45,furlong,mast\n13.304,53.603,45,m,BALLOON\n"

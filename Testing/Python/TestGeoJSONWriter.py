@@ -104,7 +104,7 @@ class TestGeoJSONWriter(InFolder):
             self.assertIn("successful", self.ogrinfo())
             self.assertEqual(json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"], [])
 
-    def test_what_json_has_no_words_for(self):
+    def test_values_that_json_lacks(self):
         data = cloud([[0, 0, 0], [1, 0, 0]])
         add_field(data, "geodetic_origin", (31.0, 121.0, 3.0))
         add_array(data, "energy", np.array([1.0, 2.0]))

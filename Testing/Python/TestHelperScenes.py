@@ -201,7 +201,7 @@ class Shown(unittest.TestCase):
             self.assertEqual(page.count("<tr>"), rows)
             self.assertRegex(page, r"<img alt='picture' src='data:image/png;base64,[A-Za-z0-9+/=]{1000,}'/>")
 
-    def test_what_fails_is_shown_all_the_same(self):
+    def test_representations_show_failures(self):
         self.assertIn("<Scene: cells 0", repr(al.Scene()))
         self.assertIn("<table>", al.Scene()._repr_html_())
         foggy = al.Scan(al.Scene(WALL), al.Sensor("Search905", azimuth_step=5), visibility=300).update()
@@ -239,7 +239,7 @@ class NothingToSee(unittest.TestCase):
     def words(self, scene, **sensor):
         return said(al.Scan(scene, al.Sensor(azimuth_step=5, **sensor)).update)
 
-    def test_what_is_wrong_is_said(self):
+    def test_likely_mistakes_are_named(self):
         airport, walls = al.Scene(SCENE), al.Scene(WALL)
         hill = al.Scene([(-500, -500, 0), (500, -500, 0), (500, 500, 40), (-500, 500, 40)], [(0, 1, 2), (0, 2, 3)])
         tall = np.concatenate([box((-50, 300, 0), (50, 340, 12))[0], box((80, -300, 0), (90, -290, 30))[0]])

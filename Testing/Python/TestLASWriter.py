@@ -160,7 +160,7 @@ class TestLASWriter(InFolder):
         self.assertEqual([one["name"] for one in self.write()["extraBytes"]][-9:], [f"tensor [{c}]" for c in range(9)])
         assert_same_arrays(self.data, read(FILE), left_out=("intensity", "timestamp"))
 
-    def test_what_is_left_out_or_changed_is_named(self):
+    def test_changes_and_omissions_are_named(self):
         n = self.data.GetNumberOfPoints()
         words = vtk.vtkStringArray()
         words.SetName("words")
@@ -192,7 +192,7 @@ class TestLASWriter(InFolder):
         again = read(FILE)
         self.assertEqual((array(again, "array 340").tolist(), "array 341" in names(again)), ([340, 680], False))
 
-    def test_what_other_files_have_stays(self):
+    def test_fields_of_other_files_stay(self):
         """Fields of LAS that no scan of this project has go back to where they were read."""
         n, draw = self.data.GetNumberOfPoints(), np.random.default_rng(4)
         for name, high, kind in (("classification", 256, "u1"), ("classification_flags", 16, "u1"),

@@ -58,7 +58,7 @@ class TestMcap(unittest.TestCase):
         return json.loads(subprocess.run([os.environ["AVIANLIDAR_NODE"], READER, self.out], check=True,
                                          capture_output=True).stdout)
 
-    def test_what_others_read(self):
+    def test_other_programs_read_the_file(self):
         found = self.read()
         self.assertEqual((found["header"]["profile"], found["done"], found["strange"]), ("ros2", True, []))
         self.assertEqual(found["statistics"]["channelMessageCounts"], {"1": "3", "2": "3"})

@@ -73,7 +73,7 @@ class Source(unittest.TestCase):
 
 
 class Echoes(unittest.TestCase):
-    def test_what_is_behind_a_bank_is_weakened(self):
+    def test_surfaces_behind_a_bank_are_weakened(self):
         bank = medium(Kind=6, Extinction=0.02, BackscatterRatio=1e9, Shape=2, Center=(0.0, 100.0, 0.0),
                       Lengths=(100.0, 30.0, 100.0))
         behind = echoes(group(wall(), bank))["energy_received"].mean()

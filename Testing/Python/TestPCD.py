@@ -264,7 +264,7 @@ class Written(InFolder):
             strongest[beam] = max(energy, strongest.get(beam, 0))
         self.assertEqual(dict(zip(full["beam_id"].astype(int), full["energy_received"])), strongest)
 
-    def test_what_is_no_grid(self):
+    def test_clouds_without_a_grid(self):
         for change, words in (
                 (lambda data: data.GetFieldData().RemoveArray("azimuth_step"), "'azimuth_step'"),
                 (lambda data: data.GetPointData().RemoveArray("laser_id"), "'laser_id'"),

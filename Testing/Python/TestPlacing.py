@@ -65,7 +65,7 @@ class Labels(unittest.TestCase):
             for words, box in boxes.items():
                 self.assertFalse(((pixels > box.min) & (pixels < box.max)).all(axis=1).any(), (radius, words))
 
-    def test_none_covers_another_or_leaves_the_map(self):
+    def test_labels_neither_overlap_nor_leave_the_map(self):
         for (name, runways), kinds in itertools.product(LAYOUTS.items(),
                                                         (["strips"], ["approaches"], ["strips", "approaches"])):
             with self.subTest(name, kinds=kinds):

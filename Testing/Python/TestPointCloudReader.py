@@ -277,7 +277,7 @@ class TestPointCloudReader(InFolder):
         for name in (None, ".", stem + ".bin"):
             self.assertEqual(can(name), 0, name)
 
-    def test_origin_that_is_no_place(self):
+    def test_an_origin_that_is_not_on_the_earth(self):
         data = cloud([[1, 2, 3]])
         add_field(data, "geodetic_origin", (31.0, 121.0, 3.0))
         write(al.vtkAvianLidarLASWriter(), data, FILE)

@@ -113,7 +113,7 @@ class Tables(unittest.TestCase):
                 self.assertEqual((found.ids, found.species), (["Emma #3" if "Emma" in text else "1"], ["herring gull"]))
                 self.assertEqual(found.warning, "")
 
-    def test_said(self):
+    def test_the_chosen_columns_are_printed(self):
         """Which columns were taken, and how."""
         words = self.read(WRITTEN["Movebank in R"]).words
         self.assertRegex(" ".join(words.split()),
@@ -306,7 +306,7 @@ class Tables(unittest.TestCase):
         self.assertAlmostEqual(found.nearest((300, 210, 0), 4.0, 5.0)[0], np.hypot(60, 66))  # nor earlier
         self.assertAlmostEqual(found.nearest((-50, 210, 0), 9.0, 9.5)[0], 30.0)
 
-    def test_what_is_left_out_is_counted(self):
+    def test_rows_that_are_left_out_are_counted(self):
         found = self.read("track_id,time,latitude,longitude,altitude,visible\n" + "".join(f"{row}\n" for row in (
             "1,0,47.451,8.552,440,true", "2,0,47.452,8.552,440,true", "1,2,47.453,8.552,440,true", "2,1,0,0,0,true",
             "2,5,47.451,8.553,,true", "2,4,47.451,8.553,440,true", "2,4,47.4511,8.553,440,true",

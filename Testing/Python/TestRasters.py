@@ -300,7 +300,7 @@ class Files(unittest.TestCase):
         self.assertLess(time.monotonic() - start, 10.0, name)
         return str(error.exception)
 
-    def test_nobody_is_asked_over_the_network(self):
+    def test_no_raster_uses_the_network(self):
         """Whatever the suffix: mosaics, services, what lies beside a raster or in its metadata, systems, maps."""
         server, good = Server(), write("good.tif", SLOPE)
         url = server.url

@@ -80,7 +80,7 @@ class Page(unittest.TestCase):
             self.assertNotIn("question", words)  # which the page says once
         self.assertEqual(self.text.count("The question: target in strips, 50 to 100 m high."), 1)
 
-    def test_the_first_page_says_what_nobody_sells_and_what_makers_sell(self):
+    def test_the_first_page_distinguishes_ideas_from_lidars_on_sale(self):
         """In the first paragraph and in a table, whose numbers are those of coverage at the best site."""
         first = self.browser.run("return document.querySelector('#answer p').textContent")
         self.assertRegex(first,

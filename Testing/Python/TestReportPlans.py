@@ -179,7 +179,7 @@ class Less(unittest.TestCase):
         found = reach.within_beams(al.Sensor("Search905"), "crow", visibility=reach.CLEAR)
         np.testing.assert_allclose(ranges["Search905"]["crow"], [found.to(share) for share in reach.SHARES], atol=0.06)
 
-    def test_what_nobody_sells(self):
+    def test_ideas_are_marked(self):
         self.assertEqual({name for name in al.Sensor.presets() if name not in on_sale()},
                          {"Airport16", "Airport32", "Automotive16", "CorridorC16", "Search905", "Search1550"})
         for sensor, words in (({"preset": "OS2_128"}, ""), ({"preset": "OS2_128", "rotation_rate": 20}, ""),
@@ -286,7 +286,7 @@ class Less(unittest.TestCase):
         self.assertTrue(_answer.command(Plan(read), "coverage", "maps", **{"sensor.position": "1,2,3"}).endswith(
             "-o maps --sensor-set RangeGate=900 --sensor-set position=1,2,3"))
 
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_plans_are_named(self):
         for change, words in (({"compare_with": ["Airport17"]}, "Airport17"),
                               ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "twice")):
             with self.assertRaisesRegex((al.Error, ValueError), words):

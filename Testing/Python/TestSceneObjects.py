@@ -241,7 +241,7 @@ class SceneObjects(unittest.TestCase):
         self.assertAlmostEqual(st.volume(st.corners(scene.blocks[0])), 2 * 50, places=9)
         self.assertIn("1 footprints with crossing or overlapping rings were repaired", notes(scene))
 
-    def test_rings_that_are_no_rings(self):
+    def test_degenerate_rings(self):
         spike = [*self.SQUARE[:3], [30, 10], *self.SQUARE[2:]]
         closed_twice = [*self.SQUARE[:-1], [1e-12, 0], [0, 0]]
         for rings in ([spike, self.HOLE], [self.SQUARE, self.HOLE, [[1, 1]] * 4], [closed_twice, self.HOLE[::-1]]):
@@ -266,7 +266,7 @@ class SceneObjects(unittest.TestCase):
                     self.assertAlmostEqual(area[material == 1].sum(), share * (60 + 32) * 4, places=8)
                     self.assertAlmostEqual(area[material == 3].sum(), 2 * 140, places=8)
 
-    def test_heights_that_are_no_numbers(self):
+    def test_heights_that_are_not_numbers(self):
         """One true, false or list among numbers does not spoil the others; a list of one value is this value."""
         for wrong in (True, False, [3, 4], [], {"a": 1}, "true", None, [[5]]):
             for right in (7, 7.5, "7.5 m"):
@@ -647,7 +647,7 @@ class SceneObjects(unittest.TestCase):
 
     # --- what is said, and what is not
 
-    def test_what_is_likely_wrong_is_a_warning(self):
+    def test_likely_mistakes_are_warnings(self):
         box, ground = {"file": "box.obj", "name": "Box"}, {"ground": {"size": 100}}
         far = {"file": "box.obj", "position": [678016, 5403455, 412]}
         inside = {"position": [1.5, 3, 1]}

@@ -124,7 +124,7 @@ class Errors(unittest.TestCase):
             self.assertAlmostEqual(values.mean() / wanted, 1.0, delta=0.02)
             self.assertAlmostEqual(errors.mean() / values.std(), 1.0, delta=0.06)
 
-    def test_none_and_all_have_an_error(self):
+    def test_shares_of_0_and_1_have_an_error(self):
         for count in (0, 10):
             self.assertEqual(scores.share(count, 10).value, count / 10)
             self.assertAlmostEqual(scores.share(count, 10).error, math.sqrt(11 / 12 * 1 / 12 / 13))

@@ -165,7 +165,7 @@ class Manuals(unittest.TestCase):
                 with self.assertRaisesRegex(al.Error, words):
                     al.Sensor(file)
 
-    def test_what_a_file_does_not_give_is_marked(self):
+    def test_numbers_that_a_file_lacks_are_marked(self):
         """The guide's example gives neither pattern nor pulse."""
         guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text(encoding="utf-8")
         with tempfile.TemporaryDirectory() as folder:
@@ -281,7 +281,7 @@ class Own(unittest.TestCase):
         with self.assertRaisesRegex(al.Error, "LoadSensorText: the text"):
             al.Sensor.__new__(al.Sensor).__setstate__({"text": "{}"})
 
-    def test_what_is_no_table_of_beams(self):
+    def test_wrong_tables_of_beams_are_errors(self):
         for words, arguments in (
                 (r"directions have the shape \(3,\)", {"directions": (0, 1, 0)}),
                 (r"times have the shape \(1,\)", {"directions": np.ones((2, 3)), "times": [0]}),

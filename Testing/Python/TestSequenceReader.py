@@ -96,7 +96,7 @@ class Sequence(InFolder):
         points, _ = self.at(self.reader(), 0.5)
         np.testing.assert_allclose(points.GetPoint(0), SCANS[1][0, :3].astype(float) @ TURN.T + SHIFT, atol=1e-9)
 
-    def test_what_is_refused(self):
+    def test_wrong_sequences_are_refused(self):
         for name, text, said in (
                 ("times.txt", "0\n0\n", "the time in line 2 of times.txt is not above the one before"),
                 ("times.txt", "\n", "no time in it"), ("times.txt", "zero\n", 'has "zero", expected a number'),

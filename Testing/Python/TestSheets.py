@@ -104,7 +104,7 @@ class Sheets(unittest.TestCase):
                     # fills the beam.
                     self.check_board(looking, point, half, 0.13)
 
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_sheets_are_named(self):
         good = {"range": 100, "reflectance": 0.1, "source": "x"}
         for bad, words in (({**good, "range": -1}, r"points\[0\].range is -1"),
                            ({**good, "probability": 1}, "probability is 1"),

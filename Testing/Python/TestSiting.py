@@ -296,7 +296,7 @@ class Kept(unittest.TestCase):
         self.assertLess(siting.look(scene, sensor, sites[:1], places, [""], folder, **target).sum(), wanted[0, 0].sum())
         self.assertEqual(len(list(folder.iterdir())), 3 + 4)
 
-    def test_what_is_damaged_is_made_again(self):
+    def test_damaged_files_are_made_again(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
         sites = [(k, 0, 2) for k in range(7)]
         places = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3))
@@ -461,7 +461,7 @@ class Plans(unittest.TestCase):
         self.assertEqual(words.count("\n"), 1)
         return words
 
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_plans_are_named(self):
         lattice = {"spacing": 1500}
         (self.folder / "none.geojson").write_text('{"type": "FeatureCollection", "features": []}')
         (self.folder / "nowhere.lidarscene.json").write_text(

@@ -254,7 +254,7 @@ class TestTracker(unittest.TestCase):
             self.assertEqual(list(cell_array(tracks, "ended")), [ended])
             self.assertEqual(points.GetNumberOfPoints(), 0)
 
-    def test_what_is_too_slow_is_not_confirmed(self):
+    def test_slow_tracks_are_not_confirmed(self):
         for least, sure in ((9.5, 1), (10.5, 0)):
             made = tracker(MinimumSpeed=least)
             for scan in range(20):

@@ -184,7 +184,7 @@ class Tracks(InFolder):
             blocks = movers(self.from_lines(polyline(TWO_LINES, TIMES, species, where), Species="not used"))
             self.assertEqual([text(block, "species")[0] for block in blocks], [species[0], species[-1]])
 
-    def test_no_birds_are_no_error(self):
+    def test_a_file_without_birds_is_not_an_error(self):
         empty = [tracks(Pattern=pattern(name), NumberOfBirds=0) for name in PATTERNS]
         empty.append(tracks(Pattern=pattern("File"), FileName=self.file(HEADER)))
         empty.append(self.from_lines(vtk.vtkPolyData()))

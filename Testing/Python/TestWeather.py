@@ -128,7 +128,7 @@ class Labels(unittest.TestCase):
 
 
 class Words(unittest.TestCase):
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_weather_is_named(self):
         with self.assertRaisesRegex(al.Error, "receiver_aperture above 0, for example Search905"):
             al.Scan(NOTHING, al.Sensor("Airport16"), rain_rate=1).echoes
 

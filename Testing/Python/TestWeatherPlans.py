@@ -122,7 +122,7 @@ class Year(unittest.TestCase):
         self.assertAlmostEqual(float(told.partition(" ")[0]), 100 * year, delta=0.51)
         self.assertIn(f", {told}\u00a0% over the year", text)
 
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_years_are_named(self):
         half = [{"weather": ["fog:500"], "share": 0.5}]
         plan("wrong").with_name("empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
         for changes, words in (({"weather": ["snow:3"]}, "weather: "),
