@@ -48,11 +48,8 @@ class BeamShapes(unittest.TestCase):
         self.assertEqual(fields, {**SHAPE, "beam_outline": 1, "beam_profile": 1})
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "mine.lidarsensor.json"
-            file.write_text(json.dumps({"format": "lidarsensor 1", "name": "Mine",
-                                        "values": {name: {"value": value,
-                                                          "unit": {"half": "rad", "beam_rotation": "deg"}.get(
-                                                              name if "rotation" in name else name[:4], "1"),
-                                                          "source": "made"} for name, value in fields.items()}}),
-                            encoding="utf-8")
+            units = {name: "deg" if "rotation" in name else "rad" if name[:4] == "half" else "1" for name in fields}
+            values = {name: {"value": value, "unit": units[name], "source": "made"} for name, value in fields.items()}
+            file.write_text(json.dumps({"format": "lidarsensor 1", "name": "Mine", "values": values}))
             read = al.Sensor(file).beams.fields
             self.assertEqual({name: float(read[name]) for name in SHAPE}, fields)

@@ -91,10 +91,10 @@ class Verbs(unittest.TestCase):
         """The place and its source before the work, and a warning inside a solid."""
         hangar, out = OUTPUT / "hangar.stl", OUTPUT / "stands.vtp"
         hangar.write_text(stl(np.array(CORNERS) * 20 - (30, 60, 3), TRIANGLES), encoding="utf-8")
-        for words, expected, inside in (((), "(0, 0, 0) m, the default; --position X Y Z moves it", True),
-                                        (("--position", 9, -90, 2), "(9, -90, 2) m, as --position says", False),
-                                        (("--sensor-set", "position=9,-90,1"), "(9, -90, 1) m, as --sensor-set says",
-                                         False)):
+        for words, expected, inside in (
+                ((), "(0, 0, 0) m, the default; --position X Y Z moves it", True),
+                (("--position", 9, -90, 2), "(9, -90, 2) m, as --position says", False),
+                (("--sensor-set", "position=9,-90,1"), "(9, -90, 1) m, as --sensor-set says", False)):
             code, lines, errors = run("scan", hangar, *words, *FEW, "-o", out)
             self.assertEqual((code, lines[0]), (0, f"the lidar stands at {expected}"))
             self.assertEqual(["is inside the closed surface of 'hangar'" in error for error in errors], [True] * inside)
@@ -130,16 +130,13 @@ class Verbs(unittest.TestCase):
 
     def test_what_a_scene_assumes_and_leaves_out_is_printed(self):
         square = [[[0, 50], [9, 50], [9, 59], [0, 59], [0, 50]]]
-        (OUTPUT / "plans.geojson").write_text(
-            json.dumps({"type": "FeatureCollection", "features": [
-                            {"type": "Feature", "properties": {"name": name, "h": "tall"}, "geometry": geometry}
-                            for name, geometry in (
-                                ("House", {"type": "Polygon", "coordinates": square}),
-                                ("Lamp", {"type": "Point", "coordinates": [0, 0]}))]}), encoding="utf-8")
+        features = [{"type": "Feature", "properties": {"name": name, "h": "tall"},
+                     "geometry": {"type": kind, "coordinates": at}}
+                    for name, kind, at in (("House", "Polygon", square), ("Lamp", "Point", [0, 0]))]
+        (OUTPUT / "plans.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
         scene = OUTPUT / "plans.lidarscene.json"
-        scene.write_text(json.dumps({"version": 1, "objects": [{"footprints": "plans.geojson", "crs": "local",
-                                                                "height": 3, "height_attribute": "h",
-                                                                "material": "Wall"}]}), encoding="utf-8")
+        scene.write_text(json.dumps({"version": 1, "objects": [{
+            "footprints": "plans.geojson", "crs": "local", "height": 3, "height_attribute": "h", "material": "Wall"}]}))
         expected = ["plans: 1 features without an area were left out: Lamp",
                     'plans: 1 features have no usable height attribute and got the default height: House ("tall")',
                     "plans: 1 points were left out"]

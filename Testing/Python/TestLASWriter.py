@@ -98,12 +98,12 @@ class TestLASWriter(InFolder):
     def test_coordinate_systems(self):
         """Places are those of the geodetic transform, and PROJ understands the system."""
         south = echoes(origin=(-33.9461, 151.1772, 6.0))
-        for data, settings, frame, words, name in ((self.data, {}, "UTM",
-                                                    ('AUTHORITY["EPSG","32651"]', 'VERT_DATUM["Ellipsoid",2002]'),
-                                                    "UTM zone 51N"), (south, {}, "UTM", ('"32756"',), "UTM zone 56S"),
-                                                   (south, {"UTMZone": -55}, None, ('"32755"',), "UTM zone 55S"),
-                                                   (self.data, {"CoordinateSystem": 1}, "ECEF", ("GEOCCS[",),
-                                                    "geocentricX"), (self.data, {"CoordinateSystem": 2}, None, (), "")):
+        for data, settings, frame, words, name in (
+                (self.data, {}, "UTM", ('AUTHORITY["EPSG","32651"]', 'VERT_DATUM["Ellipsoid",2002]'), "UTM zone 51N"),
+                (south, {}, "UTM", ('"32756"',), "UTM zone 56S"),
+                (south, {"UTMZone": -55}, None, ('"32755"',), "UTM zone 55S"),
+                (self.data, {"CoordinateSystem": 1}, "ECEF", ("GEOCCS[",), "geocentricX"),
+                (self.data, {"CoordinateSystem": 2}, None, (), "")):
             with self.subTest(name):
                 found = self.write(data, **settings)
                 if frame:
@@ -241,12 +241,13 @@ class TestLASWriter(InFolder):
         def place(i, x, y):
             return lambda data: data.GetPoints().SetPoint(i, x, y, 0)
 
-        for system, change, words in ((0, place(3, np.nan, 0), "point 3"), (2, place(3, 0, -1.1e15), "point 3"),
-                                      (0, place(4, 1e9, 0), "point 4"),
-                                      (0, lambda data: add_field(data, "geodetic_origin", (91.0, 0.0, 0.0)),
-                                       "latitude is 91"), *((0,
-                                                             lambda data, text=text: add_field(data, "crs_wkt", [text]),
-                                                             "'crs_wkt'") for text in ("[", "<gml>PROJCS[</gml>"))):
+        def given(name, value):
+            return lambda data: add_field(data, name, value)
+
+        for system, change, words in (
+                (0, place(3, np.nan, 0), "point 3"), (2, place(3, 0, -1.1e15), "point 3"),
+                (0, place(4, 1e9, 0), "point 4"), (0, given("geodetic_origin", (91.0, 0.0, 0.0)), "latitude is 91"),
+                *((0, given("crs_wkt", [text]), "'crs_wkt'") for text in ("[", "<gml>PROJCS[</gml>"))):
             self.data.DeepCopy(self.made)
             change(self.data)
             self.writer.SetCoordinateSystem(system)

@@ -249,9 +249,9 @@ class TestPointCloudReader(InFolder):
         tail = struct.pack("<H16sHQ32s", 0, b"x", 1, 2**63, b"")
         for words, changes in [
                 ("version is 2.4", {"patch": {24: ("<B", 2)}}), ("record format is 11", {"patch": {104: ("<B", 11)}}),
-                ("cut short", {"patch": {247: ("<Q", 2**63)}}), (
-                    "waveforms (point data record format 4), which are read from LAS, not from LAZ",
-                    {"patch": {104: ("<B", 0x84), 105: ("<H", 57)}}),
+                ("cut short", {"patch": {247: ("<Q", 2**63)}}),
+                ("waveforms (point data record format 4), which are read from LAS, not from LAZ",
+                 {"patch": {104: ("<B", 0x84), 105: ("<H", 57)}}),
                 ("a scale of its coordinates is 0", {"patch": {147: ("<d", 0.0)}}),
                 ("have 29 bytes", {"patch": {105: ("<H", 29)}}), ("not finite", {"patch": {163: ("<d", float("inf"))}}),
                 ("ends before", {"records": [vlr(b"x", 1, b"")[:-34] + struct.pack("<H", 65535) + b"\0" * 32]}),

@@ -323,14 +323,14 @@ class Files(unittest.TestCase):
                 ("hidden", mosaic(FOLDER / "hidden.tif")), ("nested", mosaic(FOLDER / "hidden.vrt")),
                 ("stream", mosaic(remote.replace("vsicurl", "vsicurl_streaming"))), ("s3", mosaic("/vsis3/b/x.tif")),
                 ("zip", mosaic("/vsizip/" + str(good))), ("netcdf", mosaic(f"NETCDF:{url}/x.nc:z")),
-                ("srs", mosaic(good, srs=url + "/crs")), (
-                    "open",
-                    mosaic(good, "<SimpleSource><SourceFilename>a.tif</SourceFilename><OpenOptions/></SimpleSource>")),
+                ("srs", mosaic(good, srs=url + "/crs")),
+                ("open", mosaic(good, "<SimpleSource><SourceFilename>a.tif</SourceFilename><OpenOptions/>"
+                                "</SimpleSource>")),
                 ("python", mosaic(good).replace('band="1"', 'band="1" subClass="VRTDerivedRasterBand"')),
                 ("entity", "<!DOCTYPE a [<!ENTITY b 'c'>]>" + mosaic(good)),
                 ("warped", mosaic(good).replace("<VRTDataset ", '<VRTDataset subClass="VRTWarpedDataset" ')),
-                ("options",
-                    mosaic(good, start=f"<GDALWarpOptions><SourceDataset>{remote}</SourceDataset></GDALWarpOptions>"))):
+                ("options", mosaic(good, start=f"<GDALWarpOptions><SourceDataset>{remote}</SourceDataset>"
+                                   "</GDALWarpOptions>"))):
             self.refused(f"{name}.vrt", text, ".")
         for suffix in (".tif.msk", ".msk", ".tif.ovr", ".tif.aux.xml"):
             beside = write("beside.tif", SLOPE)

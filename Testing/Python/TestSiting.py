@@ -327,8 +327,7 @@ class Airport(unittest.TestCase):
         cls.scene = al.load_scene(SCENE)
         origin = cls.scene.geodetic_origin
         cls.runways = siting.read_runways(PLAN, origin)
-        outlines = siting.read_outlines(PLAN, origin, "height") + [siting.runway_outline(runway)
-                                                                   for runway in cls.runways]
+        outlines = siting.read_outlines(PLAN, origin, "height") + [*map(siting.runway_outline, cls.runways)]
         cls.sites = siting.candidates(siting.lattice((-2000, 1600, -2200, 2200), 200), (5.0,),
                                       [(o, 0.0) for o in outlines])
         cls.sensor = al.Sensor("Search905")
@@ -619,8 +618,8 @@ class Plans(unittest.TestCase):
             odd = [{"properties": {"kind": "road", name: text}, "geometry": shape}
                    for name in ("tags", "other_tags", "names")
                    for text in ("{a,b}", "{1: 2}", "{" * 100000, '"a"=>', "[1]", [1], 7, None)]
-            (self.folder / "b.geojson").write_text(json.dumps(
-                                                       {"features": [*odd, {"properties": tags, "geometry": shape}]}))
+            (self.folder / "b.geojson").write_text(json.dumps({
+                "features": [*odd, {"properties": tags, "geometry": shape}]}))
             one, = siting.read_runways(self.folder / "b.geojson", (53.6, 13.3, 0.0))
             self.assertEqual((one.name, one.width), ("18/36", 45.0))
 
