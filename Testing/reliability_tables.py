@@ -25,10 +25,10 @@ def counts(tree):
     """Lines, lines that ran, branches and branches taken, by file."""
     files = {}
     for file in (file for name in ("branches", "kernel")
-                 for file in json.loads((tree / f"{name}.json").read_text(encoding="utf-8"))["files"]):
+                 for file in json.loads((tree / f"{name}.json").read_text("utf-8"))["files"]):
         files[file["filename"]] = [file[name]
                                    for name in ("line_total", "line_covered", "branch_total", "branch_covered")]
-    for name, file in json.loads((tree / "python.json").read_text(encoding="utf-8"))["files"].items():
+    for name, file in json.loads((tree / "python.json").read_text("utf-8"))["files"].items():
         files["Python/" + name.split("/dist-packages/")[-1]] = [
             file["summary"][key] for key in ("num_statements", "covered_lines", "num_branches", "covered_branches")]
     return files

@@ -156,17 +156,17 @@ def groups(faults, tests):
 @contextlib.contextmanager
 def planted(patches):
     """Files with replaced texts, which are restored afterwards. @param patches file, old and new text"""
-    texts = {SOURCE / file: (SOURCE / file).read_text(encoding="utf-8") for file, *_ in patches}
+    texts = {SOURCE / file: (SOURCE / file).read_text("utf-8") for file, *_ in patches}
     try:
         for file, old, new in patches:
-            text = (SOURCE / file).read_text(encoding="utf-8")
+            text = (SOURCE / file).read_text("utf-8")
             if text.count(old) != 1:
                 sys.exit(f"the text to replace is {text.count(old)} times in {file}, expected once: {old}")
-            (SOURCE / file).write_text(text.replace(old, new), encoding="utf-8")
+            (SOURCE / file).write_text(text.replace(old, new), "utf-8")
         yield
     finally:
         for file, text in texts.items():
-            file.write_text(text, encoding="utf-8")
+            file.write_text(text, "utf-8")
 
 
 def main():
@@ -182,7 +182,7 @@ def main():
     options = parser.parse_args()
     chosen = [fault for fault in FAULTS if not options.only or fault.name in options.only]
     for fault in chosen:
-        found = (SOURCE / fault.file).read_text(encoding="utf-8").count(fault.old)
+        found = (SOURCE / fault.file).read_text("utf-8").count(fault.old)
         if found != 1:
             sys.exit(f"{fault.name}: its text is {found} times in {fault.file}, expected once")
         if options.list:

@@ -49,7 +49,7 @@ def drawn(build):
     subprocess.run([SOURCE / "Testing/run_ctest.sh", build, "-R", TESTS],
                    env={**os.environ, "AVIANLIDAR_PICTURES": str(file.resolve())}, stdout=subprocess.DEVNULL,
                    check=False)
-    rows = [line.rsplit(" ", 1) for line in file.read_text(encoding="utf-8").splitlines()]
+    rows = [line.rsplit(" ", 1) for line in file.read_text("utf-8").splitlines()]
     return {name: float(error) for name, error in rows}
 
 

@@ -11,8 +11,7 @@ import unittest
 BUILD = pathlib.Path(os.environ["AVIANLIDAR_BUILD_DIR"])
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 GIVEN = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "Packages"  # to overlay.sh
-RELEASE = re.search(r"project\(AvianLidar\s+VERSION ([\d.]+)",
-                    (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+RELEASE = re.search(r"project\(AvianLidar\s+VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text("utf-8"))[1]
 VERSION = f"{RELEASE}-1"
 PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
 PLUGINS, PACKAGE = f"usr/lib/{PARAVIEW}/plugins/", r"usr/lib/python3/dist-packages/avianlidar/"

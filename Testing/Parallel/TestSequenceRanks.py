@@ -65,12 +65,12 @@ for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out),
         heard = str(error)
     with open(home / f"heard{{rank}}.txt", "a", encoding="utf-8") as stream:
         stream.write(heard.splitlines()[0] + "\\n")
-""", encoding="utf-8")
+""", "utf-8")
         with only_run(home / "out4"):
             done = on_ranks(script)
         self.assertEqual(done.returncode, 0, done.stderr)
         for rank in range(2):
-            heard = (home / f"heard{rank}.txt").read_text(encoding="utf-8").splitlines()
+            heard = (home / f"heard{rank}.txt").read_text("utf-8").splitlines()
             self.assertEqual(len(heard), 6, heard)
             for k, words in enumerate(4 * ("the ranks would write different files",)
                                       + ("another run writes there", "")):

@@ -15,7 +15,7 @@ TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicke
 
 def few(folder, verb="siting", **parts):
     """The airport's plan with few places, candidates and designs. @param parts further parts of it"""
-    plan = json.loads((PLAN if verb == "siting" else DESIGN).read_text(encoding="utf-8"))
+    plan = json.loads((PLAN if verb == "siting" else DESIGN).read_text("utf-8"))
     plan.update({name: str((PLAN.parent / plan[name]).resolve()) for name in ("scene", "runways")}, compare_with=[],
                 places=50, coverage=TARGET)
     plan.update(parts)
@@ -26,7 +26,7 @@ def few(folder, verb="siting", **parts):
         plan["sensor"]["azimuth_step"] = 3.0
     folder.mkdir(parents=True)
     file = folder / "few.coverage.json"
-    file.write_text(json.dumps(plan), encoding="utf-8")
+    file.write_text(json.dumps(plan), "utf-8")
     return "-m", "avianlidar", verb, file, "-o", folder / "out"
 
 
@@ -68,7 +68,7 @@ def kept(values):
     raise OSError("no space for rank 1")
 _looks.packed = kept
 _command.main(["siting", {str(command[3])!r}, "-o", {str(command[5])!r}])
-""", encoding="utf-8")
+""", "utf-8")
         done = on_ranks(script)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("no space for rank 1", done.stderr)
@@ -100,12 +100,12 @@ for work in (lambda: siting.look(wall, narrow, sites, [(0, 200, 1)], ["crow"], h
         heard = str(error)
     with open(f"{{home}}/heard{{ranks.rank}}.txt", "a", encoding="utf-8") as file:
         file.write(heard + "\\n")
-""", encoding="utf-8")
+""", "utf-8")
         done = on_ranks(script)
         self.assertEqual(done.returncode, 0, done.stderr)
         for rank, words in enumerate(("another rank failed; its own error says why", "'mine'")):
             # A file for each rank: what two ranks print may stand in one line.
-            heard = (folder / f"heard{rank}.txt").read_text(encoding="utf-8")
+            heard = (folder / f"heard{rank}.txt").read_text("utf-8")
             self.assertEqual(heard, 2 * (words + "\n"), done.stdout + done.stderr)
 
 

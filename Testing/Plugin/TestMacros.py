@@ -48,7 +48,7 @@ def said(work):
 def run(path, active=None):
     """What ParaView does with a macro: runs the text, with `__file__`."""
     simple.SetActiveSource(active)
-    code = compile(pathlib.Path(path).read_text(encoding="utf-8"), path, "exec")
+    code = compile(pathlib.Path(path).read_text("utf-8"), path, "exec")
     return said(lambda: exec(code, {"__name__": "__main__", "__file__": path}))
 
 
@@ -307,7 +307,7 @@ class Macros(Case):
             for k in range(2):
                 pathlib.Path(folder, name, f"{k:06d}.{kind}").write_bytes(content[: len(content) // (2 - k)])
         times = pathlib.Path(folder, "times.txt")
-        times.write_text("0\n0.5\n", encoding="utf-8")
+        times.write_text("0\n0.5\n", "utf-8")
         reader = simple.OpenDataFile(str(times))
         self.assertEqual(list(reader.TimestepValues), [0, 0.5])
         simple.Show(reader, self.view)

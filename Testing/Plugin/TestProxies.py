@@ -304,11 +304,11 @@ class TestProxies(unittest.TestCase):
     def test_species_are_a_list(self):
         """The built-in species and, after an execution, the species of the user's table. A value that is not known
         stays."""
-        table = pathlib.Path(SOURCE_DIR, "Filters", "Birds", "species.csv").read_text(encoding="utf-8").splitlines()
+        table = pathlib.Path(SOURCE_DIR, "Filters", "Birds", "species.csv").read_text("utf-8").splitlines()
         built_in = [line.split(",")[0] for line in table if not line.startswith("#")][1:]
         with tempfile.TemporaryDirectory() as folder:
             own = pathlib.Path(folder, "own.csv")
-            own.write_text("\n".join(table).replace("pigeon", "barn owl"), encoding="utf-8")
+            own.write_text("\n".join(table).replace("pigeon", "barn owl"), "utf-8")
             for name, empty in (("AvianLidarBirdSource", []), ("AvianLidarTracks", [""]), ("AvianLidarCoverage", [""])):
                 simple.SetActiveSource(None)
                 source = getattr(simple, name)()

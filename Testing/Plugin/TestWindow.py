@@ -28,12 +28,12 @@ def main(paraview, _, option=None):
         copy = shutil.copytree(PLUGIN_DIR, os.path.join(folder, "o'brien" if option == "auto" else "AvianLidarPlugin"))
         given = {"AVIANLIDAR_PLUGIN_COPY": copy}
         coverage = pathlib.Path(copy, "Macros", "avian_lidar_coverage.py")
-        text = coverage.read_text(encoding="utf-8")
+        text = coverage.read_text("utf-8")
         assert FINE in text
-        coverage.write_text(text.replace(FINE, COARSE), encoding="utf-8")  # TestMacros.py looks at what it finds
+        coverage.write_text(text.replace(FINE, COARSE), "utf-8")  # TestMacros.py looks at what it finds
         if option == "auto":
             given["PV_PLUGIN_CONFIG_FILE"] = plugins = os.path.join(folder, "plugins.xml")
-            pathlib.Path(plugins).write_text(AUTO.format(os.path.join(copy, "AvianLidarPlugin.so")), encoding="utf-8")
+            pathlib.Path(plugins).write_text(AUTO.format(os.path.join(copy, "AvianLidarPlugin.so")), "utf-8")
             run_script(paraview, "TestWindow-auto", SIZE, ["--script", os.path.join(HERE, "window_steps.py")], **given)
             return
         if option:

@@ -27,7 +27,7 @@ WRITTEN = ("las", "pcd", "csv")  # ours keep a good file by themselves, ParaView
 def write_scene(width=200):
     """A ground of a width, m; without one a file that is not a scene."""
     ground = {"ground": {"size": width, "height": -1}, "material": "wall", "name": "ground"}
-    pathlib.Path(SCENE).write_text(json.dumps({"version": 1, "objects": [ground]}) if width else "{", encoding="utf-8")
+    pathlib.Path(SCENE).write_text(json.dumps({"version": 1, "objects": [ground]}) if width else "{", "utf-8")
 
 
 class Pipeline:

@@ -107,7 +107,7 @@ def run_script(paraview, name, size, arguments, timeout=TIMEOUT, **environment):
                 assert process.poll() is None and "Traceback" not in said, said[-2000:]
                 assert time.monotonic() - start < timeout, "the script does not come to its end"
                 time.sleep(0.2)
-    found = json.loads(pathlib.Path(results).read_text(encoding="utf-8"))
+    found = json.loads(pathlib.Path(results).read_text("utf-8"))
     assert not found["error"], found["error"]
     # of Qt; errors of the plugin are looked at by the script
     assert "critical:" not in text_of(log_name), text_of(log_name)

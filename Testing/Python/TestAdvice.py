@@ -244,13 +244,13 @@ class Advice(unittest.TestCase):
             code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "60",
                                   *(word for file in files for word in ("-o", str(file)))])
         self.assertEqual(code, 0)
-        found = json.loads(files[0].read_text(encoding="utf-8"))
+        found = json.loads(files[0].read_text("utf-8"))
         options = next(line for line in out.getvalue().splitlines() if line.startswith("Command: ")).split()[2::2]
         self.assertEqual(dict(option.split("=") for option in options),
                          {key: str(value) for key, value in found["settings"].items()})
         self.assertIn(f"scan.set(preset=\"Custom\", beam_samples=\"{found['settings']['beam_samples']}\"",
                       out.getvalue())
-        self.assertEqual(len(files[1].read_text(encoding="utf-8").splitlines()), 38)
+        self.assertEqual(len(files[1].read_text("utf-8").splitlines()), 38)
         self.assertEqual(files[2].read_bytes()[:4], b"\x89PNG")
         with contextlib.redirect_stderr(io.StringIO()) as error:
             self.assertEqual(_command.main(["advise", str(SCENE), "-o", str(OUTPUT / "advice.las")]), 2)

@@ -117,7 +117,7 @@ class Map:
         FOLDER.mkdir(parents=True, exist_ok=True)
         file = FOLDER / name
         file.write_text('<?xml version="1.0"?><osm version="0.6">' + "".join(self.rows + self.ways + self.relations)
-                        + "</osm>", encoding="utf-8")
+                        + "</osm>", "utf-8")
         return file
 
 

@@ -57,11 +57,11 @@ def write_set(home, bird_class=BIRD, sequences=2):
             (kind + (instance << 16)).astype("<u4").tofile(folder / "labels" / f"{name}.label")
             draw.integers(3, size=count).astype(np.uint8).tofile(folder / "subsets" / f"{name}.subset")
             found[f"{number:02d}", name] = kind
-        (folder / "truth.csv").write_text("bird,species\n10000,crow\n10001,crow\n10002,starling\n", encoding="utf-8")
+        (folder / "truth.csv").write_text("bird,species\n10000,crow\n10001,crow\n10002,starling\n", "utf-8")
     scenario = {"scene": "s.lidarscene.json", "sensor": {"preset": "Search905"}, "bird_class": bird_class,
                 "weather": ["rain:2"]}
     (home / "manifest.json").write_text(
-        json.dumps({"scenario": scenario, "sequences": {f"{k:02d}": {} for k in range(sequences)}}), encoding="utf-8")
+        json.dumps({"scenario": scenario, "sequences": {f"{k:02d}": {} for k in range(sequences)}}), "utf-8")
     return found
 
 
@@ -222,19 +222,19 @@ class Files(unittest.TestCase):
         damaged = OUTPUT / "damaged" / "set"
         shutil.rmtree(damaged, ignore_errors=True)
         shutil.copytree(self.home, damaged)
-        (damaged / "sequences" / "00" / "done.json").write_text("{}", encoding="utf-8")
+        (damaged / "sequences" / "00" / "done.json").write_text("{}", "utf-8")
         lost = OUTPUT / "lost" / "set"
         shutil.rmtree(lost, ignore_errors=True)
         shutil.copytree(self.home, lost)
         manifest = json.loads((lost / "manifest.json").read_text())
         manifest["sequences"]["00"] = {"sha256": "of a set that `avianlidar sequence` has made"}
-        (lost / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+        (lost / "manifest.json").write_text(json.dumps(manifest), "utf-8")
         for number, (key, value) in enumerate((("bird_class", "x"), ("weather", 5), ("sensor", 5), (None, 5))):
             other = OUTPUT / f"manifest{number}"
             other.mkdir(exist_ok=True)
             manifest = json.loads((self.home / "manifest.json").read_text())
             manifest["scenario"] = {**manifest["scenario"], key: value} if key else value
-            (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+            (other / "manifest.json").write_text(json.dumps(manifest), "utf-8")
             with self.subTest(key), self.assertRaisesRegex(al.Error, f"manifest{number}/manifest.json: .*scenario"):
                 write_bench([other], [OUTPUT / "right"], OUTPUT / "out-wrong")
         nan = np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tobytes()

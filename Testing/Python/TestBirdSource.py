@@ -42,11 +42,11 @@ class Bird(InFolder):
 
     def test_species_of_ones_own(self):
         rows = HEADER + "swift,0.04,0.17,0.42,0.016,no,10\n"
-        (self.folder / "own.csv").write_text(rows, encoding="utf-8")
+        (self.folder / "own.csv").write_text(rows, "utf-8")
         body = points(bird(Species="swift", SpeciesFileName="own.csv"), "Body")
         self.assertAlmostEqual(np.ptp(body[:, 1]) / (0.65 * 0.17), 1, delta=0.1)
         self.assertGreater(bird(Species="crow", SpeciesFileName="own.csv").GetNumberOfCells(), 0)
-        (self.folder / "own.csv").write_text(rows + "swift,heavy,0.17,0.42,0.016,no,10\n", encoding="utf-8")
+        (self.folder / "own.csv").write_text(rows + "swift,heavy,0.17,0.42,0.016,no,10\n", "utf-8")
         with self.assertRaisesRegex(Error, r"own\.csv: line 3: mass is 'heavy'"):
             bird(Species="swift", SpeciesFileName="own.csv")
 

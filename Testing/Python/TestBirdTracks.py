@@ -35,8 +35,7 @@ SCENARIO = {"scene": "small.lidarscene.json", "number_of_scans": 50, "scans_per_
 
 
 def scenario_file(where, **changes):
-    (where / "runways.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [EAST]}),
-                                           encoding="utf-8")
+    (where / "runways.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [EAST]}), "utf-8")
     return TestSequence.scenario_file(where, SCENE, **{**SCENARIO, **changes})
 
 
@@ -211,7 +210,7 @@ class Files(unittest.TestCase):
         self.assertEqual(sum(int(r["count"]) for r in groups), len(birds))
 
     def test_page(self):
-        page = (self.out / "card.html").read_text(encoding="utf-8").replace("\u00a0", " ")
+        page = (self.out / "card.html").read_text("utf-8").replace("\u00a0", " ")
         self.assertEqual(page.count("data:image/png"), 4)
         self.assertNotIn("http", page)
         for text in (cell for line in self.card["overall"] for cell in line["cells"]):
@@ -224,7 +223,7 @@ class Files(unittest.TestCase):
         self.assertEqual(self.tracks().write(self.out), self.card)
         self.assertEqual(file.stat().st_mtime_ns, before)
         for damaged in ({}, {**json.loads(content), "birds": 5}):
-            file.write_text(json.dumps(damaged), encoding="utf-8")
+            file.write_text(json.dumps(damaged), "utf-8")
             self.tracks().write(self.out)
             self.assertEqual(file.read_bytes(), content)
         other = self.home / "other"
@@ -241,22 +240,21 @@ class Files(unittest.TestCase):
         self.assertTrue((out / "sequences/small-Search1550/manifest.json").is_file())
         weathers = {(r["input"], r["group"]) for r in rows_of(out / "card.csv") if r["by"] == "weather"}
         self.assertEqual(weathers, {(f"small-{name}", "visibility 2000 m") for name in ("Search905", "Search1550")})
-        self.assertNotIn("Warning", (out / "card.html").read_text(encoding="utf-8"))  # without runways
+        self.assertNotIn("Warning", (out / "card.html").read_text("utf-8"))  # without runways
 
     def test_section_of_the_report(self):
         plan = self.home / "p.coverage.json"
         plan.write_text(json.dumps({"scene": "small.lidarscene.json",
                                     "sensor": {"preset": "Search905", "azimuth_step": 6}, "heights": [20],
                                     "extent": [-200, 200, -200, 200], "spacing": 200, "places": 10, "tracks": "out",
-                                    "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}),
-                        encoding="utf-8")
+                                    "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}), "utf-8")
         with quick():  # what the report says else has its own test
             _report.Report(read_plan(plan), 1).write(self.home / "report.html")
-        page = (self.home / "report.html").read_text(encoding="utf-8")
+        page = (self.home / "report.html").read_text("utf-8")
         self.assertIn('id="tracks"', page)
         self.assertIn(self.card["overall"][0]["cells"][0], page)
         plan.write_text(json.dumps({"scene": "small.lidarscene.json", "sensor": {"preset": "Search905"},
-                                    "tracks": "made"}), encoding="utf-8")
+                                    "tracks": "made"}), "utf-8")
         with self.assertRaisesRegex(al.Error, "tracks: .*holds no card.json"):
             _report.Report(read_plan(plan))
 
@@ -270,10 +268,10 @@ class Files(unittest.TestCase):
         empty, cut, changed = emptied("bird-tracks", "files/empty"), self.broken("cut"), self.broken("changed")
         other = self.broken("sensor")
         (cut / "sequences/01/truth.csv").unlink()
-        (changed / "sequences/00/truth.csv").write_text("scan,bird\n", encoding="utf-8")
+        (changed / "sequences/00/truth.csv").write_text("scan,bird\n", "utf-8")
         manifest = json.loads((other / "manifest.json").read_text())
         manifest["scenario"]["sensor"]["preset"] = "Search1550"
-        (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+        (other / "manifest.json").write_text(json.dumps(manifest), "utf-8")
         spoilt = []
         for name, change, words in (
                 ("velodyne/000000.bin", -16, "label: has .* bytes"), ("labels/000000.label", -3, "label: has"),
@@ -289,9 +287,9 @@ class Files(unittest.TestCase):
             file.write_bytes(change(content) if callable(change) else content[:change] if change < 0 else content
                              + bytes(change))
             done.write_text(json.dumps({**json.loads(done.read_text()), "sha256": _sequence._digest(done.parent)}),
-                            encoding="utf-8")
+                            "utf-8")
             spoilt.append((folder, words))
-        (self.home / "none.geojson").write_text('{"features": []}', encoding="utf-8")
+        (self.home / "none.geojson").write_text('{"features": []}', "utf-8")
         for inputs, settings, words in (
                 *(((folder,), {}, words) for folder, words in spoilt), ((empty,), {}, "no manifest.json"),
                 ((cut,), {}, "truth.csv: is missing"), ((changed,), {}, "its files differ from the sha256"),

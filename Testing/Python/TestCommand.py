@@ -70,7 +70,7 @@ class Verbs(unittest.TestCase):
         self.assertEqual(self.files["png"].read_bytes()[:4], b"\x89PNG")
 
     def test_a_mesh_is_a_scene(self):
-        (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), "utf-8")
         al.save(poly_data(TRIANGLES), OUTPUT / "box.vtp")
         for file in (OUTPUT / "box.stl", OUTPUT / "box.vtp"):
             with self.subTest(file):
@@ -90,7 +90,7 @@ class Verbs(unittest.TestCase):
     def test_where_the_lidar_stands(self):
         """The place and its source before the work, and a warning inside a solid."""
         hangar, out = OUTPUT / "hangar.stl", OUTPUT / "stands.vtp"
-        hangar.write_text(stl(np.array(CORNERS) * 20 - (30, 60, 3), TRIANGLES), encoding="utf-8")
+        hangar.write_text(stl(np.array(CORNERS) * 20 - (30, 60, 3), TRIANGLES), "utf-8")
         for words, expected, inside in (
                 ((), "(0, 0, 0) m, the default; --position X Y Z moves it", True),
                 (("--position", 9, -90, 2), "(9, -90, 2) m, as --position says", False),
@@ -166,10 +166,10 @@ class Verbs(unittest.TestCase):
                 found = re.search(rf"(?m)^{words} +(\S+) +(\S+)$", text).groups()
                 self.assertAlmostEqual(float(found[column]), np.percentile(nearest, share), delta=2e-6)
         # One false alarm more, 5 km above, is the whole distance; without it nothing is left.
-        head, *rows = self.files["csv"].read_text(encoding="utf-8").splitlines()
+        head, *rows = self.files["csv"].read_text("utf-8").splitlines()
         names, row = [name.partition(" ")[0] for name in head.split(",")], rows[-1].split(",")
         row[names.index("z")], row[names.index("object_id")] = "5000", "-1"
-        (OUTPUT / "alarm.csv").write_text("\n".join((head, *rows, ",".join(row), "")), encoding="utf-8")
+        (OUTPUT / "alarm.csv").write_text("\n".join((head, *rows, ",".join(row), "")), "utf-8")
         distance, text, _ = compared(OUTPUT / "alarm.csv", self.files["csv"])
         self.assertGreater(distance, 4900)
         self.assertRegex(text, r"(?s)alarm.csv has .*Without these echoes the Hausdorff distance is 0 m")
@@ -183,8 +183,7 @@ class Verbs(unittest.TestCase):
         for move, apart in (((346600, 3451000, 0), True), ((100.5, 0, 0), True), ((99.5, 0, 0), True),
                             ((90, 0, 0), False), ((0, 0, 0.5), False), ((0, 0, 30), True)):
             for file, points in zip(files, (flat, flat + move)):
-                file.write_text("x,y,z\n" + "".join("%.3f,%.3f,%.3f\n" % tuple(point) for point in points),
-                                encoding="utf-8")
+                file.write_text("x,y,z\n" + "".join("%.3f,%.3f,%.3f\n" % tuple(point) for point in points), "utf-8")
             errors = run("compare", *files)[2]
             self.assertEqual(["do not overlap: local.csv extends east" in error for error in errors], [True] * apart,
                              move)
@@ -205,7 +204,7 @@ class Verbs(unittest.TestCase):
             self.assertEqual(figures(value, digits), text)
         self.assertEqual(per_cent(9.996), "1000 %")
         file = OUTPUT / "utm.csv"
-        file.write_text("x,y,z\n448123.456,5412345.678,420\n448000,5412000.25,400\n", encoding="utf-8")
+        file.write_text("x,y,z\n448123.456,5412345.678,420\n448000,5412000.25,400\n", "utf-8")
         self.assertIn("east 448000 to 448123.46, north 5412000.25 to 5412345.68, up 400 to 420 m",
                       "".join(run("info", file)[1]))
 
@@ -241,10 +240,10 @@ class Verbs(unittest.TestCase):
                           for line in lines[1:]}, al.materials())
 
     def test_errors_are_one_line_with_status_2(self):
-        (OUTPUT / "text.stl").write_text("no mesh", encoding="utf-8")
-        (OUTPUT / "fake.vtp").write_text("no mesh", encoding="utf-8")
-        (OUTPUT / "cut.vtp").write_text('<VTKFile type="PolyData">', encoding="utf-8")
-        (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", encoding="utf-8")
+        (OUTPUT / "text.stl").write_text("no mesh", "utf-8")
+        (OUTPUT / "fake.vtp").write_text("no mesh", "utf-8")
+        (OUTPUT / "cut.vtp").write_text('<VTKFile type="PolyData">', "utf-8")
+        (OUTPUT / "table.csv").write_text("region,share [1]\nall,0.5\n", "utf-8")
         scan = ("scan", SCENE, "-o", "x.las")
         cases = (
             (("scan", "none.stl", "-o", "x.las"), "no such file: none.stl"),
@@ -281,7 +280,7 @@ class Verbs(unittest.TestCase):
                          (1, 100, [1, 2, 3]))
 
     def test_geojson_of_a_scene_without_an_origin_is_refused_before_the_scan(self):
-        (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        (OUTPUT / "box.stl").write_text(stl(CORNERS, TRIANGLES), "utf-8")
         code, lines, errors = run("scan", OUTPUT / "box.stl", "-o", OUTPUT / "early.vtp", "-o",
                                   OUTPUT / "early.geojson")
         self.assertEqual((code, lines, len(errors)), (2, [], 1))
@@ -416,7 +415,7 @@ class Surroundings(unittest.TestCase):
 
     def test_examples_are_understood(self):
         """Every example of the help and of the page is one that the parser takes, and every verb has one."""
-        page = (SOURCE / "Documentation" / "reference" / "commands.md").read_text(encoding="utf-8")
+        page = (SOURCE / "Documentation" / "reference" / "commands.md").read_text("utf-8")
         lines = [line for _, _, examples in _command.VERBS.values() for line in examples.splitlines()]
         lines += [line for block in re.findall(r"```sh\n(.*?)```", page, re.S)
                   for line in re.sub(r"\\\n", " ", block).splitlines()]
@@ -428,7 +427,7 @@ class Surroundings(unittest.TestCase):
 
     @unittest.skipUnless(SHARE, "made without python3-shtab and python3-argparse-manpage")
     def test_manual_page_and_completion(self):
-        page = (SHARE / "man/man1/avianlidar.1").read_text(encoding="utf-8")
+        page = (SHARE / "man/man1/avianlidar.1").read_text("utf-8")
         for verb in _command.VERBS:
             self.assertRegex(page, rf"(?m)^\.SH (OPTIONS|COMMAND) .*'avianlidar {verb}'")
         script = f"source {SHARE}/bash-completion/completions/avianlidar; COMP_WORDS=(avianlidar %s); COMP_CWORD=%d; " \

@@ -42,7 +42,7 @@ def plan_of(where, **changes):
     plan = {"scene": "small.lidarscene.json", "sensor": NIGHT, "coverage": TARGET, "extent": [-400, 400, -400, 400],
             "heights": [10, 40], "places": 400, "design": DESIGN, **changes}
     file = where / "small.coverage.json"
-    file.write_text(json.dumps(plan), encoding="utf-8")
+    file.write_text(json.dumps(plan), "utf-8")
     return file
 
 
@@ -207,7 +207,7 @@ class Work(unittest.TestCase):
                                    1000 * float(row["pulse_energy [J]"]) + 100 * float(row["receiver_aperture [m2]"]),
                                    delta=1e-3)
         self.assertEqual(sum(int(row["chosen"]) for row in rows), 1)
-        page = (where / "out" / "design.html").read_text(encoding="utf-8")
+        page = (where / "out" / "design.html").read_text("utf-8")
         self.assertNotIn("<script", page)
         self.assertNotIn("<b>kEUR", page)
         self.assertNotRegex(page, r'(src|href)="(?!data:|#)')
@@ -316,10 +316,9 @@ class Wrong(unittest.TestCase):
                 ({"measure": "tracked"}, {}, "design.scenario: ")):
             with self.subTest(words), self.assertRaisesRegex(Error, words):
                 study_of(where, design, **changes)
-        scenario = json.loads(TestBirdTracks.scenario_file(where).read_text(encoding="utf-8"))
+        scenario = json.loads(TestBirdTracks.scenario_file(where).read_text("utf-8"))
         shutil.copyfile(where / "small.lidarscene.json", where / "other.lidarscene.json")
-        (where / "other.scenario.json").write_text(json.dumps({**scenario, "scene": "other.lidarscene.json"}),
-                                                   encoding="utf-8")
+        (where / "other.scenario.json").write_text(json.dumps({**scenario, "scene": "other.lidarscene.json"}), "utf-8")
         with self.assertRaisesRegex(
                 Error, "design.scenario: has the scene .*other.lidarscene.json, expected the scene of the plan"):
             study_of(where, {"measure": "tracked", "scenario": "other.scenario.json"})

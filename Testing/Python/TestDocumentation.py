@@ -31,7 +31,7 @@ def anchors(text):
 class Documentation(unittest.TestCase):
     def test_links_lead_somewhere(self):
         for page in PAGES:
-            text = page.read_text(encoding="utf-8")
+            text = page.read_text("utf-8")
             for link in re.findall(r"\]\(([^)]+)\)", text):
                 if "://" in link:
                     continue
@@ -40,18 +40,18 @@ class Documentation(unittest.TestCase):
                     target = page.parent / name if name else page
                     self.assertTrue(target.is_file(), "a link leads to a file, not to a folder")
                     if anchor:
-                        self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
+                        self.assertIn(anchor, anchors(target.read_text("utf-8")))
 
     def test_index_names_every_page(self):
         folder = SOURCE / "Documentation"
-        index = (folder / "README.md").read_text(encoding="utf-8")
+        index = (folder / "README.md").read_text("utf-8")
         for page in folder.rglob("*.md"):
             self.assertTrue(page == folder / "README.md" or f"({page.relative_to(folder)}" in index, page.name)
 
     def test_named_files_exist(self):
         found = 0
         for page in PAGES:
-            text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+            text = re.sub(r"```.*?```", "", page.read_text("utf-8"), flags=re.S)
             for name in re.findall(r"`(?:[^`\n]*[/ ])?(\w[\w.\-]*\.(?:h|cxx|py|sh|md|cmake))`", text):
                 if name not in NOT_OURS:
                     found += 1
@@ -70,8 +70,7 @@ class Presets(unittest.TestCase):
     def setUpClass(cls):
         head, *rows = page_tables.rows("presets")
         cls.cells = {row[0]: dict(zip((name.strip("`") for name in head[1:]), row[1:])) for row in rows}
-        cls.text = {file: " ".join((SOURCE / file).read_text(
-                                       encoding="utf-8").replace("///", " ").replace("%%", "%").split())
+        cls.text = {file: " ".join((SOURCE / file).read_text("utf-8").replace("///", " ").replace("%%", "%").split())
                     for file in ("Filters/vtkAvianLidarScanFilter.h", "Plugin/Filters/AvianLidarEchoFilter.xml",
                                  "Python/avianlidar/_command.py", "Documentation/guide/accuracy.md")}
 
@@ -105,9 +104,9 @@ class Paper(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.text = verdicts.PAGE.read_text(encoding="utf-8")
+        cls.text = verdicts.PAGE.read_text("utf-8")
         cls.rows = verdicts.rows_of(cls.text)
-        cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing").rglob("Test*.cxx"))
+        cls.kernel = "".join(file.read_text("utf-8") for file in (SOURCE / "Testing").rglob("Test*.cxx"))
 
     def test_rows_are_numbered_and_short(self):
         self.assertEqual([row[0] for row in self.rows], [str(number + 1) for number in range(len(self.rows))])
@@ -136,5 +135,5 @@ class Paper(unittest.TestCase):
     def is_there(self, suite, case):
         """`TestX.test_y` of Python or `Suite.Case` of C++."""
         file = next((SOURCE / "Testing").rglob(f"{suite}.py"), None)
-        return f"def {case}(" in file.read_text(encoding="utf-8") if file else \
+        return f"def {case}(" in file.read_text("utf-8") if file else \
             re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}\)", self.kernel, re.M) is not None

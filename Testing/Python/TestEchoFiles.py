@@ -46,7 +46,7 @@ assert back.GetPointData().GetArray("energy").GetInformation().Get(vtk.vtkDataAr
 
 # They are every property, but for those that the class's comment names.
 header = (pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters"
-          / "vtkAvianLidarEchoFilter.h").read_text(encoding="utf-8")
+          / "vtkAvianLidarEchoFilter.h").read_text("utf-8")
 comment = " ".join(header.replace("\n *", " ").split()).split("every property of this filter in snake case", 1)[1]
 exceptions = comment.split("`avian_lidar_version`")[0].partition("but for ")[2]
 properties = {name[3:] for name in dir(echo) if name.startswith("Set") and hasattr(echo, "Get" + name[3:])

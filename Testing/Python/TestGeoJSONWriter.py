@@ -56,7 +56,7 @@ class TestGeoJSONWriter(InFolder):
             self.assertIn(words, told)
         rows = features()
         self.assert_places(rows)
-        whole = json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))
+        whole = json.loads(pathlib.Path(FILE).read_text("utf-8"))
         np.testing.assert_array_equal([[one["properties"][f"pair_{c}"] for c in (0, 1)] for one in whole["features"]],
                                       pair)
         for name in set(names(self.data)) - {"pair"}:  # GDAL writes 15 digits; the file has them all
@@ -102,7 +102,7 @@ class TestGeoJSONWriter(InFolder):
         for data in (self.data, cloud([])):
             self.write(data, UseFieldDataLimit=False, MinimumEnergy=1.0)
             self.assertIn("successful", self.ogrinfo())
-            self.assertEqual(json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"], [])
+            self.assertEqual(json.loads(pathlib.Path(FILE).read_text("utf-8"))["features"], [])
 
     def test_values_that_json_lacks(self):
         data = cloud([[0, 0, 0], [1, 0, 0]])
@@ -112,8 +112,7 @@ class TestGeoJSONWriter(InFolder):
         add_array(data, "object_id", np.array([0, 7]))
         add_field(data, "object_names", ['a "quoted" name\\\n\u00e9'])
         self.write(data)
-        properties = [one["properties"]
-                      for one in json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"]]
+        properties = [one["properties"] for one in json.loads(pathlib.Path(FILE).read_text("utf-8"))["features"]]
         self.assertEqual([(one["share"], one["object"]) for one in properties],
                          [(None, 'a "quoted" name\\\n\u00e9'), (None, "")])
 

@@ -21,8 +21,7 @@ import arrays_page  # noqa: E402
 
 ROWS = [[cell.strip() for cell in row.split("|")]
         for row in re.findall(r"^\| (?!paper|-)(.*) \|$",
-                              (SOURCE / "Documentation" / "reference" / "glossary.md").read_text(encoding="utf-8"),
-                              re.M)]
+                              (SOURCE / "Documentation" / "reference" / "glossary.md").read_text("utf-8"), re.M)]
 UNITS = {name: unit for name, unit, _, _ in arrays_page.rows()}
 # Names of the glossary; those that are not in the header have their units there.
 GLOSSARY = {name for row in ROWS for name in re.findall(r"`([^`]+)`", row[2])}
@@ -79,9 +78,9 @@ class Glossary(unittest.TestCase):
 
     def test_the_table_of_arrays_is_current(self):
         """Else run CMake/arrays_page.py."""
-        page = arrays_page.PAGE.read_text(encoding="utf-8")
+        page = arrays_page.PAGE.read_text("utf-8")
         self.assertEqual(arrays_page.with_table(page), page)
-        declared = re.findall(r'\bName \w+\{ "', arrays_page.HEADER.read_text(encoding="utf-8"))
+        declared = re.findall(r'\bName \w+\{ "', arrays_page.HEADER.read_text("utf-8"))
         self.assertEqual(len(arrays_page.rows()), len(declared))
         self.assertEqual(len(UNITS), len(declared))
 

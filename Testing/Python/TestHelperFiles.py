@@ -57,7 +57,7 @@ class Files(InFolder):
         for column, name in enumerate(header[3:-len(odd)], 3):
             np.testing.assert_allclose(table[:, column], echoes[name.split(" [")[0]], rtol=1e-14, err_msg=name)
         al.save(self.scan.sensor.beams, file)
-        self.assertIn("direction_2", file.read_text(encoding="utf-8").splitlines()[0])
+        self.assertIn("direction_2", file.read_text("utf-8").splitlines()[0])
         # Numbers come back with 15 digits, units (but for pure numbers), colours as bytes, and whole numbers as such.
         echoes = echoes.annotated()
         al.save(echoes, file)
@@ -127,13 +127,13 @@ class Files(InFolder):
         for suffix, text in ((".csv", "x,y,z,i\n1,2,nan,5\n1,2,3,6\n1,1e400,2,7\n"),
                              (".xyz", "1 2 inf 5\n1 2 3 6\n-inf 2 2 7\n")):
             file = self.folder / f"table{suffix}"
-            file.write_text(text, encoding="ascii")
+            file.write_text(text, "ascii")
             with self.assertWarnsRegex(RuntimeWarning,
                                        f"{file}: 2 points whose coordinates are not finite are left out"):
                 cloud = al.load_cloud(file)
             self.assertEqual((cloud.points.tolist(), *cloud.values())[::-1], ([6], [[1, 2, 3]]))
         file = self.folder / "gaps.csv"
-        file.write_text("x,y,z,i,j\n1,2,3,,5\n4,5,6,7,\n7,8,,9,10\n", encoding="ascii")
+        file.write_text("x,y,z,i,j\n1,2,3,,5\n4,5,6,7,\n7,8,,9,10\n", "ascii")
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             cloud = al.load_cloud(file)
@@ -149,7 +149,7 @@ class Files(InFolder):
             for suffix in (".vtp", ".csv"):
                 al.save(data, self.folder / f"none{suffix}")
             self.assertEqual(al.load_cloud(self.folder / "none.vtp").number_of_points, 0)
-            self.assertEqual(len((self.folder / "none.csv").read_text(encoding="utf-8").splitlines()), 1)
+            self.assertEqual(len((self.folder / "none.csv").read_text("utf-8").splitlines()), 1)
 
     def test_faults(self):
         cases = ((ValueError, r"'echoes.doc' by its suffix, expected one of \.vtp, \.csv",
@@ -184,9 +184,9 @@ class Files(InFolder):
             with mock.patch.object(_disk.fcntl, "flock", side_effect=OSError(number, os.strerror(number))):
                 self.scan.save(file)
                 self.assertEqual(os.listdir(self.folder), ["echoes.csv"])
-                part.write_text("others'", encoding="utf-8")
+                part.write_text("others'", "utf-8")
                 self.scan.save(file)
-                self.assertEqual(part.read_text(encoding="utf-8"), "others'")
+                self.assertEqual(part.read_text("utf-8"), "others'")
             os.remove(part)
             os.remove(file)
 

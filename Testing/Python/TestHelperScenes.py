@@ -44,7 +44,7 @@ class Sources(unittest.TestCase):
     def setUpClass(cls):
         exampletools.emptied("helper-scenes")
         cls.stl = OUTPUT / "hangar.stl"
-        cls.stl.write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        cls.stl.write_text(stl(CORNERS, TRIANGLES), "utf-8")
         cls.las = OUTPUT / "cloud.las"
         cls.las.write_bytes(b"LASF")
 
@@ -61,13 +61,13 @@ class Sources(unittest.TestCase):
 
     def test_the_axis_that_is_up(self):
         file = OUTPUT / "up.stl"
-        file.write_text(stl(y_up(CORNERS), TRIANGLES), encoding="utf-8")
+        file.write_text(stl(y_up(CORNERS), TRIANGLES), "utf-8")
         self.assertEqual(al.Scene(file, up_axis="y").bounds, BOUNDS)
         self.assertEqual(al.Scene(file, up_axis="z").bounds, (1, 2, 0, 3, -4, -2))
 
     def test_known_names_of_materials(self):
         file = OUTPUT / "panes.obj"
-        file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), encoding="utf-8")
+        file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), "utf-8")
         self.assertRegex(" ".join(said(lambda: al.Scene(file))),
                          "no material or material_map for .*paint.*: taken as Wall")
         self.assertEqual(said(lambda: al.Scene(file, material="Metal")), [])
@@ -125,7 +125,7 @@ class Sources(unittest.TestCase):
 
     def test_errors_say_what_is_expected(self):
         text = OUTPUT / "text.stl"
-        text.write_text("no mesh", encoding="utf-8")
+        text.write_text("no mesh", "utf-8")
         points, faces = WALL
         for kind, words, call in (
                 (TypeError, "material=", lambda: al.Scene(self.stl, "Glass")),

@@ -34,7 +34,7 @@ class Packages(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         for name, text in (("apt-get", APT), ("dpkg-query", "#!/bin/sh\n"), ("id", "#!/bin/sh\necho 0\n")):
-            (self.folder / name).write_text(text, encoding="ascii")
+            (self.folder / name).write_text(text, "ascii")
             (self.folder / name).chmod(0o755)
 
     def environment(self, bad="", lists=True):
@@ -73,7 +73,7 @@ class Packages(unittest.TestCase):
         """The scripts for users: every step that builds or makes packages."""
         for script in ("CMake/install.sh", "Testing/run.sh",
                        *(str(one.relative_to(SOURCE)) for one in SOURCE.glob("Examples/*/run.sh"))):
-            for line in (SOURCE / script).read_text(encoding="utf-8").splitlines():
+            for line in (SOURCE / script).read_text("utf-8").splitlines():
                 if re.match(r"[^#]*(cmake --build|cpack )", line):
                     self.assertRegex(line, "^CMake/with-progress.sh ", script)
 

@@ -57,7 +57,7 @@ class Installed(unittest.TestCase):
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(PREFIX), "PYTHONDONTWRITEBYTECODE": "1",
                        "PYTHONPATH": os.pathsep.join([str(self.package.parent), *vtk])}
         program = PREFIX / "program.py"
-        program.write_text(PROGRAM, encoding="utf-8")
+        program.write_text(PROGRAM, "utf-8")
         for interpreter in [sys.executable] if vtk else [sys.executable, "pvpython", "pvbatch"]:
             with self.subTest(interpreter):
                 result = subprocess.run([interpreter, program, PREFIX], cwd=PREFIX, env=environment,

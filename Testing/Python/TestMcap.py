@@ -45,7 +45,7 @@ class TestMcap(unittest.TestCase):
         self.put("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
 
     def put(self, name, text):
-        (self.sequence / name).write_text(text, encoding="utf-8")
+        (self.sequence / name).write_text(text, "utf-8")
 
     def convert(self, source):
         return subprocess.run([sys.executable, "-m", "avianlidar", "convert", str(source), str(self.out)],

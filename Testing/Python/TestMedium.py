@@ -154,7 +154,7 @@ class Coverage(unittest.TestCase):
 class SceneFiles(InFolder):
     def scene(self, objects):
         file = self.folder / "airport.lidarscene.json"
-        file.write_text(json.dumps({"version": 1, "objects": objects}), encoding="utf-8")
+        file.write_text(json.dumps({"version": 1, "objects": objects}), "utf-8")
         return file
 
     def test_fog_trees_rows_and_woods(self):
@@ -167,7 +167,7 @@ class SceneFiles(InFolder):
         trees = {"footprints": "trees.geojson", "crs": "local", "name": "trees", "class": "vegetation", "base": 2,
                  "height": 8, "height_attribute": "height", "width": 6,
                  "medium": {"kind": "foliage", "leaf_area_density": 0.5}}
-        (self.folder / "trees.geojson").write_text(json.dumps(plan), encoding="utf-8")
+        (self.folder / "trees.geojson").write_text(json.dumps(plan), "utf-8")
         file = self.scene([{"ground": {"size": 1000}, "name": "ground", "material": "Grass"}, trees,
                            {"medium": {"kind": "fog", "visibility": 200, "shape": "layer", "top": 3, "softness": 2},
                             "name": "ground fog"}])

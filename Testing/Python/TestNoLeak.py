@@ -52,7 +52,7 @@ def posts(file, draw, number, ranges, sizes):
     points = (middles[:, None] + corners * extents).reshape(-1, 3)
     faces = (SIDES + 8 * np.arange(number)[:, None, None] + 1).reshape(-1, 4)
     file.write_text("".join(f"v {x:.5f} {y:.5f} {z:.5f}\n" for x, y, z in points)
-                    + "".join(f"f {' '.join(map(str, face))}\n" for face in faces), encoding="utf-8")
+                    + "".join(f"f {' '.join(map(str, face))}\n" for face in faces), "utf-8")
     return middles
 
 
@@ -169,7 +169,7 @@ class NoLeak(unittest.TestCase):
         middles = posts(out / "posts.obj", cls.draw, number, ranges, sizes)
         scene = {"version": 1, "lidar": {"position": [0, 0, 0]},
                  "objects": [{"name": "Posts", "class": "mast", "file": "posts.obj", "material": "Wall"}]}
-        (out / "posts.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
+        (out / "posts.lidarscene.json").write_text(json.dumps(scene), "utf-8")
         scan = {"attenuation_coefficient": 8.9e-5, "number_of_reflections": 1, **(scan or {})}
         al.Sequence({"scene": str(out / "posts.lidarscene.json"), "number_of_scans": scans, "sensor": sensor,
                      "scan": scan, **changes}).write(out)

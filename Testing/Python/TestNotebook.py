@@ -39,7 +39,7 @@ class Notebook(unittest.TestCase):
         self.assertFalse([name for name, text in self.said.items() if "Warning" in text])
 
     def test_page_and_pictures(self):
-        page = (OUT / "airport.html").read_text(encoding="utf-8")
+        page = (OUT / "airport.html").read_text("utf-8")
         for name in ("energy-image", "map", "range-image"):
             self.assertEqual((OUT / f"{name}.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(len(re.findall(r'<img [^>]*src="data:image/png;base64,', page)), 3)

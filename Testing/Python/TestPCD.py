@@ -331,7 +331,7 @@ class Written(InFolder):
         add_array(self.data, "rgb", rgb, "1")
         self.write()
         subprocess.run(["pcl_pcd2ply", "-format", "0", FILE, PLY], check=True, capture_output=True)
-        head, body = pathlib.Path(PLY).read_text(encoding="ascii").split("end_header\n")
+        head, body = pathlib.Path(PLY).read_text("ascii").split("end_header\n")
         place = [line.split()[-1] for line in head.splitlines() if line.startswith("property") and "list" not in line]
         rows = [line.split() for line in body.splitlines()[:n]]
         got = [[int(row[place.index(c)]) for c in ("red", "green", "blue")] for row in rows]

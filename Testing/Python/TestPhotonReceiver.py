@@ -32,10 +32,10 @@ def text_of(sensor):
 class Files(InFolder):
     def setUp(self):
         super().setUp()
-        self.good = json.loads((SENSORS / "Search905.lidarsensor.json").read_text(encoding="utf-8"))
+        self.good = json.loads((SENSORS / "Search905.lidarsensor.json").read_text("utf-8"))
 
     def load(self, content):
-        (self.folder / "own.lidarsensor.json").write_text(json.dumps(content), encoding="utf-8")
+        (self.folder / "own.lidarsensor.json").write_text(json.dumps(content), "utf-8")
         return Sensor("own.lidarsensor.json")
 
     def test_presets_are_the_files(self):
@@ -47,14 +47,14 @@ class Files(InFolder):
             self.assertEqual(preset.beams.fields.get("assumed"), loaded.beams.fields.get("assumed"))
 
     def test_every_number_has_a_unit_and_a_source(self):
-        schema = json.loads((SENSORS / "lidarsensor.schema.json").read_text(encoding="utf-8"))
+        schema = json.loads((SENSORS / "lidarsensor.schema.json").read_text("utf-8"))
         jsonschema.Draft202012Validator.check_schema(schema)
         with self.assertRaises(jsonschema.ValidationError):
             jsonschema.validate({**self.good, "values": {"pulse_energy": {"value": 1, "unit": "mJ", "source": "x"}}},
                                 schema)
         for file in FILES:
-            jsonschema.validate(json.loads(file.read_text(encoding="utf-8")), schema)
-            values = json.loads(file.read_text(encoding="utf-8"))["values"]
+            jsonschema.validate(json.loads(file.read_text("utf-8")), schema)
+            values = json.loads(file.read_text("utf-8"))["values"]
             fields = Sensor(file).beams
             for name, entry in values.items():
                 self.assertEqual(set(entry), {"value", "unit", "source"})

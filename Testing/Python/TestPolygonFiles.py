@@ -199,7 +199,7 @@ class PolygonFiles(InFolder):
         text = "".join(f"v {x} {y} {z}\n" for ring in rings for x, y, z in ring)
         number = iter(range(1, 100))
         pathlib.Path("a.obj").write_text(
-            text + "".join("f " + " ".join(str(next(number)) for _ in ring) + "\n" for ring in rings), encoding="utf-8")
+            text + "".join("f " + " ".join(str(next(number)) for _ in ring) + "\n" for ring in rings), "utf-8")
         for name, what in (("a.vtp", "cell 2"), ("a.vtk", "cell 2"), ("a.vtu", "cell 3"), ("a.ply", "face 2"),
                            ("a.obj", "face 2")):
             with self.subTest(file=name):

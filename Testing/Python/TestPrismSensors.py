@@ -177,7 +177,7 @@ class BadFiles(unittest.TestCase):
     def test_values_are_named(self):
         """Values of their own are those of the kernel, tested in TestPrisms.cxx: the file, the unit, and what does not
         go with prisms."""
-        good = json.loads((FILES / "Mid40.lidarsensor.json").read_text(encoding="utf-8"))
+        good = json.loads((FILES / "Mid40.lidarsensor.json").read_text("utf-8"))
         for name, value, unit, words in (
                 ("prism_wedge_angles", [18, -70], "deg", "PrismWedgeAngles is -70"),
                 ("prism_rotation_rates", [1, 2, 3], "Hz", "PrismRotationRates has 3 values"),
@@ -191,6 +191,6 @@ class BadFiles(unittest.TestCase):
                 values[name] = {"value": value, "unit": unit, "source": "test"}
             with self.subTest(words), tempfile.TemporaryDirectory() as folder:
                 file = pathlib.Path(folder) / "bad.lidarsensor.json"
-                file.write_text(json.dumps({**good, "values": values}), encoding="utf-8")
+                file.write_text(json.dumps({**good, "values": values}), "utf-8")
                 with self.assertRaisesRegex(al.Error, "bad.lidarsensor.json(.|\n)*" + re.escape(words)):
                     al.Sensor(file).beams

@@ -436,8 +436,7 @@ class Scenarios(unittest.TestCase):
     def scenario(self, rows, around=SCENE, head="track_id,timestamp,latitude,longitude,altitude", group=None,
                  **changes):
         """A scenario with a table of tracks."""
-        (self.home / "radar.csv").write_text("\n".join([head, *(",".join(map(str, row)) for row in rows), ""]),
-                                             encoding="utf-8")
+        (self.home / "radar.csv").write_text("\n".join([head, *(",".join(map(str, row)) for row in rows), ""]), "utf-8")
         birds = [{"pattern": "File", "file_name": "radar.csv", **(group or {})}]
         return TestSequence.scenario_file(self.home, around, **{**SCENARIO, "birds": birds, **changes})
 

@@ -178,7 +178,7 @@ class Verb(unittest.TestCase):
     def setUpClass(cls):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         cls.table = OUTPUT / "my.csv"
-        cls.table.write_text(TABLE, encoding="utf-8")
+        cls.table.write_text(TABLE, "utf-8")
 
     def test_targets_of_the_command(self):
         with unittest.mock.patch.object(reach, "TARGETS", 8):

@@ -27,17 +27,17 @@ class Page(unittest.TestCase):
     def setUpClass(cls):
         exampletools.emptied("TestReport")
         where = pathlib.Path(plan()["scene"])
-        scene = {**json.loads(where.read_text(encoding="utf-8")), "comment": {"by": "<me>"}}
+        scene = {**json.loads(where.read_text("utf-8")), "comment": {"by": "<me>"}}
         for item in scene["objects"]:
             if "footprints" in item:
                 item["footprints"] = str(where.parent / item["footprints"])
-        (HERE / "page.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
+        (HERE / "page.lidarscene.json").write_text(json.dumps(scene), "utf-8")
         cls.asked = plan(
             scene="page.lidarscene.json", description="<script>throw 1</script> & gulls?", heights=[50, 100],
             regions={"strips": 1}, coverage={**TARGET, "clutter": True, "visibility": 10e3},
             siting={"bounds": [-1200, 800, 500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
         page = report("report", cls.asked, pictures=True)
-        cls.text = page.read_text(encoding="utf-8")
+        cls.text = page.read_text("utf-8")
         (HERE / "alone").mkdir()  # without the folder beside it
         shutil.copyfile(page, HERE / "alone" / "report.html")
         cls.browser = Browser()

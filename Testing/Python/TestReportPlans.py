@@ -68,11 +68,11 @@ class Less(unittest.TestCase):
                       siting={"bounds": [-1200, 0, -1500, -300], "spacing": 1200, "draws": 0, "sensors": 1})
         HERE.mkdir(parents=True, exist_ok=True)
         (HERE / "hours.txt").write_text(
-            "ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", encoding="utf-8")
+            "ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", "utf-8")
         words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200",
                  "--sensor-set", "azimuth_range=0,360", "--coverage-set", "effective_area=0.04", "--siting-set",
                  "surfaces=off"]
-        text = html.unescape(report("one end", wanted, *words).read_text(encoding="utf-8"))
+        text = html.unescape(report("one end", wanted, *words).read_text("utf-8"))
         commands = [shlex.split(found) for found in re.findall("<code>(avianlidar [^<]*)</code>", text)]
         self.assertTrue({tuple(command[:3]) for command in commands} <= {
                             ("avianlidar", verb, "one end.coverage.json") for verb in ("coverage", "report")})

@@ -106,7 +106,7 @@ class SceneObjects(unittest.TestCase):
 
     @classmethod
     def save(cls, name, text):
-        pathlib.Path(os.path.join(cls.folder, name)).write_text(text, encoding="utf-8")
+        pathlib.Path(os.path.join(cls.folder, name)).write_text(text, "utf-8")
 
     def read(self, *objects, silent=True, **keys):
         scene = {"version": 1, "material_map": {"*": "wall"}, "objects": list(objects), **keys}

@@ -167,10 +167,10 @@ class Manuals(unittest.TestCase):
 
     def test_numbers_that_a_file_lacks_are_marked(self):
         """The guide's example gives neither pattern nor pulse."""
-        guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text(encoding="utf-8")
+        guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text("utf-8")
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "mine.lidarsensor.json"
-            file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], encoding="utf-8")
+            file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], "utf-8")
             rows = _display.sensor_rows(al.Sensor(file))
             for key in ("beams", "elevations", "pulse energy", "rate", "range gate"):
                 self.assertIn("not given", str(rows[key]), key)
@@ -314,8 +314,8 @@ class Reader(unittest.TestCase):
         self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (1, 0))
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, "own.lidarsensor.json")
-            good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text(encoding="utf-8"))
-            file.write_text(json.dumps(good), encoding="utf-8")
+            good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text("utf-8"))
+            file.write_text(json.dumps(good), "utf-8")
             reader.SetFileName(str(file))
             reader.Update()
             expected = al.Sensor(file, position=(1, 2, 3)).beams
@@ -325,7 +325,7 @@ class Reader(unittest.TestCase):
             self.assertEqual(repr(beams.fields), repr(expected.fields))
             # A change of the file counts when it is asked for, and a bad one is an error until the next good one.
             del good["values"]["wavelength"]["source"]
-            file.write_text(json.dumps(good), encoding="utf-8")
+            file.write_text(json.dumps(good), "utf-8")
             reader.Update()
             self.assertEqual(len(heard), 1)
             reader.Reload()

@@ -41,11 +41,11 @@ SCENARIO = {"scene": "small.lidarscene.json", "number_of_scans": 12, "scans_per_
 
 def scenario_file(where, around=SCENE, **changes):
     """A scenario with a scene of its own."""
-    (where / "small.lidarscene.json").write_text(json.dumps(around), encoding="utf-8")
+    (where / "small.lidarscene.json").write_text(json.dumps(around), "utf-8")
     house = np.where(CORNERS == LOW, (-40.0, 300.0, 0.0), (40.0, 310.0, 12.0))
-    (where / "house.stl").write_text(stl(house, TRIANGLES), encoding="utf-8")
+    (where / "house.stl").write_text(stl(house, TRIANGLES), "utf-8")
     path = where / "small.scenario.json"
-    path.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
+    path.write_text(json.dumps({**SCENARIO, **changes}), "utf-8")
     return path
 
 

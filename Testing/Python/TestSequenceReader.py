@@ -35,7 +35,7 @@ class Sequence(InFolder):
         self.write("boxes/000001.txt", "bird 0.00 0.00 30 3 2 2.0 1.0 0.5 0.5 10000 1\n")
 
     def write(self, name, text):
-        pathlib.Path(os.path.join(self.folder, name)).write_text(text, encoding="utf-8")
+        pathlib.Path(os.path.join(self.folder, name)).write_text(text, "utf-8")
 
     def reader(self):
         reader = vtkAvianLidarSequenceReader()

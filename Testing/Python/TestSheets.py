@@ -132,16 +132,16 @@ class Sheets(unittest.TestCase):
             description["values"]["half_beamwidth"]["value"] = HALF
             description["values"]["range_gate"]["value"] = 600.0
             description["values"]["background_radiance"]["value"] = 0.0
-            made.write_text(json.dumps({**description, "sheet": {"points": sheet}}), encoding="utf-8")
+            made.write_text(json.dumps({**description, "sheet": {"points": sheet}}), "utf-8")
             run = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "--fit", str(made), "-o", str(fitted)],
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertIn("ranges by this receiver have an error of about 0 %", run.stdout)
             # Over itself: a fit of what is fitted is the same.
-            before = fitted.read_text(encoding="utf-8")
+            before = fitted.read_text("utf-8")
             again = [sys.executable, "-m", "avianlidar", "sensors", "--fit", str(fitted), "-o", str(fitted)]
             self.assertEqual(subprocess.run(again, capture_output=True).returncode, 0)
-            self.assertEqual(fitted.read_text(encoding="utf-8"), before)
+            self.assertEqual(fitted.read_text("utf-8"), before)
             self.assertEqual(sorted(path.name for path in made.parent.iterdir()), sorted((made.name, fitted.name)))
             of = al.Sensor(fitted)
             self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)

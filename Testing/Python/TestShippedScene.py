@@ -21,8 +21,7 @@ def enu(longitude, latitude):
 
 
 def plans():
-    features = json.loads(pathlib.Path(st.SHIPPED).with_name(
-                              "hongqiao.geojson").read_text(encoding="utf-8"))["features"]
+    features = json.loads(pathlib.Path(st.SHIPPED).with_name("hongqiao.geojson").read_text("utf-8"))["features"]
     result = {}
     for feature in features:
         geometry = feature["geometry"]

@@ -439,7 +439,7 @@ class Plans(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = fresh("plans")
-        cls.shapes = json.loads(PLAN.read_text(encoding="utf-8"))
+        cls.shapes = json.loads(PLAN.read_text("utf-8"))
 
     def write(self, name="my", **changes):
         """A plan's file. @param changes of the plan, to None: without it; as `runway_features` of the runways' file"""

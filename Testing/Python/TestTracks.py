@@ -90,7 +90,7 @@ TIMES = [0, 1, 2, 5, 7]
 class Tracks(InFolder):
     def file(self, content, name="own.csv"):
         path = self.folder / name
-        path.write_text(content, encoding="utf-8")
+        path.write_text(content, "utf-8")
         return str(path)
 
     def from_lines(self, data, **properties):

@@ -49,9 +49,8 @@ class Types(unittest.TestCase):
         self.assertTrue(importlib.util.find_spec("mypy"),
                         f"{sys.executable} has no mypy, which CMake/debian-packages.txt lists")
         with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "program.py").write_text(GOOD + "".join(f"{line}\n" for line, _ in BAD),
-                                                          encoding="utf-8")
-            pathlib.Path(folder, "mypy.ini").write_text(CONFIGURATION, encoding="utf-8")
+            pathlib.Path(folder, "program.py").write_text(GOOD + "".join(f"{line}\n" for line, _ in BAD), "utf-8")
+            pathlib.Path(folder, "mypy.ini").write_text(CONFIGURATION, "utf-8")
             run = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", "cache", "-p", "avianlidar", "-m",
                                   "program"], cwd=folder, capture_output=True, text=True, check=False,
                                  env={**os.environ, "MYPYPATH": f"{PACKAGE.parent}:{folder}"})

@@ -107,7 +107,7 @@ class Year(unittest.TestCase):
         question = {"siting": None, "runways": None, "extent": [-600, 600, -600, 600], "spacing": 200}
         with quick():
             Report(read_plan(plan("report", year=YEAR, **question)), 2).write(HERE / "report.html")
-        text = (HERE / "report.html").read_text(encoding="utf-8")
+        text = (HERE / "report.html").read_text("utf-8")
         rows = {(row["weather"], row["region"]): float(row["detection_probability"])
                 for row in rows_of(HERE / "report_files" / "weather.csv")}
         in_fog = Plan(read_plan(plan("fog", coverage={**TARGET}, weather=["fog:1000"],
@@ -124,7 +124,7 @@ class Year(unittest.TestCase):
 
     def test_wrong_years_are_named(self):
         half = [{"weather": ["fog:500"], "share": 0.5}]
-        plan("wrong").with_name("empty.txt").write_text("# nothing\nstation,valid,metar\n", encoding="utf-8")
+        plan("wrong").with_name("empty.txt").write_text("# nothing\nstation,valid,metar\n", "utf-8")
         for changes, words in (({"weather": ["snow:3"]}, "weather: "),
                                ({"weather": ["fog:500"]}, "weather: is given beside visibility"),
                                ({"year": half}, "year: shares sum to 0.5"),
@@ -163,7 +163,7 @@ class Metar(unittest.TestCase):
         wanted = [(math.inf, 0), (math.inf, 0), (300, 0), (1.5 * mile, 1), (0.25 * mile, 0), (math.inf, 0), (3000, 15),
                   (50, 0), (5000, 0), (1500, 0), (4000, 5), (7000, 0.5), (math.inf, 0)]
         (HERE / "year.txt").parent.mkdir(parents=True, exist_ok=True)
-        (HERE / "year.txt").write_text(REPORTS, encoding="utf-8")
+        (HERE / "year.txt").write_text(REPORTS, "utf-8")
         hours = _metar.read_metar(HERE / "year.txt")
         self.assertEqual([(one.visibility, one.rain) for one in hours.reports], wanted)
         self.assertEqual([number for number, _, _ in hours.bad], [1, 15, 16])
@@ -210,7 +210,7 @@ no report
 EGLL 010220Z NIL=
 """
         (HERE / "wrapped.txt").parent.mkdir(parents=True, exist_ok=True)
-        (HERE / "wrapped.txt").write_text(text, encoding="utf-8")
+        (HERE / "wrapped.txt").write_text(text, "utf-8")
         hours = _metar.read_metar(HERE / "wrapped.txt")
         self.assertEqual([(one.station, one.visibility, one.rain) for one in hours.reports],
                          [("EGLL", 2000, 15), ("EGKK", math.inf, 0), ("EGLL", 3000, 1)])
@@ -220,7 +220,7 @@ EGLL 010220Z NIL=
     def test_times_that_are_wrong_or_there_twice(self):
         def hours(text):
             (HERE / "times.txt").parent.mkdir(parents=True, exist_ok=True)
-            (HERE / "times.txt").write_text(text, encoding="utf-8")
+            (HERE / "times.txt").write_text(text, "utf-8")
             return _metar.read_metar(HERE / "times.txt").words()
 
         for time in ("320100Z", "000100Z", "012500Z", "010060Z"):

@@ -32,7 +32,7 @@ class Sequences(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.home = emptied("TestWeatherSequences")
-        (cls.home / "field.lidarscene.json").write_text(json.dumps(HOUSE), encoding="utf-8")
+        (cls.home / "field.lidarscene.json").write_text(json.dumps(HOUSE), "utf-8")
         cls.file = cls.scenario("field")
         for name, words in (("clear", []), ("fog", ["fog:400"]), ("rain", ["rain:10"])):
             assert main(["sequence", str(cls.file), "-o", str(cls.home / name),
@@ -41,7 +41,7 @@ class Sequences(unittest.TestCase):
     @classmethod
     def scenario(cls, name, **changes):
         file = cls.home / f"{name}.scenario.json"
-        file.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
+        file.write_text(json.dumps({**SCENARIO, **changes}), "utf-8")
         return file
 
     def test_drops_are_outliers(self):
@@ -82,7 +82,7 @@ class Sequences(unittest.TestCase):
         found = {name: rows_of(self.home / name) for name in ("clear", "fog")}
         for name, media in (("woody", [wood]), ("both", [fog, wood])):
             (self.home / f"{name}.lidarscene.json").write_text(
-                json.dumps({**HOUSE, "objects": [*HOUSE["objects"], *media]}), encoding="utf-8")
+                json.dumps({**HOUSE, "objects": [*HOUSE["objects"], *media]}), "utf-8")
             self.assertEqual(main(["sequence", str(self.scenario(name, scene=f"{name}.lidarscene.json")), "-o",
                                    str(self.home / name)]), 0)
             found[name] = rows_of(self.home / name)

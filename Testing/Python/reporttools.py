@@ -43,7 +43,7 @@ SENSOR = {"preset": "Search905", "name": "Search905", "azimuth_step": STEP}
 
 def airport(**changes):
     """The airport's plan, of one sensor. A change to None takes away."""
-    wanted = json.loads(PLAN.read_text(encoding="utf-8"))
+    wanted = json.loads(PLAN.read_text("utf-8"))
     for name in ("scene", "runways"):
         wanted[name] = str((PLAN.parent / wanted[name]).resolve())
     wanted.update({"compare_with": None, **changes})
@@ -58,7 +58,7 @@ def plan(**changes):
 def written(name, wanted):
     HERE.mkdir(parents=True, exist_ok=True)
     file = HERE / f"{name}.coverage.json"
-    file.write_text(json.dumps(wanted), encoding="utf-8")
+    file.write_text(json.dumps(wanted), "utf-8")
     return file
 
 

@@ -79,7 +79,7 @@ def is_closed(triangles):
 def write_scene(folder, name, scene):
     """Write a scene file and return its name."""
     file = os.path.join(folder, name + ".lidarscene.json")
-    pathlib.Path(file).write_text(scene if isinstance(scene, str) else json.dumps(scene), encoding="utf-8")
+    pathlib.Path(file).write_text(scene if isinstance(scene, str) else json.dumps(scene), "utf-8")
     return file
 
 
