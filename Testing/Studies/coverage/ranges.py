@@ -43,8 +43,9 @@ def main(options):
             draw_reach(axes, curves[name], "2 of 3 scans")
             axes.set_title(f"{name}{'' if name == 'Airport16' else ', assumed receiver'}", fontsize=10)
     # One line for each bird.
-    table = ",\n".join(f"  {json.dumps(name)}: {{\n" + ",\n".join(
-        f"   {json.dumps(bird)}: {json.dumps(metres)}" for bird, metres in of.items()) + "}" for name, of in numbers.items())
+    birds = {name: ",\n".join(f"   {json.dumps(bird)}: {json.dumps(metres)}" for bird, metres in of.items())
+             for name, of in numbers.items()}
+    table = ",\n".join(f"  {json.dumps(name)}: {{\n{rows}}}" for name, rows in birds.items())
     head = f'{{"shares": {json.dumps(reach.SHARES)}, "visibility": {VISIBILITY},'
     (options.out / "ranges.json").write_text(f'{head}\n "ranges": {{\n{table}}}}}\n', encoding="utf-8")
     tools.leave(options.out, "coverage-ranges", (
