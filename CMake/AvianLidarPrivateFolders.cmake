@@ -3,11 +3,15 @@
 # name. A folder uses only folders before it in its list. IO may use all folders of Filters/Private, which do not use IO
 # (Testing/Python/TestSources.py tests this order).
 set(private_folders
-  Common
+  Files
+  Arrays
+  Errors
+  Ranks
   Surfaces
   Beams
   Movers
   Echoes
+  Tracks
   Coverage)
 set(io_folders
   Files

@@ -82,7 +82,8 @@ if (result EQUAL 0)
     COMMAND ${avianlidar_python_command} "${PROJECT_SOURCE_DIR}/CMake/command_pages.py" "${avianlidar_share}"
     COMMAND gzip -9nkf "${avianlidar_share}/man/man1/avianlidar.1" # compressed, as Debian requires
     DEPENDS vtkAvianLidarPython "${PROJECT_SOURCE_DIR}/CMake/command_pages.py"
-      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py" "${PROJECT_SOURCE_DIR}/Python/avianlidar/apps/coverage.schema.json"
+      "${PROJECT_SOURCE_DIR}/Python/avianlidar/_command.py"
+      "${PROJECT_SOURCE_DIR}/Python/avianlidar/apps/inputs/coverage.schema.json"
     COMMENT "Manual page and completions of the command"
     VERBATIM)
   add_custom_target(AvianLidarCommandPages ALL DEPENDS ${outputs})

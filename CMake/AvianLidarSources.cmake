@@ -66,15 +66,14 @@ set(scene_sources
   IO/Scenes/Terrain.cxx)
 
 set(private_sources
-  Filters/Private/Common/JsonNode.cxx
-  Filters/Private/Common/PolygonTriangulation.cxx
-  Filters/Private/Common/vtkAvianLidarArrays.cxx
-  Filters/Private/Common/vtkAvianLidarContent.cxx
-  Filters/Private/Common/vtkAvianLidarGather.cxx
-  Filters/Private/Common/vtkAvianLidarExecutive.cxx
-  Filters/Private/Common/vtkAvianLidarGuard.cxx
-  Filters/Private/Common/vtkAvianLidarRanks.cxx
-  Filters/Private/Common/vtkAvianLidarScanStream.cxx
+  Filters/Private/Files/JsonNode.cxx
+  Filters/Private/Arrays/vtkAvianLidarArrays.cxx
+  Filters/Private/Arrays/vtkAvianLidarContent.cxx
+  Filters/Private/Errors/vtkAvianLidarExecutive.cxx
+  Filters/Private/Errors/vtkAvianLidarGuard.cxx
+  Filters/Private/Ranks/vtkAvianLidarGather.cxx
+  Filters/Private/Ranks/vtkAvianLidarRanks.cxx
+  Filters/Private/Surfaces/PolygonTriangulation.cxx
   Filters/Private/Surfaces/vtkAvianLidarMedia.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceExchange.cxx
   Filters/Private/Surfaces/vtkAvianLidarSurfaceIds.cxx
@@ -98,6 +97,7 @@ set(private_sources
   Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx
   Filters/Private/Echoes/vtkAvianLidarImageArrays.cxx
   Filters/Private/Echoes/vtkAvianLidarImageBeams.cxx
+  Filters/Private/Tracks/vtkAvianLidarScanStream.cxx
   Filters/Private/Coverage/vtkAvianLidarCoverageOutput.cxx
   Filters/Private/Coverage/vtkAvianLidarPlaces.cxx
   ${file_sources}

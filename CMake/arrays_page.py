@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the table of Documentation/reference/arrays.md with names, units, places and meanings of arrays, from the
-declarations in Filters/Private/Common/vtkAvianLidarNames.h.
+declarations in Filters/Private/Arrays/vtkAvianLidarNames.h.
 
     arrays_page.py
 
@@ -9,7 +9,7 @@ import pathlib
 import re
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
-HEADER = SOURCE / "Filters" / "Private" / "Common" / "vtkAvianLidarNames.h"
+HEADER = SOURCE / "Filters" / "Private" / "Arrays" / "vtkAvianLidarNames.h"
 PAGE = SOURCE / "Documentation" / "reference" / "arrays.md"
 BEGIN, END = "<!-- table: arrays -->\n", "<!-- end -->"
 

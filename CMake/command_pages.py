@@ -15,14 +15,14 @@ import avianlidar
 from avianlidar import vtkAvianLidar as wrapped
 from avianlidar._command import VERBS, parser
 from avianlidar._properties import get_property, property_names
-from avianlidar.apps._json import load_json
+from avianlidar.apps.inputs._json import load_json
 
 def settings(wrapped):
     """Names of the properties that a text can set."""
     return [name for name, there in property_names(wrapped).items() if isinstance(get_property(wrapped(), there), (int, float, str, tuple))]
 
 
-PLAN = load_json(pathlib.Path(avianlidar.__file__).parent / "apps" / "coverage.schema.json")["properties"]
+PLAN = load_json(pathlib.Path(avianlidar.__file__).parent / "apps" / "inputs" / "coverage.schema.json")["properties"]
 NAMES = {"sensor": avianlidar.Sensor.presets(), "material": tuple(avianlidar.materials()),  # names, and starts of settings
          **{f"{part}_set": tuple(f"{name}=" for name in names) for part, names in (
              ("sensor", settings(wrapped.vtkAvianLidarBeamSource)), ("scan", settings(wrapped.vtkAvianLidarEchoFilter)),

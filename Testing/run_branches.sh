@@ -31,7 +31,7 @@ run() {
 branch = True
 concurrency = thread,multiprocessing
 data_file = $tree/python/.coverage
-include = $package/avianlidar/*.py, $package/avianlidar/apps/*.py
+include = $package/avianlidar/*.py, $package/avianlidar/apps/*.py, $package/avianlidar/apps/*/*.py
 parallel = True
 sigterm = True
 EOF

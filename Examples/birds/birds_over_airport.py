@@ -15,7 +15,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import avianlidar as al
-from avianlidar.apps._simulation import TRUTH
+from avianlidar.apps.sequences._simulation import TRUTH
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "airport"))

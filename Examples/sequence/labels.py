@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from avianlidar._command import main as avianlidar
-from avianlidar.apps._labels import CLASSES
+from avianlidar.apps.sequences._labels import CLASSES
 
 HERE = pathlib.Path(__file__).resolve().parent
 # Drawn classes of SemanticKITTI, and sizes of their points.

@@ -14,8 +14,8 @@ namespace avianlidar::scene
 /**
  * Returns the length in a text, m, in any locale: "12", "12,5", "12.5 m", "40 ft", "39'4\"", "1,200
  * ft", "approx 12", "3 storeys"; the greatest of "2;3" and "12-15". Returns no value for other
- * texts, for 0, and for lengths above `most`. `length_of()` of avianlidar/apps/_features.py is the
- * same rule, and TestSceneObjects.py compares both.
+ * texts, for 0, and for lengths above `most`. `length_of()` of avianlidar/apps/places/_features.py
+ * is the same rule, and TestSceneObjects.py compares both.
  *
  * @param text UTF-8
  * @param unit length of the unit of a number without a unit, m

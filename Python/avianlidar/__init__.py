@@ -27,10 +27,10 @@ from ._scan import Scan
 from ._scene import Scene, example_scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
 from ._version import __version__
-from .apps._design_page import Designs
-from .apps._flights import read_tracks
-from .apps._sequence import Sequence
-from .apps._tracks import BirdTracks
+from .apps.coverage._design_page import Designs
+from .apps.sequences._flights import read_tracks
+from .apps.sequences._sequence import Sequence
+from .apps.sequences._tracks import BirdTracks
 
 __all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence",
            "example_scene", "hue_colors", "load_cloud", "load_scene", "materials", "mesh", "mover", "places_of",

@@ -21,9 +21,9 @@ from ._suffixes import OF_SENSOR, PACKETS, POINTS
 from ._terminal import bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
-from .apps._air import check_received
-from .apps._inputs import read_plan, read_scenario
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
+from .apps.inputs._air import check_received
+from .apps.inputs._read import read_plan, read_scenario
 
 WIDTH = 110  # characters of a line about one sensor
 
@@ -279,7 +279,7 @@ def convert(options) -> None:
         if options.position:
             raise ValueError("--position is for one cloud, expected none for a sequence: its poses are in poses.txt")
         check_target(options.out)
-        from .apps import _mcap
+        from .apps.sequences import _mcap
         tell(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
         return
     check_suffix(options.out)

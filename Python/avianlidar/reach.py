@@ -24,11 +24,11 @@ from ._pipeline import Progress
 from ._scene import Scene
 from ._sensor import Sensor
 from ._weather import weather
-from .apps._air import as_received
-from .apps._plan import Plan
-from .apps._candidates import TABLE
-from .apps._targets import PHASES, Target, flock, look, met, own_species, places_in_flock, scan_of, target
-from .apps._words import plural
+from .apps.coverage._plan import Plan
+from .apps.coverage._targets import PHASES, Target, flock, look, met, own_species, places_in_flock, scan_of, target
+from .apps.inputs._air import as_received
+from .apps.pages._words import plural
+from .apps.places._candidates import TABLE
 
 RANGES = 48
 NEAR = 200  # beams nearest to an elevation from which the azimuths of a pattern without columns are found

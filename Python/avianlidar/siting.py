@@ -8,15 +8,14 @@ the best site or network of sites.
 >>> points.shape, sorted(regions), len(regions["approaches"])
 ((1000, 3), ['approaches', 'strips'], 500)
 """
-from .apps._candidates import MOST_CANDIDATES, SAME_PLACE, candidates, ground_of, is_near, lattice
-from .apps._geojson import read_outlines, read_runways, to_enu, to_geodetic, with_other_heights
-from .apps._looks import SAME_BIRDS, look, require_memory, value_of_same_birds
-from .apps._networks import (Network, exchange, exhaustive, greedy, rank_correlation, search, value_of, values_of,
-                             weights_of)
-from .apps._regions import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, APPROACH_LOWEST, LETTERS, SPREADS,
-                            STRIP_HALF_WIDTH, STRIP_HEIGHTS, WINDS, Runway, by_kind, end_names, places_by_region,
-                            region_heights, region_names, region_outlines, rounded, runway_outline,
-                            strips_and_approaches, wind)
-from .apps._tables import write_sites
+from .apps.coverage._looks import SAME_BIRDS, look, require_memory, value_of_same_birds
+from .apps.coverage._networks import (Network, exchange, exhaustive, greedy, rank_correlation, search, value_of,
+                                      values_of, weights_of)
+from .apps.places._candidates import MOST_CANDIDATES, SAME_PLACE, candidates, ground_of, is_near, lattice
+from .apps.places._geojson import read_outlines, read_runways, to_enu, to_geodetic, with_other_heights, write_sites
+from .apps.places._regions import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, APPROACH_LOWEST, LETTERS,
+                                   SPREADS, STRIP_HALF_WIDTH, STRIP_HEIGHTS, WINDS, Runway, by_kind, end_names,
+                                   places_by_region, region_heights, region_names, region_outlines, rounded,
+                                   runway_outline, strips_and_approaches, wind)
 
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -14,7 +14,7 @@ import tempfile
 import time
 from typing import NamedTuple
 
-from avianlidar.apps._on_sale import on_sale
+from avianlidar.apps.inputs._on_sale import on_sale
 from cliffs import Row
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "Examples"

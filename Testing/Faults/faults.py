@@ -3,13 +3,15 @@
 """Plants faults of different kinds and says which tests see each: so one knows what a cut of the tests loses.
 
     Testing/Faults/faults.py build/paraview -o faults.csv                # all: half an hour
-    Testing/Faults/faults.py build/paraview --only rain_half --suite     # one, against the whole suite of Testing/run.sh
+    Testing/Faults/faults.py build/paraview --only rain_half --suite     # one, against the suite of Testing/run.sh
 
-Each fault names the tests that should see it. Faults whose tests differ are planted at the same time, so that five builds serve all: it patches
-source files, builds, runs these tests, and restores the files. A fault that does not compile, or whose text is not found exactly once, is an
-error. A row of the table: fault, kind, layer, the number of tests that fail, their names."""
+Each fault names the tests that should see it. Faults whose tests differ are planted at the same time, so that five
+builds serve all: it patches source files, builds, runs these tests, and restores the files. A fault that does not
+compile, or whose text is not found exactly once, is an error. A row of the table: fault, kind, layer, the number of
+tests that fail, their names."""
 import argparse
 import collections
+import contextlib
 import csv
 import pathlib
 import re
@@ -27,9 +29,9 @@ FAULTS = [Fault(*fault) for fault in (
     ("rain_half", "a missing factor of two", "Kernel-Test(MediumVolume|Air)$|Python-TestMedium$",
      "Filters/Kernel/Air/Air.cxx", "perVolume * 2.0 / (lambda * lambda * lambda)",
      "perVolume / (lambda * lambda * lambda)"),
-    ("background_without_aperture", "a missing factor", "Kernel-Test(PhotonReceiver|Background)|Python-Test(PhotonReceiver|Bench)$",
-     "Filters/Kernel/Sensor/PhotonReceiver.cxx",
-     "sensor.solidAngle() * sensor.receiverAperture * sensor.samplingInterval", "sensor.solidAngle() * sensor.samplingInterval"),
+    ("background_without_aperture", "a missing factor",
+     "Kernel-Test(PhotonReceiver|Background)|Python-Test(PhotonReceiver|Bench)$",
+     "Filters/Kernel/Sensor/PhotonReceiver.cxx", "solidAngle() * sensor.receiverAperture *", "solidAngle() *"),
     ("pulse_border", "an off-by-one at a border", "Kernel-Test(RangeUnits|Receiver|PolygonUnits)$|Python-TestBeamView$",
      "Filters/Kernel/Light/Energy/RangeShares.cxx", "const bool meets = (pulseFirst < last) & (pulseLast >= first)",
      "const bool meets = (pulseFirst < last) & (pulseLast > first)"),
@@ -70,14 +72,15 @@ FAULTS = [Fault(*fault) for fault in (
      "Add<vtkDoubleArray>(poly, time, [&](std::size_t i) { return 1e3 * poseOf(i).time; });"),
     ("intensity_of_none", "an offset", "Python-TestEchoPipeline$",
      "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx",
-     "255.0 * std::min(1.0, std::max(0.0, (energy - sensor.lowerEnergyLimit) / width))", "255.0 * std::min(1.0, std::max(0.0, energy / width))"),
+     "std::max(0.0, (energy - sensor.lowerEnergyLimit) / width)", "std::max(0.0, energy / width)"),
     ("lost_warning", "a lost warning", "Cxx-TestHSBColorMap|Python-TestBadInput$",
      "Filters/vtkAvianLidarHSBColorMap.cxx", "++withoutNumber;", ";"),
     ("origin_of_the_whole", "a fallback that is gone", "Python-Test(GeodeticTransform|BadInput)$",
      "Filters/vtkAvianLidarGeodeticTransform.cxx",
      "array = array ? array : this->Whole->GetFieldData()->GetArray(Arrays::GeodeticOrigin.name);", ""),
     ("leak", "a leak", "Prober-leaks$",
-     "Filters/vtkAvianLidarGeodeticTransform.cxx", "auto converted = vtkSmartPointer<vtkPointSet>::Take(leaf->NewInstance());",
+     "Filters/vtkAvianLidarGeodeticTransform.cxx",
+     "auto converted = vtkSmartPointer<vtkPointSet>::Take(leaf->NewInstance());",
      "vtkSmartPointer<vtkPointSet> converted(leaf->NewInstance());"),
     # Readers and writers.
     ("not_initialised", "a member without a value", "Python-TestKITTIWriter$|Plugin-TestProxies$",
@@ -85,9 +88,9 @@ FAULTS = [Fault(*fault) for fault in (
     ("las_seconds", "a wrong unit", "Python-Test(LASWriter|PointCloudReader)$",
      "IO/Clouds/LasReading.cxx", "1e6 * load<double>(at + place)", "load<double>(at + place)"),
     ("las_colour_index", "a swapped index", "Python-Test(LASWriter|Laz|PointCloudReader)$",
-     "IO/Clouds/LasReading.cxx", "load<std::uint16_t>(at + place + 2 * c)", "load<std::uint16_t>(at + place + 4 - 2 * c)"),
+     "IO/Clouds/LasReading.cxx", "t>(at + place + 2 * c)", "t>(at + place + 4 - 2 * c)"),
     ("obstacle_feet", "a wrong unit", "Python-TestSceneObjects$",
-     "IO/Scenes/FootprintFeatures.cxx", '(attribute == "AGL" || attribute == "AMSL") ? 0.3048 : 1.0', 'attribute == "AGL" ? 0.3048 : 1.0'),
+     "IO/Scenes/FootprintFeatures.cxx", '(attribute == "AGL" || attribute == "AMSL") ?', 'attribute == "AGL" ?'),
     ("pcd_warning", "a lost warning", "Python-Test(PCD|InputFiles)$",
      "IO/Clouds/PcdFormat.cxx", "hasOneMoreRow(source, header, readRows(source, header, targets, keepGoing))",
      "readRows(source, header, targets, keepGoing) == 0"),
@@ -100,20 +103,21 @@ FAULTS = [Fault(*fault) for fault in (
      "IO/Scenes/Extrusion.cxx", "  AddTriangle(mesh, f.bottomLeft, upper.front(), f.topLeft, wall);\n", ""),
     # Python.
     ("ospa_order", "a wrong power", "Python-Test(Scores|Tracks)$",
-     "Python/avianlidar/apps/_scores.py", "missing = cutoff ** order * (most - least) / most",
+     "Python/avianlidar/apps/sequences/_scores.py", "missing = cutoff ** order * (most - least) / most",
      "missing = cutoff * (most - least) / most"),
     ("switch_twice", "an off-by-one", "Python-Test(Scores|Tracks)$",
-     "Python/avianlidar/apps/_scores.py", "return sum(a != b for a, b in zip(had, had[1:]))", "return sum(a != b for a, b in zip(had, had[2:]))"),
+     "Python/avianlidar/apps/sequences/_scores.py", "zip(had, had[1:])", "zip(had, had[2:])"),
     ("image_axes", "a swapped axis", "Python-TestCoverageMaps$",
      "Python/avianlidar/_coverage.py", "data.GetDimensions()[::-1] if isinstance(data, vtkImageData)",
      "data.GetDimensions() if isinstance(data, vtkImageData)"),
     # ParaView's panels.
     ("panel_default", "a wrong default in a panel", "Plugin-TestProxies$",
-     "Plugin/Filters/AvianLidarBeamSource.xml", 'name="RangeGate" default_values="4000"', 'name="RangeGate" default_values="400"'),
+     "Plugin/Filters/AvianLidarBeamSource.xml", 'RangeGate" default_values="4000"', 'RangeGate" default_values="400"'),
     ("panel_command", "a wrong command in a panel", "Plugin-TestProxies$",
      "Plugin/IO/AvianLidarPointCloudReader.xml", 'name="SensorAddress"', 'name="SensorAddress" command="SetFileName"'),
-    ("exchanged_arrays", "an exchanged array name", "Python-Test(EchoFiles|Glossary|PCD|EchoPipeline)$|Cxx-TestEchoFilter",
-     "Filters/Private/Common/vtkAvianLidarNames.h", 'constexpr Name EnergyReceived{ "energy_received"',
+    ("exchanged_arrays", "an exchanged array name",
+     "Python-Test(EchoFiles|Glossary|PCD|EchoPipeline)$|Cxx-TestEchoFilter",
+     "Filters/Private/Arrays/vtkAvianLidarNames.h", 'constexpr Name EnergyReceived{ "energy_received"',
      'constexpr Name EnergyReceived{ "energy_recieved"'),
 )]
 
@@ -123,7 +127,8 @@ def layer(fault):
 
 
 def ctest(build, *arguments, left_out="bare|install"):
-    return subprocess.run(["ctest", "--test-dir", build, "-LE", left_out, *arguments], capture_output=True, text=True, check=False).stdout
+    return subprocess.run(["ctest", "--test-dir", build, "-LE", left_out, *arguments], capture_output=True, text=True,
+                          check=False).stdout
 
 
 def failing(build, names):
@@ -139,7 +144,8 @@ def groups(faults, tests):
     packed = []
     for fault in faults:
         for group in packed:
-            if len(group) < 8 and all(fault.file != other.file and not tests[fault.name] & tests[other.name] for other in group):
+            if len(group) < 8 and all(fault.file != other.file and not tests[fault.name] & tests[other.name]
+                                      for other in group):
                 group.append(fault)
                 break
         else:
@@ -147,18 +153,36 @@ def groups(faults, tests):
     return packed
 
 
+@contextlib.contextmanager
+def planted(patches):
+    """Files with replaced texts, which are restored afterwards. @param patches file, old and new text"""
+    texts = {SOURCE / file: (SOURCE / file).read_text("utf-8") for file, *_ in patches}
+    try:
+        for file, old, new in patches:
+            text = (SOURCE / file).read_text("utf-8")
+            if text.count(old) != 1:
+                sys.exit(f"the text to replace is {text.count(old)} times in {file}, expected once: {old}")
+            (SOURCE / file).write_text(text.replace(old, new), "utf-8")
+        yield
+    finally:
+        for file, text in texts.items():
+            file.write_text(text, "utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="a build folder of this source, with tests")
-    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path("faults.csv"), help="table, to which rows are added")
+    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path("faults.csv"),
+                        help="table, to which rows are added")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="faults; default: all")
-    parser.add_argument("--suite", action="store_true", help="run the whole suite for each, one fault at a time; default: the tests that each names")
+    parser.add_argument("--suite", action="store_true",
+                        help="run the whole suite for each, one fault at a time; default: the tests that each names")
     parser.add_argument("--short", action="store_true", help="only tests of Testing/run.sh")
     parser.add_argument("--list", action="store_true", help="only list them, and check that each text is there once")
     options = parser.parse_args()
     chosen = [fault for fault in FAULTS if not options.only or fault.name in options.only]
     for fault in chosen:
-        found = (SOURCE / fault.file).read_text(encoding="utf-8").count(fault.old)
+        found = (SOURCE / fault.file).read_text("utf-8").count(fault.old)
         if found != 1:
             sys.exit(f"{fault.name}: its text is {found} times in {fault.file}, expected once")
         if options.list:
@@ -172,17 +196,10 @@ def main():
         if not tests[fault.name]:
             sys.exit(f"{fault.name}: no test of {options.build} has a name like {fault.tests}")
     for group in groups(chosen, tests):
-        texts = {SOURCE / fault.file: (SOURCE / fault.file).read_text(encoding="utf-8") for fault in group}
-        try:
-            for fault in group:
-                file = SOURCE / fault.file
-                file.write_text(texts[file].replace(fault.old, fault.new), encoding="utf-8")
+        with planted([(fault.file, fault.old, fault.new) for fault in group]):
             if subprocess.run(["cmake", "--build", options.build], stdout=subprocess.DEVNULL, check=False).returncode:
                 sys.exit(f"one of {', '.join(fault.name for fault in group)} does not compile")
             failed = failing(options.build, set().union(*(tests[fault.name] for fault in group)))
-        finally:
-            for file, text in texts.items():
-                file.write_text(text, encoding="utf-8")
         with open(options.out, "a", newline="", encoding="utf-8") as stream:
             for fault in group:
                 seen = sorted(failed & tests[fault.name])

@@ -4,9 +4,9 @@
 
     Testing/Faults/pictures.py build/paraview -o pictures.csv     # three builds and four turns of the image tests
 
-Each change patches source files, which are restored at the end. The exit code is 1 if a baseline does not show a change that can
-occur in it. Testing/Python/TestPictures.py plants hues and shifts. A row of the table: change, baseline, image error, whether the
-change can occur in the picture."""
+Each change patches source files, which are restored at the end. The exit code is 1 if a baseline does not show a change
+that can occur in it. Testing/Python/TestPictures.py plants hues and shifts. A row of the table: change, baseline, image
+error, whether the change can occur in the picture."""
 import argparse
 import csv
 import os
@@ -15,9 +15,9 @@ import re
 import subprocess
 import sys
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "Testing" / "Python"))
-MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text(encoding="utf-8"), re.M)[1])
+from faults import SOURCE, planted
+
+MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text("utf-8"), re.M)[1])
 TESTS = "TestExamplePictures|TestImage|Plugin-Test(Pipeline|Macros-more)$"
 ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline)"
 OUTPUT, SCAN = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/Scan.cxx"
@@ -36,7 +36,7 @@ CHANGES = (
         ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
         ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
         ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
-        ("Plugin/Macros/avian_lidar_coverage.py", "SetScalarBarVisibility(view, True)", "SetScalarBarVisibility(view, False)"),
+        ("Plugin/Macros/avian_lidar_coverage.py", "BarVisibility(view, True)", "BarVisibility(view, False)"),
         ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
         ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
         ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
@@ -46,9 +46,10 @@ def drawn(build):
     """{baseline: image error} of all pictures, drawn by the tests."""
     file = pathlib.Path(build) / "pictures.txt"
     file.unlink(missing_ok=True)
-    subprocess.run([SOURCE / "Testing/run_ctest.sh", build, "-R", TESTS], env={**os.environ, "AVIANLIDAR_PICTURES": str(file.resolve())},
-                   stdout=subprocess.DEVNULL, check=False)
-    rows = [line.rsplit(" ", 1) for line in file.read_text(encoding="utf-8").splitlines()]
+    subprocess.run([SOURCE / "Testing/run_ctest.sh", build, "-R", TESTS],
+                   env={**os.environ, "AVIANLIDAR_PICTURES": str(file.resolve())}, stdout=subprocess.DEVNULL,
+                   check=False)
+    rows = [line.rsplit(" ", 1) for line in file.read_text("utf-8").splitlines()]
     return {name: float(error) for name, error in rows}
 
 
@@ -60,20 +61,12 @@ def main():
     baselines = {file.name for file in (SOURCE / "Testing/Data/Baseline").glob("*.png")}
     rows, missed = [], 0
     for name, where, patches in CHANGES:
-        texts = {SOURCE / file: (SOURCE / file).read_text(encoding="utf-8") for file, *_ in patches}
-        try:
-            for file, old, new in patches:
-                text = (SOURCE / file).read_text(encoding="utf-8")
-                if text.count(old) != 1:
-                    sys.exit(f"{name}: its text is {text.count(old)} times in {file}, expected once")
-                (SOURCE / file).write_text(text.replace(old, new), encoding="utf-8")
+        with planted(patches):
             subprocess.run(["cmake", "--build", options.build], stdout=subprocess.DEVNULL, check=True)
             errors = drawn(options.build)
-        finally:
-            for file, text in texts.items():
-                file.write_text(text, encoding="utf-8")
         if set(errors) != baselines:
-            sys.exit(f"{name}: no picture of {sorted(baselines - set(errors))}, no baseline of {sorted(set(errors) - baselines)}")
+            sys.exit(f"{name}: no picture of {sorted(baselines - set(errors))}, no baseline of "
+                     f"{sorted(set(errors) - baselines)}")
         for baseline, error in sorted(errors.items()):
             occurs = bool(re.search(where, baseline))
             wrong = error <= MOST if occurs else name == "nothing" and error > MOST

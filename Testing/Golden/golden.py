@@ -34,22 +34,22 @@ SENSORS = {"Airport16": 3.0, "VLP16": 4.0}  # degrees between columns: some thou
 PHOTONS = {"ReceiverModel": Source.RECEIVER_MODEL_PHOTONS, "ReceiverAperture": 0.01, "BackgroundRadiance": 0.1,
            "ReceiverEfficiency": 0.3}
 # What a variant sets, of the filter and of the sensor, and what else the scene holds.
-VARIANTS = {
-    "default": ({}, {}, ""),
-    "one reflection": ({"NumberOfReflections": 1}, {}, ""),
-    "rays": ({"BeamSamples": Filter.BEAM_SAMPLES_RAYS}, {}, ""),
-    "paper": ({"BeamSamples": Filter.BEAM_SAMPLES_RAYS, "Sampling": Filter.SAMPLING_MONTE_CARLO,
-               "LightEnergyThreshold": Filter.LIGHT_ENERGY_THRESHOLD_LIMIT, "ReturnMode": Filter.RETURN_MODE_RANGE_UNITS}, {}, ""),
-    "no beam constraint": ({"BeamConstraint": 0, "BeamSamples": Filter.BEAM_SAMPLES_RAYS}, {}, ""),
-    "25 rays": ({"RaysPerBeam": 25}, {}, ""),
-    "400 rays": ({"RaysPerBeam": 400, "NumberOfConnections": 4}, {}, ""),
-    "full model": ({"FullModel": 1, "ReflectanceModel": Filter.REFLECTANCE_MODEL_MICROFACET}, {}, ""),
-    "aperture": ({}, {"ReceiverAperture": 0.01, "BeamProfile": Source.BEAM_PROFILE_GAUSSIAN, "OverlapRange": 20.0}, ""),
-    "photons": ({"Noise": 1}, PHOTONS, ""),
-    "rain": ({"Visibility": 5000.0, "RainRate": 10.0, "AirBackscatter": 1}, {"ReceiverAperture": 0.01}, ""),
-    "fog bank": ({"AirBackscatter": 1}, {"ReceiverAperture": 0.01}, "fog"),
-    "birds": ({"ReportMovers": 1}, {"NumberOfRevolutions": 1}, "birds"),
-    "birds and photons": ({"Noise": 1, "ReportMovers": 1, "NumberOfReflections": 1}, PHOTONS, "birds")}
+VARIANTS = {"default": ({}, {}, ""), "one reflection": ({"NumberOfReflections": 1}, {}, ""),
+            "rays": ({"BeamSamples": Filter.BEAM_SAMPLES_RAYS}, {}, ""),
+            "paper": ({"BeamSamples": Filter.BEAM_SAMPLES_RAYS, "Sampling": Filter.SAMPLING_MONTE_CARLO,
+                       "LightEnergyThreshold": Filter.LIGHT_ENERGY_THRESHOLD_LIMIT,
+                       "ReturnMode": Filter.RETURN_MODE_RANGE_UNITS}, {}, ""),
+            "no beam constraint": ({"BeamConstraint": 0, "BeamSamples": Filter.BEAM_SAMPLES_RAYS}, {}, ""),
+            "25 rays": ({"RaysPerBeam": 25}, {}, ""),
+            "400 rays": ({"RaysPerBeam": 400, "NumberOfConnections": 4}, {}, ""),
+            "full model": ({"FullModel": 1, "ReflectanceModel": Filter.REFLECTANCE_MODEL_MICROFACET}, {}, ""),
+            "aperture": ({},
+                         {"ReceiverAperture": 0.01, "BeamProfile": Source.BEAM_PROFILE_GAUSSIAN, "OverlapRange": 20.0},
+                         ""), "photons": ({"Noise": 1}, PHOTONS, ""),
+            "rain": ({"Visibility": 5000.0, "RainRate": 10.0, "AirBackscatter": 1}, {"ReceiverAperture": 0.01}, ""),
+            "fog bank": ({"AirBackscatter": 1}, {"ReceiverAperture": 0.01}, "fog"),
+            "birds": ({"ReportMovers": 1}, {"NumberOfRevolutions": 1}, "birds"),
+            "birds and photons": ({"Noise": 1, "ReportMovers": 1, "NumberOfReflections": 1}, PHOTONS, "birds")}
 
 
 def set_all(algorithm, values):
@@ -110,8 +110,9 @@ class Scans:
         echoes.AddObserver("WarningEvent", lambda *_: None)  # faces that coincide in what others drew
         echoes.Update()
         points = echoes.GetOutput().GetPointData()
-        return ([contents(echoes.GetOutputDataObject(port), MAY_DIFFER) for port in range(echoes.GetNumberOfOutputPorts())],
-                {name: vtk_to_numpy(points.GetArray(name)).copy() for name in ("beam_id", "distance_m", "energy_received")})
+        return (
+            [contents(echoes.GetOutputDataObject(port), MAY_DIFFER) for port in range(echoes.GetNumberOfOutputPorts())],
+            {name: vtk_to_numpy(points.GetArray(name)).copy() for name in ("beam_id", "distance_m", "energy_received")})
 
 
 def scan_all(name, file):
@@ -131,13 +132,14 @@ def in_words(old, new):
     energy = np.abs(new["energy_received"][two] / old["energy_received"][one] - 1.0)
     away = np.abs(new["distance_m"][two] - old["distance_m"][one])
     rms = math.sqrt(float(np.mean(energy**2))) if len(both) else 0.0
-    return (f"{len(keys[0])} echoes, {len(keys[0]) - len(both)} gone, {len(keys[1]) - len(both)} new; energy rms {rms:.1e}, "
-            f"at most {energy.max(initial=0.0):.1e}; range at most {away.max(initial=0.0):.1e} m; "
+    return (f"{len(keys[0])} echoes, {len(keys[0]) - len(both)} gone, {len(keys[1]) - len(both)} new; energy rms "
+            f"{rms:.1e}, at most {energy.max(initial=0.0):.1e}; range at most {away.max(initial=0.0):.1e} m; "
             f"{np.count_nonzero(energy)} differ")
 
 
 def is_same(one, two, tolerance):
-    """Whether two arrays of contents() have the same bits, or doubles that differ by `tolerance` of the largest at most."""
+    """Whether two arrays of contents() have the same bits, or doubles that differ by `tolerance` of the largest at
+    most."""
     if one == two or not tolerance or one is None or two is None or one[:-1] != two[:-1] or "double" not in one:
         return one == two
     one, two = np.frombuffer(one[-1]), np.frombuffer(two[-1])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Debian packages that cpack makes of the build tree: fields, every file in its place and in one package, nothing of
-the machine that built them, no error of lintian. What comes out lies ready for the tests that install it."""
+"""The Debian packages that cpack makes of the build tree: fields, every file in its place and in one package, nothing
+of the machine that built them, no error of lintian. What comes out lies ready for the tests that install it."""
 import os
 import pathlib
 import re
@@ -11,32 +11,34 @@ import unittest
 BUILD = pathlib.Path(os.environ["AVIANLIDAR_BUILD_DIR"])
 SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 GIVEN = pathlib.Path(os.environ["AVIANLIDAR_TEST_OUTPUT_DIR"]) / "Packages"  # to overlay.sh
-RELEASE = re.search(r"project\(AvianLidar\s+VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
+RELEASE = re.search(r"project\(AvianLidar\s+VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text("utf-8"))[1]
 VERSION = f"{RELEASE}-1"
 PARAVIEW = next(BUILD.glob("lib/paraview-*")).name
-PLUGINS = f"usr/lib/{PARAVIEW}/plugins/"
+PLUGINS, PACKAGE = f"usr/lib/{PARAVIEW}/plugins/", r"usr/lib/python3/dist-packages/avianlidar/"
 DOCUMENTS = r"usr/share/doc/[\w-]+/(copyright|changelog\.gz|changelog\.Debian\.gz)"
-# Of each package: the fields, and where its files may be.
-PACKAGES = {
-    "avian-lidar": (
-        {"Section": "science", "Recommends": "python3-avianlidar",
-         "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= (5\.\d+).*paraview \(<< \2"},
-        [r"usr/(bin/paraview\.conf|share/paraview/plugins)", rf"usr/lib/libvtkAvianLidar\.so\.({RELEASE}|{RELEASE.rpartition('.')[0]})", r"usr/lib/avianlidar/mesh-reader",
-         PLUGINS + r"avianlidar\.plugins\.xml",
-         PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
-    "python3-avianlidar": (
-        {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
-         "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, python3-tqdm, "},
-        [r"usr/bin/avianlidar", r"usr/lib/python3/dist-packages/avianlidar/(apps/)?[\w.]+",
-         r"usr/lib/python3/dist-packages/avianlidar/scene/(LICENSE-ODbL\.md|hongqiao\.(geojson|lidarscene\.json))",
-         r"usr/share/man/man1/avianlidar\.1\.gz", r"usr/share/bash-completion/completions/avianlidar",
-         r"usr/share/zsh/vendor-completions/_avianlidar"]),
-    "libavian-lidar-dev": (
-        {"Section": "libdevel", "Depends": r"avian-lidar \(= \S+\), .*paraview-dev"},
-        [r"usr/include/avianlidar/\w+\.h", r"usr/lib/cmake/AvianLidar/\S+", r"usr/lib/libvtkAvianLidar(\.so|CS\.a)",
-         r"usr/lib/vtk/hierarchy/AvianLidar/\S+"]),
-    "avian-lidar-doc": ({"Section": "doc", "Architecture": "all"}, [r"usr/share/doc/avian-lidar-doc/((README|CONTRIBUTING)\.md|(Documentation|Examples)/\S+)"]),
-}
+# Fields of each package, and the places where its files may be.
+PACKAGES = {"avian-lidar": ({"Section": "science", "Recommends": "python3-avianlidar",
+                             "Depends": r".*libassimp5 .*libgdal3\d .*libqt(5widgets5|6widgets6) .*paraview \(>= "
+                                        r"(5\.\d+).*paraview \(<< \2"},
+                            [r"usr/(bin/paraview\.conf|share/paraview/plugins)",
+                             rf"usr/lib/libvtkAvianLidar\.so\.({RELEASE}|{RELEASE.rpartition('.')[0]})",
+                             r"usr/lib/avianlidar/mesh-reader", PLUGINS + r"avianlidar\.plugins\.xml",
+                             PLUGINS + r"AvianLidarPlugin/(AvianLidarPlugin\.so|[A-Z][a-z]+/\w[\w.-]+)"]),
+            "python3-avianlidar": (
+                {"Section": "python", "Recommends": r".*matplotlib.*gdal.*jinja2.*jsonschema.*scipy.*pandas",
+                 "Depends": r"avian-lidar \(= \S+\), python3 \(>= 3.*python3 \(<< 3.*python3-numpy, python3-paraview, "
+                            r"python3-tqdm, "},
+                [r"usr/bin/avianlidar", PACKAGE + r"(apps/(\w+/)?)?[\w.]+",
+                 PACKAGE + r"scene/(LICENSE-ODbL\.md|hongqiao\.(geojson|lidarscene\.json))",
+                    r"usr/share/man/man1/avianlidar\.1\.gz", r"usr/share/bash-completion/completions/avianlidar",
+                    r"usr/share/zsh/vendor-completions/_avianlidar"]),
+            "libavian-lidar-dev": (
+                {"Section": "libdevel", "Depends": r"avian-lidar \(= \S+\), .*paraview-dev"},
+                [r"usr/include/avianlidar/\w+\.h", r"usr/lib/cmake/AvianLidar/\S+",
+                 r"usr/lib/libvtkAvianLidar(\.so|CS\.a)", r"usr/lib/vtk/hierarchy/AvianLidar/\S+"]),
+            "avian-lidar-doc": (
+                {"Section": "doc", "Architecture": "all"},
+                [r"usr/share/doc/avian-lidar-doc/((README|CONTRIBUTING)\.md|(Documentation|Examples)/\S+)"])}
 
 
 def output(*command, **options):
@@ -97,14 +99,15 @@ class Packages(unittest.TestCase):
                         self.assertNotRegex(output("readelf", "--dynamic", one), r"R(UN)?PATH.*\[(?!\$ORIGIN)")
 
     def test_paraview_loads_the_plugin(self):
-        """A copy of pvpython beside the unpacked paraview.conf does what the installed one will. Debian 13's ParaView reads
-        the list that its own paraview.conf names."""
+        """A copy of pvpython beside the unpacked paraview.conf does what the installed one will. Debian 13's ParaView
+        reads the list that its own paraview.conf names."""
         folder = self.unpacked["avian-lidar"] / "usr"
         listed = folder / "share" / "paraview" / "plugins"
         if listed.exists():
             (conf,) = pathlib.Path("/usr/lib").glob(f"*/{PARAVIEW}/paraview.conf")
             self.assertIn("/usr/share/paraview/plugins", conf.read_text().split())
-            self.assertIn(f'auto_load="1" filename="/{PLUGINS}AvianLidarPlugin/AvianLidarPlugin.so"', listed.read_text())
+            self.assertIn(f'auto_load="1" filename="/{PLUGINS}AvianLidarPlugin/AvianLidarPlugin.so"',
+                          listed.read_text())
             return
         program = shutil.copy("/usr/bin/pvpython", folder / "bin")
         found = output(program, "-c", """if True:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints three checksums: of a scan with noise, of a coverage map and of a bird that flies through ten scans, over triangles that
-are made without libm. Systems whose libraries differ print the same ones."""
+"""Prints three checksums: of a scan with noise, of a coverage map and of a bird that flies through ten scans, over
+triangles that are made without libm. Systems whose libraries differ print the same ones."""
 import hashlib
 
 import numpy as np
@@ -9,7 +9,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 import avianlidar as al
 
 CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
-TRIANGLES = [corners for a, b, c, d in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+TRIANGLES = [corners
+             for a, b, c, d in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
              for corners in ((a, b, c), (a, c, d))]
 MATERIALS = ("Wall", "Glass", "Metal", "Wood")
 SHOWN = 8  # digits
@@ -17,7 +18,8 @@ SHOWN = 8  # digits
 
 def town(count=60):
     """Boxes about the sensor, by whole numbers."""
-    scene = al.Scene(([(-900, -900, -3), (900, -900, -3), (900, 900, -3), (-900, 900, -3)], [(0, 1, 2), (0, 2, 3)]), material="Grass")
+    scene = al.Scene(([(-900, -900, -3), (900, -900, -3), (900, 900, -3), (-900, 900, -3)], [(0, 1, 2), (0, 2, 3)]),
+                     material="Grass")
     for i in range(count):
         x, y = (37 * i * i + 11) % 601 - 300, (53 * i * i + 200) % 599 - 299
         if max(abs(x), abs(y)) > 30:
@@ -27,7 +29,7 @@ def town(count=60):
 
 
 def checksum(data):
-    """Of all its arrays over points, by name."""
+    """Checksums of all arrays over points, by name."""
     digest = hashlib.sha256()
     arrays = data.GetPointData()
     for name in sorted(arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())):
@@ -45,7 +47,8 @@ def main():
     gull = al.vtkAvianLidar.vtkAvianLidarBirdSource()
     gull.Update()
     track = [(-60 + 12 * i, 80 - 3 * i, 6 + i) for i in range(11)]
-    scan = al.Scan(scene, al.Sensor("Search905", number_of_revolutions=10), movers=[al.mover(gull.GetOutput(), track, times=range(11))])
+    scan = al.Scan(scene, al.Sensor("Search905", number_of_revolutions=10),
+                   movers=[al.mover(gull.GetOutput(), track, times=range(11))])
     rate = scan.sensor.rotation_rate
     steps = []
     for k in range(10):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""In a program of ParaView, or connected to the pvserver of the arguments: is the plugin of the package listed and loaded,
-and does it scan, without LoadPlugin()?"""
+"""In a program of ParaView, or connected to the pvserver of the arguments: is the plugin of the package listed and
+loaded, and does it scan, without LoadPlugin()?"""
 import glob
 import os
 import runpy
@@ -13,7 +13,8 @@ if len(sys.argv) > 2:
 manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
 session = servermanager.ActiveConnection.Session
 information = manager.GetRemoteInformation(session) if len(sys.argv) > 2 else manager.GetLocalInformation()
-plugins = {information.GetPluginName(i): information.GetPluginLoaded(i) for i in range(information.GetNumberOfPlugins())}
+plugins = {information.GetPluginName(i): information.GetPluginLoaded(i)
+           for i in range(information.GetNumberOfPlugins())}
 loaded = plugins.pop("AvianLidarPlugin")
 
 (folder,) = glob.glob("/usr/lib/paraview-*/plugins/AvianLidarPlugin")

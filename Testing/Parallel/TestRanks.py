@@ -135,7 +135,8 @@ def test_media_are_those_of_all_ranks():
 
     media = [medium("Fog", "Layer", Top=1.0, Softness=2.0, Name="fog"),
              medium("Rain", "Box", Center=(0, 60, 0), Lengths=(300, 80, 100), RainRate=50, Name="shower"),
-             *(medium("Foliage", "Ellipsoid", Center=(12 * k - 30, 20, 2), Lengths=(5, 5, 6), Name=f"tree {k}") for k in range(5))]
+             *(medium("Foliage", "Ellipsoid", Center=(12 * k - 30, 20, 2), Lengths=(5, 5, 6), Name=f"tree {k}")
+               for k in range(5))]
 
     def blocks(mine):
         return multiblock(24 + len(media), lambda i: TOWN.GetBlock(i) if i < 24 else media[i - 24], mine)
@@ -299,7 +300,8 @@ def test_controllers_of_ones_own():
     for parting in (RANK % 2, RANK // 2, RANK % 2):
         group = CONTROLLER.PartitionController(parting, RANK)
         rank, ranks = group.GetLocalProcessId(), group.GetNumberOfProcesses()
-        members = [int(text) for text, other in zip(exchange(str(RANK)), exchange(str(parting))) if other == str(parting)]
+        members = [int(text) for text, other in zip(exchange(str(RANK)), exchange(str(parting))) if other
+                   == str(parting)]
         echo.SetController(group)
         echo.UpdatePiece(rank, ranks, 0)
         check_piece(echo, alone(blocks_of(TOWN, lambda i: i % RANKS in members)))
@@ -308,7 +310,7 @@ def test_controllers_of_ones_own():
 
 
 def test_work_of_ones_own():
-    """A piece of one's own making is no concern of other ranks: only one of them does it."""
+    """A piece that one rank makes by itself needs no other rank."""
     if RANK == LAST:
         echo = echotools.scan(TOWN, **SETTINGS)
         echo.UpdatePiece(1, RANKS + 1, 0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Behind the echo filter: the comparison of clouds, the clutter filter and the range image of several ranks are together those
-of one process, and nothing is traced twice for them. TestRanks runs these."""
+"""Behind the echo filter: the comparison of clouds, the clutter filter and the range image of several ranks are
+together those of one process, and nothing is traced twice for them. TestRanks runs these."""
 
 import math
 
@@ -8,7 +8,8 @@ import numpy as np
 import vtk
 from vtk.util import numpy_support
 
-from paralleltools import LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, point_arrays, table, total, update
+from paralleltools import (LAST, RANK, RANKS, assert_same, collect, exchange, in_order, joined, point_arrays, table,
+                           total, update)
 import cloudtools
 import echotools
 from avianlidar import vtkAvianLidar as al
@@ -83,7 +84,8 @@ def test_ties_are_those_of_one_process():
     """Points of a few places, on all ranks, each with several nearest ones: n counts those of all ranks."""
     def clouds(ranks):
         for step in (0.5, 1.0):
-            yield producer_of(cloudtools.cloud([np.random.default_rng(i).integers(-3, 3, (50, 3)) * step for i in ranks]))
+            yield producer_of(cloudtools.cloud([np.random.default_rng(i).integers(-3, 3, (50, 3)) * step
+                                                for i in ranks]))
 
     serial = compared(*clouds(range(RANKS)))
     serial.Update()
@@ -129,7 +131,8 @@ def test_a_cloud_that_one_rank_has():
     serial.Update()
     together = update(compared(scan(Seed=5), producer_of(echo.GetOutput(0) if RANK == LAST else vtk.vtkPolyData())))
     for port in (0, 1):
-        assert_same(joined(together.GetOutputDataObject(port)), in_order(point_arrays(serial.GetOutputDataObject(port))))
+        assert_same(joined(together.GetOutputDataObject(port)),
+                    in_order(point_arrays(serial.GetOutputDataObject(port))))
     assert_same_numbers(together, serial)
     assert (together.GetOutputDataObject(1).GetNumberOfPoints() > 0) == (RANK == LAST)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several ranks together compute the coverage of one process: places, table, clutter. An error on one rank is an error on all. TestRanks runs
-these tests."""
+"""Several ranks together compute the coverage of one process: places, table, clutter. An error on one rank is an error
+on all. TestRanks runs these tests."""
 
 import numpy as np
 import vtk
@@ -22,8 +22,8 @@ def cover(surfaces, places=None, controller=CONTROLLER):
     echotools.given(beams, AzimuthRange=(0.0, 90.0), AzimuthStep=0.5, Position=(0.0, 0.0, 2.0))
     filter_.SetInputConnection(0, beams.GetOutputPort())
     filter_.SetInputData(1, surfaces)
-    echotools.given(filter_, NumberOfThreads=1, Bounds=(0.0, 400.0, 0.0, 400.0, 0.0, 40.0), Spacing=(40.0, 40.0, 10.0), Species="",
-                    EffectiveArea=0.003)  # m2: quicker than birds
+    echotools.given(filter_, NumberOfThreads=1, Bounds=(0.0, 400.0, 0.0, 400.0, 0.0, 40.0), Spacing=(40.0, 40.0, 10.0),
+                    Species="", EffectiveArea=0.003)  # m2: quicker than birds
     if places is not None:
         filter_.SetInputData(2, places)
     return filter_
@@ -56,7 +56,8 @@ def test_image():
     x0, x1, y0, y1, z0, z1 = data.GetExtent()
     values = numpy_support.vtk_to_numpy(data.GetPointData().GetArray("detection_probability"))
     assert np.count_nonzero((wanted > 0.0) & (wanted < 1.0)) > 20
-    assert np.array_equal(values.reshape(z1 - z0 + 1, y1 - y0 + 1, x1 - x0 + 1), wanted[z0:z1 + 1, y0:y1 + 1, x0:x1 + 1])
+    assert np.array_equal(values.reshape(z1 - z0 + 1, y1 - y0 + 1, x1 - x0 + 1),
+                          wanted[z0:z1 + 1, y0:y1 + 1, x0:x1 + 1])
     same_table(mine, alone)
     clutter = sum(part.GetNumberOfPoints() for part in collect(mine.GetOutputDataObject(2)))
     assert clutter == alone.GetOutputDataObject(2).GetNumberOfPoints() > 0, clutter
@@ -102,7 +103,8 @@ def test_error_of_one_is_one_of_all():
 
 
 def test_places_and_settings_are_those_of_all():
-    """Places on one rank alone, and settings that differ, are not mixed: an error on all, and the next good ones work."""
+    """Places on one rank alone, and settings that differ, are not mixed: an error on all, and the next good ones
+    work."""
     cases = [("Input port 2 (places) is", lambda one: one.SetInputData(2, points_of(range(10))),
               lambda one: one.RemoveAllInputConnections(2))]
     for name, bad, good in (("Bounds", (0.0, 300.0, 0.0, 400.0, 0.0, 40.0), (0.0, 400.0, 0.0, 400.0, 0.0, 40.0)),

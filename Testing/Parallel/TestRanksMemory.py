@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory that runs out in the work of one rank, or what else is thrown there, is an error on all, with its message and without a hang;
-after it the same filters scan as ever. Needs FailingNew.cxx to be preloaded."""
+"""Memory that runs out in the work of one rank, or what else is thrown there, is an error on all, with its message and
+without a hang; after it the same filters scan as ever. Needs FailingNew.cxx to be preloaded."""
 
 import os
 
@@ -115,8 +115,8 @@ def test_the_scene_before_is_not_put_out():
 
 
 def test_a_few_bytes_that_are_missing():
-    """Small allocations of the tree filter fail on a rank: nobody waits for ever, and what is put out the next time is no scene
-    from before."""
+    """Small allocations of the tree filter fail on a rank: nobody waits for ever, and what is put out the next time is
+    no scene from before."""
     make = made(*METAL)
     for failing in {0, LAST}:
         for which in tried(run(make, failing, 0, 1, LEAST - 1)[2]):
@@ -127,7 +127,7 @@ def test_a_few_bytes_that_are_missing():
 
 
 def test_no_memory_for_a_message():
-    """What another rank sends is left out by VTK where there is no memory for it."""
+    """VTK leaves out messages of other ranks for which there is no memory."""
     echo = echotools.scan(TOWN, **SETTINGS)
     if RANK == LAST:
         echo.SetInputData(1, METAL[0])
@@ -143,4 +143,5 @@ def test_no_memory_for_a_message():
 
 
 if __name__ == "__main__":
-    main([test_scans, test_no_memory_for_a_message, test_the_scene_before_is_not_put_out, test_a_few_bytes_that_are_missing])
+    main([test_scans, test_no_memory_for_a_message, test_the_scene_before_is_not_put_out,
+          test_a_few_bytes_that_are_missing])

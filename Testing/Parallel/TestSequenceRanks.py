@@ -23,7 +23,8 @@ class Ranks(unittest.TestCase):
         done = on_ranks("-m", "avianlidar", "sequence", file, "-o", home / "made")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads((home / "made" / "manifest.json").read_text())["sequences"], wanted)
-        self.assertEqual({path.name for path in (home / "made").iterdir()}, {"datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"})
+        self.assertEqual({path.name for path in (home / "made").iterdir()},
+                         {"datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"})
         al.BirdTracks([home / "made"], learning_scans=1).write(home / "tracks")
         done = on_ranks("-m", "avianlidar", "track", home / "made", "-o", home / "together", "--learn", "1")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -38,8 +39,8 @@ class Ranks(unittest.TestCase):
         self.assertIn("Species is 'dodo'", done.stderr)
 
     def test_ranks_that_would_write_different_things_write_nothing(self):
-        """Scenarios of other seeds or numbers of scans, learned scans, places, a folder that another run has and one that no rank can lock: an
-        error on all ranks in a script of one's own, and nobody waits."""
+        """Scenarios of other seeds or numbers of scans, learned scans, places, a folder that another run has and one
+        that no rank can lock: an error on all ranks in a script of one's own, and nobody waits."""
         home = emptied("sequence", "ranks-differ")
         file = one.scenario_file(home, scans_per_sequence=1, number_of_scans=2, birds=[])
         al.Sequence(file).write(home / "made")
@@ -51,9 +52,11 @@ from avianlidar import siting
 from avianlidar._ranks import Ranks
 rank, home, file = Ranks().rank, pathlib.Path({str(home)!r}), {str(file)!r}
 wall = al.Scene(([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material="Wall")
-for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out), lambda out: al.Sequence(file, number_of_scans=1 + rank).write(out),
+narrow = al.Sensor(azimuth_range=(-1.0, 1.0))
+for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out),
+                          lambda out: al.Sequence(file, number_of_scans=1 + rank).write(out),
                           lambda out: al.BirdTracks([home / "made"], learning_scans=rank).write(out),
-                          lambda out: siting.look(wall, al.Sensor(azimuth_range=(-1.0, 1.0)), [(rank, 0, 2)], [(0, 200, 1)], ["crow"], out),
+                          lambda out: siting.look(wall, narrow, [(rank, 0, 2)], [(0, 200, 1)], ["crow"], out),
                           lambda out: al.Sequence(file).write(out), lambda out: al.Sequence(file).write(out))):
     try:
         work(home / f"out{{k}}")
@@ -62,14 +65,15 @@ for k, work in enumerate((lambda out: al.Sequence(file, seed=rank).write(out), l
         heard = str(error)
     with open(home / f"heard{{rank}}.txt", "a", encoding="utf-8") as stream:
         stream.write(heard.splitlines()[0] + "\\n")
-""", encoding="utf-8")
+""", "utf-8")
         with only_run(home / "out4"):
             done = on_ranks(script)
         self.assertEqual(done.returncode, 0, done.stderr)
         for rank in range(2):
-            heard = (home / f"heard{rank}.txt").read_text(encoding="utf-8").splitlines()
+            heard = (home / f"heard{rank}.txt").read_text("utf-8").splitlines()
             self.assertEqual(len(heard), 6, heard)
-            for k, words in enumerate(4 * ("the ranks would write different files",) + ("another run writes there", "")):
+            for k, words in enumerate(4 * ("the ranks would write different files",)
+                                      + ("another run writes there", "")):
                 self.assertIn(words, heard[k])
                 self.assertIn(str(home / f"out{k}"), heard[k])
         self.assertEqual([path for k in range(4) for path in (home / f"out{k}").rglob("*") if path.is_file()], [])

@@ -21,7 +21,8 @@ sys.path.insert(0, str(EXAMPLE.parent))
 import sweep  # noqa: E402
 
 FEW = ["--rays", "10"]
-ARGUMENTS = [*FEW, "--seed", "0", "1", "--attenuation", "3.5e-5", "8.8e-5", "--position", "0", "0", "3", "--position", "100", "0", "3"]
+ARGUMENTS = [*FEW, "--seed", "0", "1", "--attenuation", "3.5e-5", "8.8e-5", "--position", "0", "0", "3", "--position",
+             "100", "0", "3"]
 SCANS = 8
 
 
@@ -85,7 +86,8 @@ class Sweep(unittest.TestCase):
 
     def test_a_scan_that_fails_is_not_done(self):
         """It is named with its reason and leaves no file; those before and after are what they are without it."""
-        here, bad, there = ([word for x in places for word in ("--position", x, "0", "3")] for places in (["0"], ["1e31"], ["100"]))
+        here, bad, there = ([word for x in places for word in ("--position", x, "0", "3")]
+                            for places in (["0"], ["1e31"], ["100"]))
         alone = contents(self.sweep(fresh("SweepGood"), *here, *there))
         del alone["manifest.json"]
         out = fresh("SweepFailed")

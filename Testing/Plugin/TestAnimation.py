@@ -88,7 +88,8 @@ def test_a_static_scene_stays_as_it_is():
 
 
 def test_sweeps():
-    """Sensor, echoes and image in one view: the image is the whole scan at every step, filled as far as it was fired."""
+    """Sensor, echoes and image in one view: the image is the whole scan at every step, filled as far as it was
+    fired."""
     fresh()
     _, _, beams, echoes = airport(COLUMNS)
     whole = fetch(echoes)
@@ -110,13 +111,16 @@ def test_sweeps():
     def look():
         simple.Render(view)
         extent, status = tuple(image.GetDataInformation().GetExtent()), image.PointData["status"].GetRange()[0]
-        return scene.TimeKeeper.Time, count(beams), count(beams, 1), count(echoes), count(echoes, 1), extent, status >= 0
+        counts = (count(data, port) for data in (beams, echoes) for port in (0, 1))
+        return scene.TimeKeeper.Time, *counts, extent, status >= 0
 
     times, *fired, received, reported, extents, full = zip(*frames_of(scene, look))
     assert list(times) == steps, times
     expected = [COLUMNS * 16 * (k % 6 + 1) // 6 for k in range(12)]
-    assert [*map(list, fired)] == [expected, [2 * one for one in expected]] and list(reported) == expected, (fired, reported)
-    assert 0 < received[1] < received[2] < received[5] == len(whole["energy"]) and received[:6] == received[6:], received
+    assert [*map(list, fired)] == [expected, [2 * one for one in expected]], fired
+    assert list(reported) == expected, reported
+    assert 0 < received[1] < received[2] < received[5] == len(whole["energy"]), received
+    assert received[:6] == received[6:], received
     assert {*extents} == {(0, COLUMNS - 1, 0, 15, 0, 0)} and list(full) == ([False] * 5 + [True]) * 2, (extents, full)
     # Played by ParaView itself.
     scene.GoToFirst()
@@ -132,7 +136,8 @@ def moving(first=0, **settings):
         OutputDataSetType="vtkPolyData", Script=MOVING, ScriptRequestInformation=STEPS.format(first=first))
     walls = simple.AvianLidarMaterial(Input=source)
     beams = simple.AvianLidarCorridorC16(RotationRate=0.5, AzimuthStep=1, **settings)
-    return simple.AvianLidarEchoFilter(Beams=simple.Transform(Input=beams), Surfaces=simple.AvianLidarCollisionTree(Input=walls))
+    return simple.AvianLidarEchoFilter(Beams=simple.Transform(Input=beams),
+                                       Surfaces=simple.AvianLidarCollisionTree(Input=walls))
 
 
 def test_a_moving_scene():
@@ -160,7 +165,8 @@ def test_saving_every_step(kind):
     fresh()
     for step, file in enumerate(files):
         back = simple.OpenDataFile(file)
-        assert abs(nearest(back) - 50 - 2 * (step // 2)) < 0.01 and back.FieldData["revolution"].GetRange()[0] == step // 2
+        assert abs(
+            nearest(back) - 50 - 2 * (step // 2)) < 0.01 and back.FieldData["revolution"].GetRange()[0] == step // 2
         simple.Delete(back)
     remove(f"TestAnimation-{kind}_?*")
 

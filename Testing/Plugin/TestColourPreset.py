@@ -42,7 +42,8 @@ def test_plugin_brings_the_presets():
     """Once, though it is loaded twice."""
     presets = servermanager.vtkSMTransferFunctionPresets.GetInstance()
     names = [presets.GetPresetName(i) for i in range(presets.GetNumberOfPresets())]
-    assert all(names.count(preset) == 1 for preset in (PRESET, "Avian lidar status", "Avian lidar coverage status")), names
+    assert all(names.count(preset) == 1
+               for preset in (PRESET, "Avian lidar status", "Avian lidar coverage status")), names
 
 
 def test_macro():
@@ -75,7 +76,7 @@ def test_macro():
     assert above > height / 2 and below > height, (above, below, height)
 
 
-def test_what_has_no_colours():
+def test_data_without_colours():
     """Nothing is shown or coloured."""
     _, _, _, echoes = airport(24)
     sphere, view = simple.Sphere(), simple.CreateRenderView()
@@ -118,5 +119,5 @@ if __name__ == "__main__":
     load_plugin()
     test_plugin_brings_the_presets()
     test_macro()
-    test_what_has_no_colours()
+    test_data_without_colours()
     test_status_macro()

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The first click of a user: a bare ParaView with the plugin, without a state, in which nothing has run Python before the click.
+"""The first click of a user: a bare ParaView with the plugin, without a state, in which nothing has run Python before
+the click.
 
-Run by the system's Python: TestFirstClick.py paraview. Each test starts ParaView, which plays clicks by its own player of events
-and saves the pipeline as a state. The player needs no Python."""
+Run by the system's Python: TestFirstClick.py paraview. Each test starts ParaView, which plays clicks by its own player
+of events and saves the pipeline as a state. The player needs no Python."""
 
 import os
 import subprocess
@@ -20,13 +21,12 @@ APPLY = "propertiesDock/propertiesPanel/Accept"
 AIRPORT = {"Airport Hongqiao", "Collision tree"}
 BIRDS = {"Birds", "Gulls", "Crows", "Starlings", "Echoes of gulls", "Echoes of crows", "Echoes of starlings"}
 # Names in the pipeline after the first click on each macro.
-MACROS = {
-    "airport_scan": AIRPORT | {"Airport 16", "Scan"},
-    "birds_over_the_airport": AIRPORT | BIRDS | {"Search 905", "Scan with birds"},
-    "birds_tracked": AIRPORT | BIRDS | {"Search 905", "Scan with birds", "Clutter filter", "Clutter", "What is left", "Tracker", "Tracks"},
-    "coverage": AIRPORT | {"Search 905", "Coverage map", "Coverage at 30 m", "Probable", "Every other scan"},
-    "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog"},
-}
+MACROS = {"airport_scan": AIRPORT | {"Airport 16", "Scan"},
+          "birds_over_the_airport": AIRPORT | BIRDS | {"Search 905", "Scan with birds"},
+          "birds_tracked": AIRPORT | BIRDS
+          | {"Search 905", "Scan with birds", "Clutter filter", "Clutter", "What is left", "Tracker", "Tracks"},
+          "coverage": AIRPORT | {"Search 905", "Coverage map", "Coverage at 30 m", "Probable", "Every other scan"},
+          "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog"}}
 # Buttons of the toolbar, and those that need no selection.
 ALWAYS = ("airport_scan", "birds_over_the_airport", "coverage")
 BUTTONS = (*ALWAYS, "energy_colours", "status_colours", "filter")
@@ -67,7 +67,8 @@ class FirstClick(unittest.TestCase):
                 self.assertEqual((messages, names(state)), ([], expected))
 
     def test_buttons_in_turn(self):
-        """Each button of the toolbar, whatever the click before has made. Buttons that do not fit the selection are disabled."""
+        """Each button of the toolbar, whatever the click before has made. Buttons that do not fit the selection are
+        disabled."""
         events = enabled()
         for name in (*ALWAYS, "airport_scan"):
             events.append(click(button(name)))
@@ -75,13 +76,15 @@ class FirstClick(unittest.TestCase):
             events += [click(button("energy_colours")), click(button("status_colours"))]
         state, messages = play(PARAVIEW, events)
         self.assertEqual(messages, [])
-        self.assertEqual({name for name in names(state) if name.startswith(("Airport Hongqiao", "Collision tree"))}, AIRPORT)
+        self.assertEqual({name for name in names(state) if name.startswith(("Airport Hongqiao", "Collision tree"))},
+                         AIRPORT)
 
     def test_surfaces_are_not_selected(self):
         """With a sensor or echoes of a file selected, also before Apply, a click scans the airport."""
         with tempfile.TemporaryDirectory() as folder:
             echoes = os.path.join(folder, "echoes.vtp")
-            subprocess.run([sys.executable, "-m", "avianlidar", "scan", SCENE, "--sensor-set", "azimuth_step=6", "-o", echoes], check=True)
+            subprocess.run([sys.executable, "-m", "avianlidar", "scan", SCENE, "--sensor-set", "azimuth_step=6", "-o",
+                            echoes], check=True)
             for file in (SENSOR, echoes):
                 state, messages = play(PARAVIEW, [click(button("airport_scan"))], [file])
                 self.assertEqual(messages, [])

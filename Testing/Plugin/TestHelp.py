@@ -76,7 +76,7 @@ class TestHelp(unittest.TestCase):
         for macro in os.listdir(os.path.join(os.path.dirname(PLUGIN), "Macros")):
             self.assertIn(os.path.splitext(macro)[0], start.text)
 
-    def test_texts_are_no_markup(self):
+    def test_texts_are_not_markup(self):
         """ParaView takes what stands between two stars for emphasis."""
         for name in proxies():
             page = self.pages[name]

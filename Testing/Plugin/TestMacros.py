@@ -2,8 +2,8 @@
 """The macros beside the plugin: the echoes of the pipeline built by hand, shown as they should be, and a word where
 something does not fit, when nothing is made. The coverage's pictures are compared with baselines.
 
-Run by pvpython: TestMacros.py [Macros] [MoreMacros]. With --documentation pictures go to Documentation/images. New baselines: copy
-TestCoverageImage*.png from the folder for temporary files to Testing/Data/Baseline and look at them."""
+Run by pvpython: TestMacros.py [Macros] [MoreMacros]. With --documentation pictures go to Documentation/images. New
+baselines: copy TestCoverageImage*.png from the folder for temporary files to Testing/Data/Baseline and look at them."""
 
 import colorsys
 import contextlib
@@ -48,7 +48,7 @@ def said(work):
 def run(path, active=None):
     """What ParaView does with a macro: runs the text, with `__file__`."""
     simple.SetActiveSource(active)
-    code = compile(pathlib.Path(path).read_text(encoding="utf-8"), path, "exec")
+    code = compile(pathlib.Path(path).read_text("utf-8"), path, "exec")
     return said(lambda: exec(code, {"__name__": "__main__", "__file__": path}))
 
 
@@ -104,8 +104,8 @@ class Macros(Case):
             unittest.mock.patch.object(simple, "AvianLidar" + name, sensor).start()
 
     def check_view(self):
-        """Colours mean energies; the sensor and the strong echoes lie within the view and fill it, and the strongest ones
-        lie straight ahead of the sensor."""
+        """Colours mean energies; the sensor and the strong echoes lie within the view and fill it, and the strongest
+        ones lie straight ahead of the sensor."""
         (echoes, tree), view = find("Scan", "Collision tree"), simple.GetActiveView()
         display = simple.GetDisplayProperties(echoes, view)
         self.assertEqual((list(display.ColorArrayName), display.Representation), (["POINTS", "energy"], "Points"))
@@ -116,7 +116,8 @@ class Macros(Case):
         self.assertEqual(list(simple.GetDisplayProperties(tree, view).ColorArrayName), ["CELLS", "kd"])
         self.assertTrue(shown(echoes, view) and shown(tree, view))
         simple.Render(view)
-        matrix = view.GetActiveCamera().GetCompositeProjectionTransformMatrix(view.ViewSize[0] / view.ViewSize[1], -1, 1)
+        matrix = view.GetActiveCamera().GetCompositeProjectionTransformMatrix(
+            view.ViewSize[0] / view.ViewSize[1], -1, 1)
         found = fetch(echoes)
         energy, (x, y) = found["energy"], matrix.MultiplyPoint([*echoes.Beams.Position, 1])[:2]
         places = numpy.array([matrix.MultiplyPoint([*point, 1])[:2] for point in found["points"]])
@@ -138,8 +139,8 @@ class Macros(Case):
         assert_same(fetch(scan), expected)
 
     def test_selected_surfaces(self):
-        """Each scan has names of its own and hides the one before; what was shown otherwise stays. There is one tree of the wall,
-        which the macro also finds from a result."""
+        """Each scan has names of its own and hides the one before; what was shown otherwise stays. There is one tree of
+        the wall, which the macro also finds from a result."""
         wall, own = simple.Box(registrationName="wall", XLength=90, Center=[0, 50, 0]), simple.Box()
         for source in (wall, own):
             simple.Show(source, self.view)
@@ -157,7 +158,8 @@ class Macros(Case):
         self.assertEqual(sum("tree" in name for name in self.names()), 1)
 
     def test_own_airport(self):
-        """Every macro takes the selected surfaces, at their height above the sea, and from then on a result of these."""
+        """Every macro takes the selected surfaces, at their height above the sea, and from then on a result of
+        these."""
         wall = simple.Box(registrationName="wall", XLength=90, ZLength=20, Center=[0, 50, 110])
         other = simple.AvianLidarCollisionTree(registrationName="z", Input=simple.Box(registrationName="other"))
         for path in (FOG, BIRDS, COVERAGE):
@@ -174,11 +176,13 @@ class Macros(Case):
 
     def test_ground_below_a_mast(self):
         """Heights count from the surface straight below the lidar, not from the lowest point nor from the lidar."""
-        low, high = simple.Box(XLength=90, YLength=90, ZLength=2, Center=[0, 0, -1]), simple.Box(ZLength=4, Center=[20, 0, 3])
+        low = simple.Box(XLength=90, YLength=90, ZLength=2, Center=[0, 0, -1])
+        high = simple.Box(ZLength=4, Center=[20, 0, 3])
         tree = simple.AvianLidarCollisionTree(Input=simple.AppendGeometry(Input=[low, high]))
         tree.UpdatePipeline()
         ground = sys.modules["avian_lidar_plugin"].ground_below
-        self.assertEqual([ground(place, tree) for place in ([5, 5, 10], [20, 0, 15], [20, 0, 4], [500, 0, 3])], [0, 5, 1, -2])
+        self.assertEqual([ground(place, tree) for place in ([5, 5, 10], [20, 0, 15], [20, 0, 4], [500, 0, 3])],
+                         [0, 5, 1, -2])
 
     def test_a_map_of_reasons_goes_with_its_airport(self):
         """The map's second view is closed by the next scan, also if it is the active view."""
@@ -191,7 +195,8 @@ class Macros(Case):
         self.assertEqual((simple.FindView("Reasons"), layout.GetViewLocation(self.view.SMProxy)), (None, 0))
 
     def test_place_beside_surfaces(self):
-        for surfaces, place in ((simple.Box(XLength=200, YLength=100, ZLength=50, Center=[1000, 2000, 25]), [1000, 1930, 3]),
+        for surfaces, place in ((simple.Box(XLength=200, YLength=100, ZLength=50, Center=[1000, 2000, 25]),
+                                 [1000, 1930, 3]),
                                 (simple.Plane(Origin=[0, 0, 7], Point1=[100, 0, 7], Point2=[0, 50, 7]), [50, -10, 10])):
             text = run(AIRPORT, surfaces)
             numpy.testing.assert_allclose(simple.GetActiveSource().Beams.Position, place, atol=0.01)
@@ -214,7 +219,8 @@ class Macros(Case):
             self.assertEqual(self.names(), before)
         simple.ResetSession()
         load_plugin()
-        for path, name, act, words in ((AIRPORT, "PLUGIN", "scan", "load the plugin"), (AIRPORT, "ENERGY_COLOURS", "scan", "no_such.py"),
+        for path, name, act, words in ((AIRPORT, "PLUGIN", "scan", "load the plugin"),
+                                       (AIRPORT, "ENERGY_COLOURS", "scan", "no_such.py"),
                                        (COVERAGE, "STATUS", "cover", "no_such.py")):
             macro = load_macro(path)
             place = sys.modules["avian_lidar_plugin"] if name == "PLUGIN" else macro  # what macros share
@@ -225,7 +231,8 @@ class Macros(Case):
     def test_a_copy_elsewhere_finds_its_neighbour_beside_the_plugin(self):
         with tempfile.TemporaryDirectory() as folder:
             run(shutil.copy(AIRPORT, folder), simple.Box(XLength=90, Center=[0, 50, 0]))
-        self.assertEqual(list(simple.GetDisplayProperties(simple.GetActiveSource(), self.view).ColorArrayName), ["POINTS", "energy"])
+        self.assertEqual(list(simple.GetDisplayProperties(simple.GetActiveSource(), self.view).ColorArrayName),
+                         ["POINTS", "energy"])
 
     def test_a_beam_that_is_not_there(self):
         """A new view goes again; one that is there stays."""
@@ -292,7 +299,7 @@ class Macros(Case):
         self.assertTrue(counts[1] > counts[0] > counts[2], counts)
 
     def test_class_colours(self):
-        """Of a sequence of two scans, whose times the reader gives."""
+        """A sequence of two scans, whose times the reader gives."""
         folder = self.enterContext(tempfile.TemporaryDirectory())
         for name, kind, content in (("velodyne", "bin", struct.pack("<8f", *range(8))),
                                     ("labels", "label", struct.pack("<2I", 50, 99))):
@@ -300,12 +307,13 @@ class Macros(Case):
             for k in range(2):
                 pathlib.Path(folder, name, f"{k:06d}.{kind}").write_bytes(content[: len(content) // (2 - k)])
         times = pathlib.Path(folder, "times.txt")
-        times.write_text("0\n0.5\n", encoding="utf-8")
+        times.write_text("0\n0.5\n", "utf-8")
         reader = simple.OpenDataFile(str(times))
         self.assertEqual(list(reader.TimestepValues), [0, 0.5])
         simple.Show(reader, self.view)
         self.assertEqual(run(CLASSES, reader), "")
-        self.assertEqual(list(simple.GetDisplayProperties(reader, self.view).ColorArrayName), ["POINTS", "semantic_label"])
+        self.assertEqual(list(simple.GetDisplayProperties(reader, self.view).ColorArrayName),
+                         ["POINTS", "semantic_label"])
         table = simple.GetColorTransferFunction("semantic_label")
         bird = list(table.Annotations).index("bird") // 2
         colour = [round(255 * value) for value in table.IndexedColors[3 * bird : 3 * bird + 3]]
@@ -335,13 +343,15 @@ class MoreMacros(Case):
         coverage, level, surface, probable = find("Coverage map", "Coverage at 30 m", "Every other scan", "Probable")
         other = simple.FindView("Reasons")
         document("paraview-coverage.png", layout, [1600, 700])
-        self.assertEqual((simple.GetActiveSource(), simple.GetActiveView(), coverage.Places), (coverage, self.view, None))
+        self.assertEqual((simple.GetActiveSource(), simple.GetActiveView(), coverage.Places),
+                         (coverage, self.view, None))
         for view, name in ((self.view, "TestCoverageImage.png"), (other, "TestCoverageImage-reasons.png")):
             view.ViewSize, view.OrientationAxesVisibility = size, 0
             simple.SaveScreenshot(os.path.join(OUTPUT_DIR, name), view, ImageResolution=size)
             compare(name)
             self.assertTrue(shown(find("Collision tree")[0], view))
-        self.assertEqual(list(simple.GetDisplayProperties(probable, self.view).ColorArrayName), ["POINTS", "detection_probability"])
+        self.assertEqual(list(simple.GetDisplayProperties(probable, self.view).ColorArrayName),
+                         ["POINTS", "detection_probability"])
         table = simple.GetColorTransferFunction("detection_probability")
         self.assertEqual((table.RGBPoints[0], table.RGBPoints[-4]), (0, 1))
         self.check_shown((surface, probable), True)
@@ -357,7 +367,8 @@ class MoreMacros(Case):
         # The slice lies at points of the image: no status is between two.
         data = servermanager.Fetch(coverage)
         nx, ny, nz = data.GetDimensions()
-        status, probability = (vtk_to_numpy(data.GetPointData().GetArray(name)) for name in ("status", "detection_probability"))
+        status, probability = (vtk_to_numpy(data.GetPointData().GetArray(name))
+                               for name in ("status", "detection_probability"))
         layer = status.reshape(nz, ny, nx)[round((30 - data.GetOrigin()[2]) / data.GetSpacing()[2])]
         found = vtk_to_numpy(servermanager.Fetch(level).GetPointData().GetArray("status"))
         numpy.testing.assert_array_equal(numpy.bincount(found, minlength=8), numpy.bincount(layer.ravel(), minlength=8))

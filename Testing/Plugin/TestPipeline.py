@@ -53,8 +53,8 @@ def test_comparison(beams, tree, echoes):
 
 
 def test_picture():
-    """Terminal and hangars under the echoes, coloured over the receiver's limits. A new baseline: copy the picture from the folder
-    for temporary files to Testing/Data/Baseline and look at it."""
+    """Terminal and hangars under the echoes, coloured over the receiver's limits. A new baseline: copy the picture from
+    the folder for temporary files to Testing/Data/Baseline and look at it."""
     _, tree, _, echoes = airport()
     view = simple.CreateRenderView(ViewSize=[500, 400], OrientationAxesVisibility=0)
     view.UseColorPaletteForBackground = 0

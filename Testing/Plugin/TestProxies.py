@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every proxy against its C++ class: properties, labels, defaults, choices, help and units. Nothing is listed here that a class says.
-A writer's class is that of its core, a proxy within the one of Save Data."""
+"""Every proxy against its C++ class: properties, labels, defaults, choices, help and units. Nothing is listed here that
+a class says. A writer's class is that of its core, a proxy within the one of Save Data."""
 
 import inspect
 import math
@@ -27,13 +27,15 @@ PRESETS = {"AvianLidar" + name.replace("_", ""): "SetPresetTo" + name for name i
 WRITERS = {*_suffixes.WRITERS.values()}
 ABSTRACT = {"vtkAvianLidarCloudWriter", "vtkAvianLidarScanFilter"}
 READERS = ("AvianLidarSceneReader", "AvianLidarPointCloudReader", "AvianLidarSensorReader", "AvianLidarSequenceReader")
-# Of a class, and no property: for programs, or the same in another unit.
+# Methods of classes that are not properties: for programs, or the same value in another unit.
 NOT_SHOWN = {"Controller", "Frequency", "Text", "NumberOfChannelElevations", "ChannelElevation", "HeightLimit"}
 # Properties without a pair of Set and Get: buttons, lists, time steps, a preset's tables.
 NO_PAIR = {"Advise", "KnownSpecies", "Reload", "TimestepValues", "TablesOfPreset", "ErrorsAsData", "EnergyArray"}
-OTHER_NAMES = {"MeteorologicalVisibility": "Visibility", "ObjectName": "NameOfObject"}  # of the class, where a proxy cannot have the same
+# of the class, where a proxy cannot have the same
+OTHER_NAMES = {"MeteorologicalVisibility": "Visibility", "ObjectName": "NameOfObject"}
 # Properties with any number of values: the method that counts them, the one that gives them.
-LISTS = {"ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"), "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit")}
+LISTS = {"ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"),
+         "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit")}
 FREE_TEXTS = ("GivenFileName", "ObjectName", "BlockNamePattern", "Name", "SensorAddress")
 
 
@@ -60,7 +62,8 @@ def core_of(writer):
 def pairs(instance):
     """The properties of a class that Set and Get have."""
     methods = set(dir(instance)) - set(dir(vtkPolyDataAlgorithm))
-    return {name[3:] for name in methods if name.startswith("Set") and "Get" + name[3:] in methods} - NOT_SHOWN - NO_PAIR
+    found = {name[3:] for name in methods if name.startswith("Set") and "Get" + name[3:] in methods}
+    return found - NOT_SHOWN - NO_PAIR
 
 
 def words(name):
@@ -96,7 +99,8 @@ def overridden():
     """The properties that some preset changes, as field data tell: no value of it is left as it was."""
     own = {"RaysPerBeam": 11, "Sampling": 0, "NumberOfReflections": 1}
     own.update({"NumberOfConnections": 3, "ReflectanceModel": 1, "Noise": 0, "ReturnMode": 1, "Seed": 5})
-    amounts = {"Visibility", "AttenuationCoefficient", "RainRate", "MaximumCacheSize", "NumberOfThreads", "ReportMovers", "Preset"}
+    amounts = {"Visibility", "AttenuationCoefficient", "RainRate", "MaximumCacheSize", "NumberOfThreads",
+               "ReportMovers", "Preset"}
     switches = sorted(pairs(module.vtkAvianLidarEchoFilter()) - amounts - {*own})
     found = set()
     for value in (0, 1):
@@ -121,11 +125,13 @@ class TestProxies(unittest.TestCase):
         cls.source = simple.AvianLidarBeamSource()
         cls.proxies = {}
         for name in sorted(word for word in vars(simple) if word.startswith("AvianLidar")):
-            prototype = servermanager.ProxyManager().GetPrototypeProxy("filters", name) or servermanager.ProxyManager().GetPrototypeProxy("sources", name)
-            if prototype and prototype.GetVTKClassName().replace("vtkAvianLidar", "") != "" and prototype.GetVTKClassName() not in WRITERS:
+            known = servermanager.ProxyManager()
+            prototype = known.GetPrototypeProxy("filters", name) or known.GetPrototypeProxy("sources", name)
+            if prototype and prototype.GetVTKClassName() not in ("", "vtkAvianLidar", *WRITERS):
                 cls.proxies[name] = getattr(simple, name)()
         cls.cores = {writer[len("vtk"):] + "Core": core_of(writer) for writer in WRITERS}
-        cls.inputs = {name: {prop for prop in proxy.ListProperties() if proxy.SMProxy.GetProperty(prop).IsA("vtkSMProxyProperty")}
+        cls.inputs = {name: {prop for prop in proxy.ListProperties()
+                             if proxy.SMProxy.GetProperty(prop).IsA("vtkSMProxyProperty")}
                       for name, proxy in (*cls.proxies.items(), *cls.cores.items())}
 
     def each_property(self, with_results=False):
@@ -145,11 +151,14 @@ class TestProxies(unittest.TestCase):
     def test_properties_are_those_of_the_class(self):
         for name, proxy in (*self.proxies.items(), *self.cores.items()):
             with self.subTest(name):
-                shown = {OTHER_NAMES.get(prop, prop) for prop in proxy.ListProperties()} - self.inputs[name] - NO_PAIR - set(LISTS)
-                shown -= {prop for prop in shown if proxy.SMProxy.GetProperty(prop) and proxy.SMProxy.GetProperty(prop).GetInformationOnly()}
+                shown = {OTHER_NAMES.get(prop, prop)
+                         for prop in proxy.ListProperties()} - self.inputs[name] - NO_PAIR - set(LISTS)
+                shown -= {prop for prop in shown if proxy.SMProxy.GetProperty(prop)
+                          and proxy.SMProxy.GetProperty(prop).GetInformationOnly()}
                 instance = made(name)
                 expected = pairs(instance)
-                if name in ("AvianLidarBeamView", "AvianLidarCoverage", "AvianLidarSensorReader"):  # what they inherit is not all theirs
+                # what they inherit is not all theirs
+                if name in ("AvianLidarBeamView", "AvianLidarCoverage", "AvianLidarSensorReader"):
                     expected = {prop for prop in expected if prop in shown or "Set" + prop in vars(type(instance))}
                 if name in self.cores:
                     expected -= {"FileName"}
@@ -160,12 +169,14 @@ class TestProxies(unittest.TestCase):
     def test_writers(self):
         for suffix, writer in _suffixes.WRITERS.items():
             proxy = servermanager.ProxyManager().GetPrototypeProxy("writers", writer[len("vtk"):])
-            self.assertIn(suffix[1:], proxy.GetHints().FindNestedElementByName("WriterFactory").GetAttribute("extensions").split())
+            self.assertIn(suffix[1:],
+                          proxy.GetHints().FindNestedElementByName("WriterFactory").GetAttribute("extensions").split())
             self.check_words(writer[len("vtk"):], proxy)
 
     def test_the_advisor_is_an_echo_filter_with_a_question(self):
         advisor = servermanager.ProxyManager().NewProxy("internal_avian_lidar", "AvianLidarAdvisor")
-        defaults = [parameter.default for parameter in inspect.signature(avianlidar.Scan.advise).parameters.values()][1:5]
+        defaults = [parameter.default
+                    for parameter in inspect.signature(avianlidar.Scan.advise).parameters.values()][1:5]
         for prop, default in zip(("EnergyError", "RangeError", "MissedShare", "SampleBeams"), defaults):
             self.assertEqual(values_of(advisor.GetProperty(prop)), [default], prop)
         for prop in self.proxies["AvianLidarEchoFilter"].ListProperties():
@@ -245,7 +256,8 @@ class TestProxies(unittest.TestCase):
         """{property: heading of its group}"""
         smproxy = self.proxies[name].SMProxy
         groups = [smproxy.GetPropertyGroup(i) for i in range(smproxy.GetNumberOfPropertyGroups())]
-        return {smproxy.GetPropertyName(group.GetProperty(j)): group.GetXMLLabel() for group in groups for j in range(group.GetNumberOfProperties())}
+        return {smproxy.GetPropertyName(group.GetProperty(j)): group.GetXMLLabel() for group in groups
+                for j in range(group.GetNumberOfProperties())}
 
     def test_units_are_those_of_the_data(self):
         """In the heading of the group, where field data say the unit."""
@@ -290,12 +302,13 @@ class TestProxies(unittest.TestCase):
         self.assertEqual(smproxy.GetXMLLabel().replace(" ", ""), name)
 
     def test_species_are_a_list(self):
-        """The built-in species and, after an execution, the species of the user's table. A value that is not known stays."""
-        table = pathlib.Path(SOURCE_DIR, "Filters", "Birds", "species.csv").read_text(encoding="utf-8").splitlines()
+        """The built-in species and, after an execution, the species of the user's table. A value that is not known
+        stays."""
+        table = pathlib.Path(SOURCE_DIR, "Filters", "Birds", "species.csv").read_text("utf-8").splitlines()
         built_in = [line.split(",")[0] for line in table if not line.startswith("#")][1:]
         with tempfile.TemporaryDirectory() as folder:
             own = pathlib.Path(folder, "own.csv")
-            own.write_text("\n".join(table).replace("pigeon", "barn owl"), encoding="utf-8")
+            own.write_text("\n".join(table).replace("pigeon", "barn owl"), "utf-8")
             for name, empty in (("AvianLidarBirdSource", []), ("AvianLidarTracks", [""]), ("AvianLidarCoverage", [""])):
                 simple.SetActiveSource(None)
                 source = getattr(simple, name)()
@@ -322,7 +335,8 @@ class TestProxies(unittest.TestCase):
         """As unchecked values, which the panel shows and Apply takes over; custom ones begin with them."""
         proxy = self.proxies["AvianLidarMaterial"].SMProxy
         material, shown = proxy.GetProperty("Material"), [proxy.GetProperty(name) for name in ("Kd", "Ks", "Kp")]
-        self.assertEqual([bounds_of(domains_of(prop)[0], 0) for prop in shown], [(0, 1), (0, 1), (0, 10000)])  # of the sliders
+        # of the sliders
+        self.assertEqual([bounds_of(domains_of(prop)[0], 0) for prop in shown], [(0, 1), (0, 1), (0, 10000)])
         choices, last = domains_of(material)[0], None
         for text in (choices.GetEntryText(i) for i in range(choices.GetNumberOfEntries())):
             value = choices.GetEntryValueForText(text)
@@ -346,7 +360,8 @@ class TestProxies(unittest.TestCase):
             half, full = (proxy.SMProxy.GetProperty(prop) for prop in ("HalfBeamwidth", "BeamwidthMilliradians"))
             for value in (0.007 / 3, 1e-9):
                 proxy.HalfBeamwidth = value
-                self.assertEqual((values_of(half), round(proxy.BeamwidthMilliradians / (2000 * value), 12)), ([value], 1))
+                self.assertEqual((values_of(half), round(proxy.BeamwidthMilliradians / (2000 * value), 12)),
+                                 ([value], 1))
                 proxy.BeamwidthMilliradians = 3000 * value
                 self.assertEqual((values_of(full), round(proxy.HalfBeamwidth / (1.5 * value), 12)), ([3000 * value], 1))
             proxy.UpdatePipeline()
@@ -407,22 +422,26 @@ class TestProxies(unittest.TestCase):
             if proxy is not range_image:
                 self.assertFalse(fits("Beams", echoes, proxy))
             self.assertEqual(fits("Beams", echoes, proxy, 1), proxy is range_image)  # the beam report
-        for port, proxy, good, bad in (("Beams", filter_, (), (image, multiblock)), ("Surfaces", filter_, (mesh, plain, multiblock), (image,)),
+        for port, proxy, good, bad in (("Beams", filter_, (), (image, multiblock)),
+                                       ("Surfaces", filter_, (mesh, plain, multiblock), (image,)),
                                        ("Places", coverage, (plain, image), (multiblock,))):
-            self.assertEqual([fits(port, source, proxy) for source in (*good, *bad)], [True] * len(good) + [False] * len(bad), port)
+            self.assertEqual([fits(port, source, proxy) for source in (*good, *bad)],
+                             [True] * len(good) + [False] * len(bad), port)
 
     def test_what_a_panel_shows_first_and_what_opens_a_file(self):
         tracks, shown = simple.AvianLidarTracks(), {}
-        for name in ("NumberOfBirds", "Center", "Heights", "Radius", "ThresholdPosition", "ThresholdHeading", "FileName"):
+        for name in ("NumberOfBirds", "Center", "Heights", "Radius", "ThresholdPosition", "ThresholdHeading",
+                     "FileName"):
             one = tracks.SMProxy.GetProperty(name).GetHints().FindNestedElementByName("PropertyWidgetDecorator")
             shown[name] = one.GetAttribute("value") or one.GetAttribute("values")
         self.assertEqual(shown, {"NumberOfBirds": "0 1 2 3", "Center": "0 1 2", "Heights": "0 1 2", "Radius": "0 1 2 3",
                                  "ThresholdPosition": "3", "ThresholdHeading": "3", "FileName": "4"})
         cover = simple.AvianLidarCoverage()
         first = {n for n in cover.ListProperties() if cover.SMProxy.GetProperty(n).GetPanelVisibility() == "default"}
-        self.assertEqual(first, set("Beams Surfaces Places Bounds Spacing Species Reflectance EffectiveArea MeteorologicalVisibility "
-                                    "RequiredDetections NumberOfScans HeightLimits".split()))
-        factory = simple.AvianLidarPointCloudReader(FileName="x.pcd").SMProxy.GetHints().FindNestedElementByName("ReaderFactory")
+        self.assertEqual(first, set("Beams Surfaces Places Bounds Spacing Species Reflectance EffectiveArea "
+                                    "MeteorologicalVisibility RequiredDetections NumberOfScans HeightLimits".split()))
+        hints = simple.AvianLidarPointCloudReader(FileName="x.pcd").SMProxy.GetHints()
+        factory = hints.FindNestedElementByName("ReaderFactory")
         self.assertEqual({"." + one for one in factory.GetAttribute("extensions").split()}, set(_suffixes.READERS))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A state saved as .pvsm or .py and loaded into an empty session gives the same echoes, to the last bit. A .pvsm state with
-properties that are gone loads: they are left out."""
+"""A state saved as .pvsm or .py and loaded into an empty session gives the same echoes, to the last bit. A .pvsm state
+with properties that are gone loads: they are left out."""
 
 import os
 
@@ -9,14 +9,14 @@ from paraview import simple, smstate
 from plugin_testing import OUTPUT_DIR, airport, assert_same, fetch, load_plugin
 
 # Values of every kind that are not the defaults: numbers, vectors, a table, choices, switches, texts.
-VALUES = {
-    "beams": {"Position": [0.25, -1.5, 3.125], "Orientation": [10, 0.1, -0.2], "ChannelElevations": [0.1, 0.7, 1.3, 2.9],
-              "HalfBeamwidth": 4e-3, "BeamProfile": "Gaussian", "SamplingInterval": 4e-9},
-    "echoes": {"RaysPerBeam": 17, "BeamSamples": "Rays", "Sampling": "MonteCarlo", "Seed": -5, "AttenuationCoefficient": 5e-5,
-               "NumberOfReflections": 1, "BatchCollisionDetection": "Rays", "FullModel": 1, "ReturnMode": "Strongest"},
-    "tree": {"SplitRule": "Median", "BoundingVolume": "Sphere", "MaximumLeafSize": 7},
-    "material": {"Material": "Custom", "Kd": 0.3, "Ks": 0.1, "Kp": 50, "BlockNamePattern": "Terminal*"},
-}
+VALUES = {"beams": {"Position": [0.25, -1.5, 3.125], "Orientation": [10, 0.1, -0.2],
+                    "ChannelElevations": [0.1, 0.7, 1.3, 2.9], "HalfBeamwidth": 4e-3, "BeamProfile": "Gaussian",
+                    "SamplingInterval": 4e-9}, "echoes": {
+              "RaysPerBeam": 17, "BeamSamples": "Rays", "Sampling": "MonteCarlo", "Seed": -5,
+              "AttenuationCoefficient": 5e-5, "NumberOfReflections": 1, "BatchCollisionDetection": "Rays",
+              "FullModel": 1, "ReturnMode": "Strongest"},
+          "tree": {"SplitRule": "Median", "BoundingVolume": "Sphere", "MaximumLeafSize": 7},
+          "material": {"Material": "Custom", "Kd": 0.3, "Ks": 0.1, "Kp": 50, "BlockNamePattern": "Terminal*"}}
 
 
 def build():
@@ -24,7 +24,8 @@ def build():
     material = simple.AvianLidarMaterial(Input=scene)
     tree.Input = material
     colours = simple.AvianLidarHSBColorMap(Input=echoes, UseFieldDataRange=0, EnergyRange=[1e-6, 5e-5])
-    for proxy, name in ((beams, "beams"), (echoes, "echoes"), (tree, "tree"), (material, "material"), (colours, "colours")):
+    for proxy, name in ((beams, "beams"), (echoes, "echoes"), (tree, "tree"), (material, "material"),
+                        (colours, "colours")):
         simple.RenameSource(name, proxy)
         for prop, value in VALUES.get(name, {}).items():
             proxy.SetPropertyWithName(prop, value)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Save Data and Open File: every format is written and read through its proxies (TestProxies.py looks at their properties).
+"""Save Data and Open File: every format is written and read through its proxies (TestProxies.py looks at their
+properties).
 
 Run by pvpython in one process and by pvbatch on two ranks (the argument), where the first rank gathers and writes."""
 
@@ -47,7 +48,8 @@ class TestWriters(unittest.TestCase):
         for writer, ending in ENDINGS.items():
             if "." + ending not in READERS or ending == "bin":  # KITTI has axes of its own: test_kitti
                 continue
-            options = {key: value for key, value in settings.items() if hasattr(getattr(wrapped, "vtkAvianLidar" + writer), "Set" + key)}
+            options = {key: value for key, value in settings.items()
+                       if hasattr(getattr(wrapped, "vtkAvianLidar" + writer), "Set" + key)}
             self.save(ending, **options)
             got = self.open(ending)
             accuracy = 0 if "Precision" in options else 2e-6
@@ -67,7 +69,7 @@ class TestWriters(unittest.TestCase):
         os.remove(path("ply"))
 
     def test_field_data_come_through(self):
-        """Of all ranks together: the organised grid, the sensor's frame and the origin are in field data."""
+        """The organised grid, the sensor's frame and the origin of all ranks are in field data."""
         self.save("pcd", Organisation="Organised")
         with open(path("pcd"), "rb") as file:
             lines = [next(file) for _ in range(12)]
@@ -100,7 +102,8 @@ class TestWriters(unittest.TestCase):
         os.chdir(folder)
         self.addCleanup(os.chdir, before)
         for ending in (*ENDINGS.values(), *["laz"] * int(os.environ["AVIANLIDAR_LASZIP"])):
-            for name, steps in (("bare", True), ("bare", False), ("sub/inner", True), (os.path.join(folder, "whole"), True)):
+            for name, steps in (("bare", True), ("bare", False), ("sub/inner", True),
+                                (os.path.join(folder, "whole"), True)):
                 simple.SaveData(f"{name}.{ending}", proxy=echoes, WriteTimeSteps=steps)
                 files = [f"{name}_{step}.{ending}" for step in range(2)] if steps else [f"{name}.{ending}"]
                 sizes = [os.path.getsize(file) for file in files]

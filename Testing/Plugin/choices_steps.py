@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a user chooses in ParaView's window: sensors by maker, the wizard, the beam of an echo, macros that Undo takes back."""
+"""What a user chooses in ParaView's window: sensors by maker, the wizard, the beam of an echo, macros that Undo takes
+back."""
 
 import json
 import os
 
 from client_qt import QtWidgets
-from client_window import (FOLDER, SOURCE_DIR, action, canvas, close_messages, delete_all, find, later, main_window, names,
-                           photo, pixels, points_of, press, shown, take, until)
+from client_window import (FOLDER, SOURCE_DIR, action, canvas, close_messages, delete_all, find, later, main_window,
+                           names, photo, pixels, points_of, press, shown, take, until)
 from paraview import servermanager, simple
 
 FOLDERS = [os.path.join(SOURCE_DIR, "Filters", folder) for folder in ("Sensors", "Birds")]
@@ -65,7 +66,8 @@ def ask(button, turn=0, **answers):
         dialog.next()
     for name, value in answers.items():
         if name == "Scene":
-            next(one for one in dialog.findChildren(QtWidgets.QLineEdit) if one.parent().objectName() == name).setText(value)
+            next(one for one in dialog.findChildren(QtWidgets.QLineEdit) if one.parent().objectName()
+                 == name).setText(value)
         elif isinstance(value, int):
             dialog.findChild(QtWidgets.QSpinBox, name).setValue(value)
         else:
@@ -114,7 +116,7 @@ def wizard():
 
 
 def beam():
-    """Of an echo of the airport's scan that is selected, then of another one."""
+    """The beam of a selected echo of the airport's scan, then of another echo."""
     button, scan, view = action("avian_lidar_show_beam"), simple.FindSource("Scan"), simple.GetActiveView()
     before = names()
     simple.SetActiveSource(scan)
@@ -137,7 +139,8 @@ def beam():
     rows = range(table.GetNumberOfRows())
     for name in ("solid_angle_share", "energy_share"):
         assert abs(sum(table.GetValueByName(i, name).ToDouble() for i in rows) - 1) < 1e-6, name
-    assert len(rows) > 1 and beam.GetDataInformation(0).GetNumberOfCells() > 0 and shown(beam, view) and shown(beam, view, 1)
+    assert len(rows) > 1 and beam.GetDataInformation(0).GetNumberOfCells() > 0
+    assert shown(beam, view) and shown(beam, view, 1)
     simple.ClearSelection()
     look_at(beam, view)
     yield 0.5
@@ -156,7 +159,8 @@ def look_at(beam, view):
     way = [a - b for a, b in zip(centre, cone.GetPoint(0))]
     ahead = [one / sum(one**2 for one in way) ** 0.5 for one in way]
     view.CameraFocalPoint = centre
-    view.CameraPosition = [c - 300 * a + side for c, a, side in zip(centre, ahead, (-120 * ahead[1], 120 * ahead[0], 90))]
+    view.CameraPosition = [c - 300 * a + side
+                           for c, a, side in zip(centre, ahead, (-120 * ahead[1], 120 * ahead[0], 90))]
     view.CameraViewUp, view.CameraParallelScale = [0, 0, 1], 18.0
     simple.HideUnusedScalarBars(view)
     simple.RenderAllViews()
@@ -179,7 +183,8 @@ def check_birds(view):
     for kind in ("gulls", "crows", "starlings"):
         # Fetch would be a step to undo.
         echoes = simple.FindSource("Echoes of " + kind)
-        data, colour = echoes.SMProxy.GetClientSideObject().GetOutputDataObject(0), simple.GetDisplayProperties(echoes, view).DiffuseColor
+        data = echoes.SMProxy.GetClientSideObject().GetOutputDataObject(0)
+        colour = simple.GetDisplayProperties(echoes, view).DiffuseColor
         own = []
         for i in range(data.GetNumberOfPoints()):
             x, y = matrix.MultiplyPoint([*data.GetPoint(i), 1])[:2]
@@ -189,7 +194,8 @@ def check_birds(view):
 
 
 def undo():
-    """Edit > Undo takes back a whole macro, its views, too, and Redo brings it back; names in the pipeline are unique."""
+    """Edit > Undo takes back a whole macro, its views, too, and Redo brings it back; names in the pipeline are
+    unique."""
     yield from delete_all()
     view, back = simple.GetActiveView(), action("actionEditUndo")
     states = [state(view)]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """ParaView's window from the inside: scripts that ParaView runs (--script) find and press its widgets by PyQt.
 
-A part of a test is a generator that yields how long to wait (seconds): between its steps ParaView works as it does for a
-user, also within a dialog. run() runs the parts and writes results.json, which gui_testing.run_script() reads."""
+A part of a test is a generator that yields how long to wait (seconds): between its steps ParaView works as it does for
+a user, also within a dialog. run() runs the parts and writes results.json, which gui_testing.run_script() reads."""
 
 import json
 import os
@@ -25,8 +25,9 @@ errors = []  # what ParaView's Output Messages have got
 
 
 def run(*parts):
-    """Runs the generators that the parts return, in turn; the tracebacks of those that fail are results["error"]. A part
-    takes the errors that it expects from `errors`: one that is left fails it. AVIANLIDAR_PARTS may choose parts."""
+    """Runs the generators that the parts return, in turn; the tracebacks of those that fail are results["error"]. A
+    part takes the errors that it expects from `errors`: one that is left fails it. AVIANLIDAR_PARTS may choose
+    parts."""
     chosen = os.environ.get("AVIANLIDAR_PARTS", "").split()
 
     def heard(_, __, text):
@@ -203,8 +204,8 @@ def shown(source, view, port=0):
 def canvas(view):
     """The widget that draws a view."""
     size = list(view.ViewSize)
-    return next(widget for widget in app.allWidgets() if widget.isVisible() and [widget.width(), widget.height()] == size
-                and "QVTK" in widget.metaObject().className())
+    return next(widget for widget in app.allWidgets() if widget.isVisible() and [widget.width(), widget.height()]
+                == size and "QVTK" in widget.metaObject().className())
 
 
 def grab(widget, height=None):

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors in ParaView's window, alone or as a client: each is said each time by every object that it hits, there is nothing
-to see while it lasts, what comes after it is seen, and undo, reload and reset lead out of it."""
+"""Errors in ParaView's window, alone or as a client: each is said each time by every object that it hits, there is
+nothing to see while it lasts, what comes after it is seen, and undo, reload and reset lead out of it."""
 
 import json
 import os
 import pathlib
 
 from client_qt import QtWidgets
-from client_window import (FOLDER, action, app, apply_button, apply_value, delete_all, errors, later, names, points_of, press, take,
-                           until)
+from client_window import (FOLDER, action, app, apply_button, apply_value, delete_all, errors, later, names, points_of,
+                           press, take, until)
 from paraview import simple
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
@@ -27,7 +27,7 @@ WRITTEN = ("las", "pcd", "csv")  # ours keep a good file by themselves, ParaView
 def write_scene(width=200):
     """A ground of a width, m; without one a file that is not a scene."""
     ground = {"ground": {"size": width, "height": -1}, "material": "wall", "name": "ground"}
-    pathlib.Path(SCENE).write_text(json.dumps({"version": 1, "objects": [ground]}) if width else "{", encoding="utf-8")
+    pathlib.Path(SCENE).write_text(json.dumps({"version": 1, "objects": [ground]}) if width else "{", "utf-8")
 
 
 class Pipeline:
@@ -67,7 +67,8 @@ class Pipeline:
             yield from change(value)
             said, look = take(), self.look()
             if step % 2:
-                assert not said and all(data and drawn and not error for data, drawn, error in look.values()), (name, said, look)
+                assert not said and all(data and drawn and not error
+                                        for data, drawn, error in look.values()), (name, said, look)
                 assert look["Echoes"] != seen["Echoes"], (name, value, look)  # those of the new value
                 seen = look
                 continue
@@ -98,7 +99,8 @@ def cases(*chosen):
     assert not apply_button().isEnabled(), "nothing was changed"
     air = pipeline.by_panel("Echoes", "AttenuationCoefficient")
     yield from pipeline.case("Echoes", air, (-1, 0.05, -2, 0.01))  # the second time, too
-    given = {"Sensor": (pipeline.by_panel("Sensor", "PulseEnergy"), (-1, 5e-5)), "Scene": (pipeline.by_file, (None, 30))}
+    given = {"Sensor": (pipeline.by_panel("Sensor", "PulseEnergy"), (-1, 5e-5)),
+             "Scene": (pipeline.by_file, (None, 30))}
     for name in chosen:
         yield from pipeline.case(name, *given[name])
     yield from save(pipeline, air)

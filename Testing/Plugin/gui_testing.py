@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of ParaView's window share: a display of its own, ParaView and servers on it. Run by the system's Python."""
+"""What the tests of ParaView's window share: a display of its own, ParaView and servers on it. Run by the system's
+Python."""
 
 import contextlib
 import json
@@ -84,17 +85,18 @@ def server(folder, ranks, arguments=LOAD):
 
 
 def run_script(paraview, name, size, arguments, timeout=TIMEOUT, **environment):
-    """Runs a script in ParaView's window, without anyone's settings: what it found (client_window.run). It may import what is in
-    this folder.
+    """Runs a script in ParaView's window, without anyone's settings: what it found (client_window.run). It may import
+    what is in this folder.
 
-    It leaves results.json, and what else it makes, in the folder of that name for temporary files, which is emptied; the
-    log of the window is beside it."""
+    It leaves results.json, and what else it makes, in the folder of that name for temporary files, which is emptied;
+    the log of the window is beside it."""
     folder = os.path.join(OUTPUT_DIR, name)
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     results, log_name = os.path.join(folder, "results.json"), folder + ".log"
     command = [paraview, "--dr", "-qwindowgeometry", f"{size[0]}x{size[1]}+0+0", *arguments]
-    with tempfile.TemporaryDirectory() as home, open(log_name, "w", encoding="utf-8") as log, display(*size) as variables:
+    with tempfile.TemporaryDirectory() as home, open(log_name, "w",
+                                                     encoding="utf-8") as log, display(*size) as variables:
         variables.pop("PV_MACRO_PATH", None)
         variables.update(HOME=home, QT_QPA_PLATFORM="xcb", AVIANLIDAR_PHOTOS=folder,
                          PYTHONPATH=os.pathsep.join([HERE, os.environ.get("PYTHONPATH", "")]), **environment)
@@ -105,9 +107,10 @@ def run_script(paraview, name, size, arguments, timeout=TIMEOUT, **environment):
                 assert process.poll() is None and "Traceback" not in said, said[-2000:]
                 assert time.monotonic() - start < timeout, "the script does not come to its end"
                 time.sleep(0.2)
-    found = json.loads(pathlib.Path(results).read_text(encoding="utf-8"))
+    found = json.loads(pathlib.Path(results).read_text("utf-8"))
     assert not found["error"], found["error"]
-    assert "critical:" not in text_of(log_name), text_of(log_name)  # of Qt; errors of the plugin are looked at by the script
+    # of Qt; errors of the plugin are looked at by the script
+    assert "critical:" not in text_of(log_name), text_of(log_name)
     return found
 
 
@@ -118,15 +121,18 @@ def play(paraview, events, arguments=()):
     script.extend(events)
     for widget, command, value in (("menubar/menu_File", "activate", "actionFileSaveServerState"),
                                    ("FileSaveServerStateDialog", "filesSelected", "$PARAVIEW_TEST_ROOT/state.pvsm")):
-        ElementTree.SubElement(script, "pqevent", object=f"pqClientMainWindow/{widget}", command=command, arguments=value)
+        ElementTree.SubElement(script, "pqevent", object=f"pqClientMainWindow/{widget}", command=command,
+                               arguments=value)
     with tempfile.TemporaryDirectory() as home, display(1280, 1024) as variables:
         for name in ("PV_MACRO_PATH", "PYTHONPATH"):
             variables.pop(name, None)
         variables.update(HOME=home, QT_QPA_PLATFORM="xcb")
         file_name = os.path.join(home, "events.xml")
         ElementTree.ElementTree(script).write(file_name)
-        command = [paraview, "--dr", *LOAD, f"--test-directory={home}", f"--test-script={file_name}", "--exit", *arguments]
+        command = [paraview, "--dr", *LOAD, f"--test-directory={home}", f"--test-script={file_name}", "--exit",
+                   *arguments]
         done = subprocess.run(command, env=variables, timeout=TIMEOUT, text=True, errors="replace",
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         assert done.returncode == 0, done.stdout
-        return ElementTree.parse(os.path.join(home, "state.pvsm")), re.findall(r"^.*(?:ERR|WARN)\|.*(?:\n(?!.*\|).*)*", done.stdout, re.M)
+        return ElementTree.parse(os.path.join(home, "state.pvsm")), re.findall(
+            r"^.*(?:ERR|WARN)\|.*(?:\n(?!.*\|).*)*", done.stdout, re.M)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Live changes in ParaView's window: with Auto Apply each step of a value in the panel lights the scan anew and draws it, tracing
-nothing that is known; the echoes are those of a new scan, bit for bit. Testing/Studies/speed/live.py runs this file to measure."""
+"""Live changes in ParaView's window: with Auto Apply each step of a value in the panel lights the scan anew and draws
+it, tracing nothing that is known; the echoes are those of a new scan, bit for bit. Testing/Studies/speed/live.py runs
+this file to measure."""
 
 import os
 import time
@@ -115,8 +116,8 @@ def changes(scan, count):
 
 
 def measure(scan, change, count):
-    """Each step from the key to the end of its frame, to be yielded from: seconds of the clock, the main thread, the filter and
-    the view."""
+    """Each step from the key to the end of its frame, to be yielded from: seconds of the clock, the main thread, the
+    filter and the view."""
     found = {"wall": [], "main": [], "filter": [], "drawing": [], "rays": 0}
     executions = scan.filter.count
     for step in range(count):

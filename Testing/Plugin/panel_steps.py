@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Panels in ParaView's window: every one opens, no text has less room than it needs in the width that ParaView starts with, also
-in the options of Save Data; the button Advise sets the panel's values and applies nothing."""
+"""Panels in ParaView's window: every one opens, no text has less room than it needs in the width that ParaView starts
+with, also in the options of Save Data; the button Advise sets the panel's values and applies nothing."""
 
 import os
 import re
 
 import client_window
 from client_qt import QtWidgets
-from client_window import (AIRPORT, FOLDER, SOURCE_DIR, apply, apply_button, delete_all, dialog_of, find, later, panel, panel_of,
-                           photo, press, take, texts_cut, type_in, until)
+from client_window import (AIRPORT, FOLDER, SOURCE_DIR, apply, apply_button, delete_all, dialog_of, find, later, panel,
+                           panel_of, photo, press, take, texts_cut, type_in, until)
 from paraview import servermanager, simple
 
 SENSOR = os.path.join(SOURCE_DIR, "Filters", "Sensors", "VLP32C.lidarsensor.json")
@@ -58,8 +58,8 @@ class Pipeline:
         for name, content in (("velodyne/000000.bin", bytes(16)), ("times.txt", b"0\n")):
             with open(os.path.join(FOLDER, name), "wb") as file:
                 file.write(content)
-        self.files = {"AvianLidarSceneReader": AIRPORT, "AvianLidarSensorReader": SENSOR, "AvianLidarPointCloudReader": cloud,
-                      "AvianLidarSequenceReader": times}
+        self.files = {"AvianLidarSceneReader": AIRPORT, "AvianLidarSensorReader": SENSOR,
+                      "AvianLidarPointCloudReader": cloud, "AvianLidarSequenceReader": times}
 
     def make(self, group, name):
         if name in self.files:
@@ -121,15 +121,18 @@ def panels():
     yield from until(lambda: os.path.exists(name), name)
     find("pipelineBrowserDock").show()
     left = take()
-    assert all("geodetic_origin" in text for text in left), left  # the error names the missing array, and the panel still opens
+    # the error names the missing array, and the panel still opens
+    assert all("geodetic_origin" in text for text in left), left
     yield from delete_all()
 
 
 def advise():
-    """Preset becomes Custom, as another one overrides what is advised; Apply takes it over. An error is said, nothing is set."""
+    """Preset becomes Custom, as another one overrides what is advised; Apply takes it over. An error is said, nothing
+    is set."""
     yield from delete_all()
     sphere = simple.Sphere(Center=[0, 60, 0], Radius=20, ThetaResolution=32, PhiResolution=32)
-    echoes = simple.AvianLidarEchoFilter(Beams=simple.AvianLidarBeamSource(AzimuthStep=0.5), Surfaces=sphere, Preset="Standard")
+    echoes = simple.AvianLidarEchoFilter(Beams=simple.AvianLidarBeamSource(AzimuthStep=0.5), Surfaces=sphere,
+                                         Preset="Standard")
     echoes.UpdatePipeline()
     simple.Show(echoes, simple.GetActiveViewOrCreate("RenderView"))
     yield 0.3
@@ -143,9 +146,11 @@ def advise():
     advised = {name: prop.GetUncheckedElement(0) for name, prop in properties.items()}
     assert {name: prop.GetElement(0) for name, prop in properties.items()} == before, "applied"
     assert (before["Preset"], advised["Preset"], advised["NumberOfReflections"]) == (2, 0, 1), (before, advised)
-    assert find("Preset", parent=panel()).findChild(QtWidgets.QComboBox).currentText() == "Custom" and apply_button().isEnabled()
+    preset = find("Preset", parent=panel()).findChild(QtWidgets.QComboBox)
+    assert preset.currentText() == "Custom" and apply_button().isEnabled()
     # A convex body cannot light itself.
-    assert "One reflection is enough" in answer.text() and f"{advised['RaysPerBeam']}" in answer.toolTip(), answer.toolTip()
+    assert "One reflection is enough" in answer.text(), answer.text()
+    assert f"{advised['RaysPerBeam']}" in answer.toolTip(), answer.toolTip()
     yield from apply()
     assert {name: prop.GetElement(0) for name, prop in properties.items()} == advised, "not applied"
     take()

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run in ParaView's window by TestServer.py, connected to a pvserver: the airport from the menus gives the echoes of the classes
-in one process, bit for bit; files and a state are saved; errors and the button Advise are as without a server."""
+"""Run in ParaView's window by TestServer.py, connected to a pvserver: the airport from the menus gives the echoes of
+the classes in one process, bit for bit; files and a state are saved; errors and the button Advise are as without a
+server."""
 
 import contextlib
 import io
 import os
 
 from client_qt import QAction, QtWidgets
-from client_window import (AIRPORT, FOLDER, apply, delete_all, dialog_of, find, later, main_window, menu, points_of, run, take,
-                           until)
+from client_window import (AIRPORT, FOLDER, apply, delete_all, dialog_of, find, later, main_window, menu, points_of,
+                           run, take, until)
 from error_steps import cases
 from panel_steps import advise
 from paraview import servermanager, simple
@@ -21,8 +22,8 @@ RANKS, LATER = int(os.environ["AVIANLIDAR_RANKS"]), bool(os.environ["AVIANLIDAR_
 
 def connected():
     """The menus have what the server has: nothing before the plugin is loaded there, all after."""
-    connection = yield from until(
-        lambda: servermanager.ActiveConnection and servermanager.ActiveConnection.IsRemote() and servermanager.ActiveConnection, "the server")
+    connection = yield from until(lambda: servermanager.ActiveConnection and servermanager.ActiveConnection.IsRemote()
+                                  and servermanager.ActiveConnection, "the server")
     assert connection.GetNumberOfDataPartitions() == RANKS
     if LATER:
         yield 1

@@ -8,8 +8,8 @@ import client_window
 import numpy
 from choices_steps import beam, sensors, undo, wizard
 from client_qt import QtCore, QtTest, QtWidgets
-from client_window import (AIRPORT, action, app, apply, apply_button, apply_value, canvas, delete_all, dialog_of, find, later, main_window,
-                           menu, panel, photo, pixels, points_of, press, run, shown, take, until)
+from client_window import (AIRPORT, action, app, apply, apply_button, apply_value, canvas, delete_all, dialog_of, find,
+                           later, main_window, menu, panel, photo, pixels, points_of, press, run, shown, take, until)
 from error_steps import cases, walks
 from live_steps import live
 from panel_steps import advise, panels
@@ -21,7 +21,8 @@ ENTRY = "Avian Lidar Echo Filter: Scan Surfaces and Birds"
 
 def macros():
     """The names of those beside the plugin."""
-    return {os.path.splitext(file)[0] for file in os.listdir(os.path.join(os.environ["AVIANLIDAR_PLUGIN_COPY"], "Macros"))}
+    return {os.path.splitext(file)[0]
+            for file in os.listdir(os.path.join(os.environ["AVIANLIDAR_PLUGIN_COPY"], "Macros"))}
 
 
 def fewer_beams():
@@ -35,7 +36,8 @@ def toolbar():
     found = {}
     for entry in bar.actions() if bar else ():
         button = bar.widgetForAction(entry)
-        assert button.isVisible() and not button.icon().pixmap(24, 24).isNull() and "lidar" in entry.toolTip().lower(), entry.objectName()
+        assert button.isVisible() and not button.icon().pixmap(
+            24, 24).isNull() and "lidar" in entry.toolTip().lower(), entry.objectName()
         found[entry.objectName()] = entry.isEnabled()
     return found
 
@@ -104,9 +106,11 @@ def look(source, view, representation, mode):
     """Coloured by energy over the receiver's limits, with a legend."""
     display, table = simple.GetDisplayProperties(source, view), simple.GetColorTransferFunction("energy")
     bar = simple.GetScalarBar(table, view)
-    assert list(display.ColorArrayName) == ["POINTS", "energy"] and representation in display.Representation, display.Representation
+    assert list(display.ColorArrayName) == ["POINTS", "energy"], display.ColorArrayName
+    assert representation in display.Representation, display.Representation
     assert (table.RGBPoints[0], table.RGBPoints[-4]) == (2e-6, 6.25e-5), table.RGBPoints
-    assert (bar.Title, bar.Visibility) == ("energy (J)", 1) and mode in view.InteractionMode, (bar.Title, view.InteractionMode)
+    assert (bar.Title, bar.Visibility) == ("energy (J)", 1), bar.Title
+    assert mode in view.InteractionMode, view.InteractionMode
 
 
 def image():
@@ -139,7 +143,8 @@ def quick_launch(word):
     for options in dialog.findChildren(QtWidgets.QListView):
         for entry in (options.model().index(i, 0) for i in range(options.model().rowCount())):
             # A list of its own in ParaView 5.13.
-            enabled = bool(entry.flags() & QtCore.Qt.ItemFlag.ItemIsEnabled) and options.objectName() != "DisabledProxies"
+            enabled = bool(entry.flags()
+                           & QtCore.Qt.ItemFlag.ItemIsEnabled) and options.objectName() != "DisabledProxies"
             texts[entry.data()] = enabled
     dialog.reject()
     yield 0.1
@@ -147,9 +152,11 @@ def quick_launch(word):
 
 
 def echo_filter():
-    """Found by what it does; takes beams alone as Beams, and says what is not connected; its first Apply colours echoes."""
+    """Found by what it does; takes beams alone as Beams, and says what is not connected; its first Apply colours
+    echoes."""
     disabled = {name for name, is_enabled in toolbar().items() if not is_enabled}
-    assert disabled == {FILTER, "avian_lidar_energy_colours", "avian_lidar_status_colours"}, disabled  # with nothing open
+    # with nothing open
+    assert disabled == {FILTER, "avian_lidar_energy_colours", "avian_lidar_status_colours"}, disabled
     button = find("AvianLidarToolbar", QtWidgets.QToolBar).actions()[-1]
     mesh = simple.Sphere(Radius=20, Center=[0, 60, 0])
     simple.Show(mesh)
@@ -238,8 +245,8 @@ def failures():
 
 
 def loaded_before():
-    """The plugin, told to load by itself, comes before there is a window; a macro's path, which goes into a script, has an
-    apostrophe."""
+    """The plugin, told to load by itself, comes before there is a window; a macro's path, which goes into a script, has
+    an apostrophe."""
     yield from until(lambda: action(FILTER) and find("AvianLidarToolbar"), "the toolbar")
     yield 1
     assert {entry.objectName() for entry in menu("menu_Macros").actions()} >= macros(), macros()

@@ -26,8 +26,8 @@ import boxfiles as box  # noqa: E402
 import children  # noqa: E402
 from avianlidar import Error, Sequence  # noqa: E402
 from avianlidar import vtkAvianLidar as al  # noqa: E402
-from avianlidar.apps._inputs import read_plan  # noqa: E402
-from avianlidar.apps._report import Report  # noqa: E402
+from avianlidar.apps.inputs._read import read_plan  # noqa: E402
+from avianlidar.apps.coverage._report import Report  # noqa: E402
 from data import leaves  # noqa: E402
 from echotools import Messages  # noqa: E402
 from mutations import changed, mutated  # noqa: E402

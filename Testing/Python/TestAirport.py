@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`avianlidar airport`: extracts and terrains that the tests write, areas and heights against closed forms, an ellipsoid's curve,
-edits that stay, extracts that are wrong; extracts of real airports, where the data folder is there."""
+"""`avianlidar airport`: extracts and terrains that the tests write, areas and heights against closed forms, an
+ellipsoid's curve, edits that stay, extracts that are wrong; extracts of real airports, where the data folder is
+there."""
 import itertools
 import json
 import os
@@ -13,7 +14,7 @@ from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from osgeo import gdal, osr
+from osgeo import gdal
 
 import avianlidar as al
 import exampletools
@@ -22,17 +23,15 @@ import scenetools
 from avianlidar import siting
 from avianlidar._cloud import field_values
 from avianlidar._command import parser
-from avianlidar.apps import _airport as airport
-from avianlidar.apps import _airport_pages as airport_pages
-from avianlidar.apps import _ground
-from avianlidar.apps._airport_map import AirportMap
-from avianlidar.apps._json import packaged
-from avianlidar.apps._maps import coordinate_system
+from avianlidar.apps.airport import _ground, _pages as airport_pages, _write as airport
+from avianlidar.apps.airport._map import AirportMap
+from avianlidar.apps.inputs._json import packaged
+from avianlidar.apps.places._gdal import coordinate_system
 
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 FOLDER = pathlib.Path(exampletools.OUTPUT) / "TestAirport"
-KNOWN = packaged("airport.json")
+KNOWN = packaged("places/airport.json")
 gdal.UseExceptions()
 
 
@@ -57,10 +56,12 @@ def made(name, file, *words):
     return folder, said
 
 
-# What an eye without the cones of long, and of middle wavelengths sees of light in linear sRGB: Machado, Oliveira and Fernandes, IEEE
-# TVCG 15(6), 2009, severity 1.
-EYES = {"all": np.eye(3), "without long": np.array([(0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)]),
-        "without middle": np.array([(0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)])}
+# What an eye without the cones of long, and of middle wavelengths sees of light in linear sRGB: Machado, Oliveira and
+# Fernandes, IEEE TVCG 15(6), 2009, severity 1.
+EYES = {"all": np.eye(3), "without long": np.array([(0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216),
+                                                    (-0.003882, -0.048116, 1.051998)]),
+        "without middle": np.array([(0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413),
+                                    (-0.011820, 0.042940, 0.968881)])}
 
 
 def lab(colour, eye):
@@ -84,7 +85,8 @@ class Map:
 
     @staticmethod
     def _tags(tags):
-        return "".join(f"<tag k={quoteattr(key.replace('__', ':'))} v={quoteattr(value)}/>" for key, value in tags.items())
+        return "".join(f"<tag k={quoteattr(key.replace('__', ':'))} v={quoteattr(value)}/>"
+                       for key, value in tags.items())
 
     def point(self, x, y, **tags):
         lon, lat, _ = siting.to_geodetic([(x, y, 0.0)], self.about)[0]
@@ -95,8 +97,9 @@ class Map:
     def way(self, points, closed=False, **tags):
         nodes = [self.point(*point) for point in points]
         number = self._number()
-        self.ways.append(f'<way id="{number}" version="1">' + "".join(f'<nd ref="{node}"/>' for node in nodes + nodes[:1] * closed)
-                         + self._tags(tags) + "</way>")
+        self.ways.append(f'<way id="{number}" version="1">'
+                         + "".join(f'<nd ref="{node}"/>' for node in nodes + nodes[:1] * closed) + self._tags(tags)
+                         + "</way>")
         return number
 
     def area(self, low, high, **tags):
@@ -104,18 +107,23 @@ class Map:
         return self.way([(a, b), (c, b), (c, d), (a, d)], True, **tags)
 
     def relation(self, outer, inner, **tags):
-        members = [f'<member type="way" ref="{way}" role="{role}"/>' for ways, role in ((outer, "outer"), (inner, "inner")) for way in ways]
-        self.relations.append(f'<relation id="{self._number()}" version="1">{"".join(members)}{self._tags({"type": "multipolygon", **tags})}</relation>')
+        members = [f'<member type="way" ref="{way}" role="{role}"/>'
+                   for ways, role in ((outer, "outer"), (inner, "inner")) for way in ways]
+        self.relations.append(
+            f'<relation id="{self._number()}" '
+            f'version="1">{"".join(members)}{self._tags({"type": "multipolygon", **tags})}</relation>')
 
     def write(self, name):
         FOLDER.mkdir(parents=True, exist_ok=True)
         file = FOLDER / name
-        file.write_text('<?xml version="1.0"?><osm version="0.6">' + "".join(self.rows + self.ways + self.relations) + "</osm>", encoding="utf-8")
+        file.write_text('<?xml version="1.0"?><osm version="0.6">' + "".join(self.rows + self.ways + self.relations)
+                        + "</osm>", "utf-8")
         return file
 
 
 def pbf(file):
-    """A file of raw OSM as .osm.pbf beside it: https://wiki.openstreetmap.org/wiki/PBF_Format, nodes one by one, nothing compressed."""
+    """A file of raw OSM as .osm.pbf beside it: https://wiki.openstreetmap.org/wiki/PBF_Format, nodes one by one,
+    nothing compressed."""
     def number(value):
         out = bytearray()
         while value > 127:
@@ -127,7 +135,8 @@ def pbf(file):
         return number(value << 1 if value >= 0 else (-value << 1) - 1)
 
     def field(key, value):
-        return number(key << 3) + number(value) if isinstance(value, int) else number(key << 3 | 2) + number(len(value)) + value
+        return number(key << 3) + number(value) if isinstance(value, int) else number(
+            key << 3 | 2) + number(len(value)) + value
 
     def steps(values):
         return b"".join(signed(b - a) for a, b in zip([0, *values], values))
@@ -141,22 +150,27 @@ def pbf(file):
 
     def tags(of):
         found = [(index(tag.get("k")), index(tag.get("v"))) for tag in of.iter("tag")]
-        return field(2, b"".join(key for key, _ in found)) + field(3, b"".join(value for _, value in found)) if found else b""
+        return field(2, b"".join(key for key, _ in found)) + field(
+            3, b"".join(value for _, value in found)) if found else b""
 
     groups = {"node": b"", "way": b"", "relation": b""}
     for one in ElementTree.parse(file).getroot():
         name = int(one.get("id"))
         if one.tag == "node":
             where = [round(float(one.get(key)) * 1e7) for key in ("lat", "lon")]
-            groups["node"] += field(1, number(8) + signed(name) + tags(one) + number(8 << 3) + signed(where[0]) + number(9 << 3) + signed(where[1]))
+            groups["node"] += field(1, number(8) + signed(name) + tags(one) + number(8 << 3) + signed(where[0])
+                                    + number(9 << 3) + signed(where[1]))
         elif one.tag == "way":
-            groups["way"] += field(3, field(1, name) + tags(one) + field(8, steps([int(node.get("ref")) for node in one.iter("nd")])))
+            groups["way"] += field(3, field(1, name) + tags(one)
+                                   + field(8, steps([int(node.get("ref")) for node in one.iter("nd")])))
         else:
             members = list(one.iter("member"))
             kinds = b"".join(number(("node", "way", "relation").index(member.get("type"))) for member in members)
-            groups["relation"] += field(4, field(1, name) + tags(one) + field(8, b"".join(index(member.get("role")) for member in members))
-                                        + field(9, steps([int(member.get("ref")) for member in members])) + field(10, kinds))
-    data = field(1, b"".join(field(1, word.encode()) for word in strings)) + b"".join(field(2, group) for group in groups.values() if group)
+            groups["relation"] += field(
+                4, field(1, name) + tags(one) + field(8, b"".join(index(member.get("role")) for member in members))
+                + field(9, steps([int(member.get("ref")) for member in members])) + field(10, kinds))
+    data = field(1, b"".join(field(1, word.encode()) for word in strings)) + b"".join(
+        field(2, group) for group in groups.values() if group)
     header = b"".join(field(4, word) for word in (b"OsmSchema-V0.6",))
     out = file.with_suffix(".osm.pbf")
     with open(out, "wb") as stream:
@@ -184,6 +198,18 @@ def crossing():
     return plan
 
 
+def rows(folder):
+    """The properties of the features of an airport."""
+    whole = json.loads((folder / "airport.geojson").read_text("utf-8"))
+    return [feature["properties"] for feature in whole["features"]]
+
+
+def features(*several):
+    """GeoJSON. @param several properties and geometries"""
+    return {"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": properties, "geometry": shape} for properties, shape in several]}
+
+
 def blocks(folder):
     """By name: class, triangles."""
     scene = al.load_scene(folder / "airport.lidarscene.json")
@@ -191,7 +217,7 @@ def blocks(folder):
 
 
 def plan_area(triangles):
-    """Of the sides that are seen from above, m2."""
+    """Area of the sides that are seen from above, m2."""
     area = scenetools.normals(triangles)[:, 2]
     return area[area > 1e-9].sum()
 
@@ -214,12 +240,18 @@ def write_heights(name, heights, low, spacing, driver="GTiff"):
     return FOLDER / name
 
 
+def slope(name):
+    """A raster of heights that rise from 100 m at HERE by 4 % to the east."""
+    x = np.arange(-3200, 3201, 50.0)
+    return write_heights(name, np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
+
+
 class Extracts(unittest.TestCase):
     def test_level_ground_lies_at_the_airports_elevation(self):
         """From --heights, else from the map, else at 0 m with a warning; heights above the sea then fit."""
-        for name, tags, words, height, warned in (
-                ("level", {"ele": "228 ft"}, (), 69.494, False), ("given", {"ele": "228 ft"}, ("--heights", "70.5"), 70.5, False),
-                ("unknown", {}, (), 0.0, True)):
+        for name, tags, words, height, warned in (("level", {"ele": "228 ft"}, (), 69.494, False),
+                                                  ("given", {"ele": "228 ft"}, ("--heights", "70.5"), 70.5, False),
+                                                  ("unknown", {}, (), 0.0, True)):
             plan = Map()
             plan.area((-1500, -800), (1500, 800), aeroway="aerodrome", **tags)
             plan.way([(-900, 0), (900, 0)], aeroway="runway", ref="09/27")
@@ -227,7 +259,7 @@ class Extracts(unittest.TestCase):
             origin = json.loads((folder / "airport.lidarscene.json").read_text())["origin"]
             self.assertAlmostEqual(origin["height"], height, places=3)
             self.assertEqual("does not say the aerodrome's elevation" in said, warned, said)
-            self.assertIn(f"the ground is level at {height:g} m", (folder / "README.txt").read_text(encoding="utf-8"))
+            self.assertIn(f"the ground is level at {height:g} m", (folder / "README.txt").read_text("utf-8"))
         code, said = run("airport", plan.write("elevation.osm"), "--heights", "30000", "-o", fresh("elevation-high"))
         self.assertEqual(code, 2, said)
         self.assertIn("--heights 30000: expected a raster, or the height of level ground", said)
@@ -241,8 +273,9 @@ class Extracts(unittest.TestCase):
         self.assertAlmostEqual(runways["09/27"].axis()[1], 1800.0, delta=0.01)
         self.assertAlmostEqual(runways["18/36"].axis()[1], 1400.0, delta=0.01)
         self.assertEqual((runways["09/27"].width, runways["18/36"].width), (45.0, 45.0))
-        for name, area in (("09/27", 1800 * 45), ("18/36", 1400 * 45), ("Taxiway of asphalt", 1000 * 18), ("Apron of concrete", 1e4),
-                           ("Hangar A", 2400), ("Building", 800), ("Garage", 100), ("Mast", 0.25), ("Fence", 90)):
+        for name, area in (("09/27", 1800 * 45), ("18/36", 1400 * 45), ("Taxiway of asphalt", 1000 * 18),
+                           ("Apron of concrete", 1e4), ("Hangar A", 2400), ("Building", 800), ("Garage", 100),
+                           ("Mast", 0.25), ("Fence", 90)):
             self.assertAlmostEqual(plan_area(found[name][1]) / area, 1.0, delta=1e-4, msg=name)
         for name, height in (("Hangar A", 12.5), ("Building", 8), ("Garage", 40 * 0.3048), ("Mast", 25)):
             z = found[name][1][:, :, 2]
@@ -252,7 +285,8 @@ class Extracts(unittest.TestCase):
         # The ground curves: a point at the far end of the fence lies lower.
         low = found["Fence"][1][:, :, 2].min()
         self.assertAlmostEqual(low, -(900**2 + 400**2) / 2 / 6.37e6, delta=0.02)
-        assumed = {(row[0], row[3]): row[4] for row in (list(row.values()) for row in helpertools.rows_of(folder / "assumed.csv"))}
+        assumed = {(row[0], row[3]): row[4]
+                   for row in (list(row.values()) for row in helpertools.rows_of(folder / "assumed.csv"))}
         self.assertEqual(assumed[("building", "height")], "8.0")
         self.assertEqual(assumed[("runway", "width")], "45.0")
         self.assertNotIn(("hangar", "height"), assumed)
@@ -262,13 +296,14 @@ class Extracts(unittest.TestCase):
         self.assertEqual(sum(siting.is_near([(0.0, 0.0)], outline)[0] for outline in outlines), 2)
         # Its plan, with few places, and the lines of its README.
         plan = json.loads((folder / "siting.coverage.json").read_text())
-        small = {**plan, "places": 50, "spacing": 800, "heights": [15], "sensor": {"preset": "Search905", "azimuth_step": 6},
+        small = {**plan, "places": 50, "spacing": 800, "heights": [15],
+                 "sensor": {"preset": "Search905", "azimuth_step": 6},
                  "coverage": {"species": "", "effective_area": 0.03, "clutter": False}}
         small.pop("mix", None)
         (folder / "small.coverage.json").write_text(json.dumps(small))
         code, words = run("coverage", folder / "small.coverage.json", "-o", folder / "maps")
         self.assertEqual(code, 0, words)
-        lines = re.findall(r"avianlidar ((\w+) .*?)(?:;.*)?$", (folder / "README.txt").read_text(encoding="utf-8"), re.MULTILINE)
+        lines = re.findall(r"avianlidar ((\w+) .*?)(?:;.*)?$", (folder / "README.txt").read_text("utf-8"), re.M)
         self.assertEqual([verb for _, verb in lines], ["coverage", "report", "sequence", "track"])
         for line, _ in lines:
             asked = vars(parser().parse_args(line.split()))
@@ -285,24 +320,27 @@ class Extracts(unittest.TestCase):
         np.testing.assert_allclose(lab("#ff0000", "all"), (53.24, 80.09, 67.20), atol=0.05)
 
     def test_tags_as_they_are_found(self):
-        """Of real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken ways."""
+        """As in real maps: runways as areas and out of use, an aerodrome by relation and by point, tunnels, broken
+        ways."""
         plan = Map()
         plan.area((-800, -22.5), (800, 22.5), aeroway="runway", ref="09/27")
         plan.way([(-400, -300), (400, -300)], aeroway="runway", ref="10/28", width="150 ft")
         plan.area((-400, -322.9), (400, -277.1), aeroway="runway", area="yes", ref="10/28")
         for tags in ({"aeroway": "runway", "disused": "yes"}, {"disused__aeroway": "runway"}):
             plan.way([(-800, 600), (800, 600)], ref="11/29", **tags)
-        plan.relation([plan.area((-900, -450), (900, 450))], [plan.area((-100, -240), (100, -200))], aeroway="aerodrome", icao="XREL")
+        plan.relation([plan.area((-900, -450), (900, 450))], [plan.area((-100, -240), (100, -200))],
+                      aeroway="aerodrome", icao="XREL")
         plan.point(0, -200, aeroway="aerodrome", icao="XREL")
         plan.point(0, 60, aeroway="aerodrome", icao="XHEL", aerodrome__type="heliport")
         plan.way([(0, 300), (300, 300)], highway="primary", tunnel="yes", layer="-1")
         plan.way([(0, 350), (300, 350)], natural="tree_row")
-        plan.way([(-300, 200), (-280, 200), (-280, 200), (-280, 220), (-300, 220)], True, building="yes", name="a node twice")
+        plan.way([(-300, 200), (-280, 200), (-280, 200), (-280, 220), (-300, 220)], True, building="yes",
+                 name="a node twice")
         plan.way([(-200, 240), (-180, 240)], True, building="yes", name="two nodes")
         plan.way([(-200, 260), (-200, 260)], barrier="wall")
         folder, _ = made("tags", plan.write("tags.osm"), "--icao", "XREL")
-        kinds = [feature["properties"]["kind"] for feature in json.loads((folder / "airport.geojson").read_text(encoding="utf-8"))["features"]]
-        self.assertEqual([kinds.count(kind) for kind in ("runway", "road", "tree", "wall", "building")], [3, 0, 1, 0, 1])
+        kinds = [row["kind"] for row in rows(folder)]
+        self.assertEqual([*map(kinds.count, ("runway", "road", "tree", "wall", "building"))], [3, 0, 1, 0, 1])
         scene, parts = blocks(folder)
         runways = {one.name: one for one in siting.read_runways(folder / "airport.geojson", scene.geodetic_origin)}
         self.assertEqual({name: (round(one.axis()[1], 1), round(one.width, 1)) for name, one in runways.items()},
@@ -317,16 +355,15 @@ class Extracts(unittest.TestCase):
         plan.point(-300, 500, natural="tree", height="10")
         plan.area((-300, 300), (-200, 340), building="hangar", height="10")
         plan.way([(-500, -300), (500, -300)], barrier="fence", height="3")
-        x = np.arange(-3200, 3201, 50.0)
-        dem = write_heights("slope.tif", np.broadcast_to(100 + 0.04 * x, (len(x), len(x))), (-3200, -3200), 50.0)
-        folder, _ = made("slope", plan.write("slope.osm"), "--heights", dem)
+        folder, _ = made("slope", plan.write("slope.osm"), "--heights", slope("slope.tif"))
         scene, found = blocks(folder)
         self.assertAlmostEqual(scene.geodetic_origin[2], 100.0, delta=0.01)
         error = KNOWN["terrain_error"]
 
         def above(name):
             places = found[name][1].reshape(-1, 3)
-            return places[:, 2] - 0.04 * places[:, 0] + _ground.curvature(scene.geodetic_origin, places[:, 0], places[:, 1])
+            return places[:, 2] - 0.04 * places[:, 0] + _ground.curvature(
+                scene.geodetic_origin, places[:, 0], places[:, 1])
 
         runway, wood, fence = above("09/27"), above("Wood"), above("Fence")
         np.testing.assert_allclose(runway, 0.06, atol=error)
@@ -337,7 +374,8 @@ class Extracts(unittest.TestCase):
             self.assertTrue(is_closed(found[name][1]), name)
         crown = found["Tree"][1].reshape(-1, 3)
         np.testing.assert_allclose((crown.min(axis=0) + crown.max(axis=0)) / 2, (-300, 500, 5 - 12), atol=0.3)
-        clutter = [json.loads((folder / name).read_text())["coverage"].get("clutter") for name in ("airport.coverage.json", "siting.coverage.json")]
+        clutter = [json.loads((folder / name).read_text())["coverage"].get("clutter")
+                   for name in ("airport.coverage.json", "siting.coverage.json")]
         self.assertEqual(clutter, [None, False])  # there are leaves
         # A hangar is level, and stands on its lowest corner.
         z = found["Hangar 1"][1][:, :, 2]
@@ -352,7 +390,8 @@ class Extracts(unittest.TestCase):
         scene = json.loads(before["airport.lidarscene.json"])
         scene["comment"] = "mine"
         (folder / "airport.lidarscene.json").write_text(json.dumps(scene))
-        mapped = before["airport.geojson"].decode().replace('"height": 12.5, "height_from": "height"', '"height": 17, "height_from": "survey"')
+        mapped = before["airport.geojson"].decode().replace('"height": 12.5, "height_from": "height"',
+                                                            '"height": 17, "height_from": "survey"')
         self.assertNotEqual(mapped.encode(), before["airport.geojson"])
         (folder / "airport.geojson").write_text(mapped)
         (folder / "README.txt").unlink()
@@ -392,9 +431,12 @@ class Extracts(unittest.TestCase):
         folder, _ = made("coast", plan.write("coast.osm"))
         _, found = blocks(folder)
         west, east, south, _ = AirportMap(FOLDER / "coast.osm").rectangle
-        self.assertAlmostEqual(plan_area(found["Water"][1]), (east - west) * (-1000 - south) - 400 * 300, delta=0.004 * (east - west) * 1000)  # a box of degrees
-        shut = siting.read_outlines(folder / "exclusions.geojson", al.load_scene(folder / "airport.lidarscene.json").geodetic_origin)
-        for place, free in (((0, 250), True), ((0, 302), False), ((0, 600), False), ((1100, 0), False), ((-1100, 0), False), ((0, -600), False)):
+        self.assertAlmostEqual(plan_area(found["Water"][1]), (east - west) * (-1000 - south) - 400 * 300,
+                               delta=0.004 * (east - west) * 1000)  # a box of degrees
+        shut = siting.read_outlines(folder / "exclusions.geojson",
+                                    al.load_scene(folder / "airport.lidarscene.json").geodetic_origin)
+        for place, free in (((0, 250), True), ((0, 302), False), ((0, 600), False), ((1100, 0), False),
+                            ((-1100, 0), False), ((0, -600), False)):
             near = [siting.is_near(np.array([place]), outline, 0.0)[0] for outline in shut]
             self.assertEqual(not any(near), free, place)
         lidar = json.loads((folder / "airport.lidarscene.json").read_text())["lidar"]["position"]
@@ -403,20 +445,25 @@ class Extracts(unittest.TestCase):
         open_ = Map()
         open_.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
         open_.way([(-500, -1000), (500, -1000)], natural="coastline")
-        self.assertIn("its coastlines do not part the scene", run("airport", open_.write("open_coast.osm"), "-o", fresh("open_coast"))[1])
+        self.assertIn("its coastlines do not part the scene",
+                      run("airport", open_.write("open_coast.osm"), "-o", fresh("open_coast"))[1])
 
-    def test_heights_that_are_none(self):
+    def test_wrong_heights_and_records_are_named(self):
         plan = Map()
         plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
         plan.area((300, 300), (340, 340), building="yes", height="eleven")
         file = plan.write("none.osm")
         folder, _ = made("none", file)
         mapped = json.loads((folder / "airport.geojson").read_text())
-        row = next(row["properties"] for row in mapped["features"] if row["properties"]["kind"] == "building")
+        row = next(one["properties"] for one in mapped["features"] if one["properties"]["kind"] == "building")
         self.assertEqual(row["height"], 8.0)
         self.assertIn("assumed: height is 'eleven'", (folder / "assumed.csv").read_text())
-        for edit, words in (({"height": 0}, "height is 0, expected metres above 0"), ({"height": True}, "height is True, expected metres"), ({"height": [12]}, r"height is \[12\], expected metres"),
-                            ({"height": None}, "height is None, expected metres"), ({"min_height": True}, "min_height is True, expected metres"), ({"min_height": -1}, "min_height is -1, expected metres"),
+        for edit, words in (({"height": 0}, "height is 0, expected metres above 0"),
+                            ({"height": True}, "height is True, expected metres"),
+                            ({"height": [12]}, r"height is \[12\], expected metres"),
+                            ({"height": None}, "height is None, expected metres"),
+                            ({"min_height": True}, "min_height is True, expected metres"),
+                            ({"min_height": -1}, "min_height is -1, expected metres"),
                             ({"min_height": 9}, "min_height is 9 m, expected less than the height, 8 m")):
             row.update({"height": 8.0, "min_height": 0, **edit})
             (folder / "airport.geojson").write_text(json.dumps(mapped))
@@ -438,11 +485,12 @@ class Extracts(unittest.TestCase):
         plan = crossing()
         file = FOLDER / "long.geojson"
         gdal.VectorTranslate(str(file), str(plan.write("long.osm")), layers=["lines"])
-        text = json.loads(file.read_text(encoding="utf-8"))
-        for properties, shape in (({"aeroway": "aerodrome", "name": 5000 * "N"}, {"type": "Point", "coordinates": [13.3, 53.6]}),
-                                  ({"man_made": "mast", "name": 5000 * "M", "height": "9"}, {"type": "Point", "coordinates": [13.301, 53.603]})):
-            text["features"].append({"type": "Feature", "properties": properties, "geometry": shape})
-        file.write_text(json.dumps(text), encoding="utf-8")
+        text = json.loads(file.read_text("utf-8"))
+        text["features"] += features(
+            ({"aeroway": "aerodrome", "name": 5000 * "N"}, {"type": "Point", "coordinates": [13.3, 53.6]}),
+            ({"man_made": "mast", "name": 5000 * "M", "height": "9"},
+             {"type": "Point", "coordinates": [13.301, 53.603]}))["features"]
+        file.write_text(json.dumps(text))
         folder, said = made("long", file)
         self.assertIn(f"{80 * 'N'}..., 2 runways", said)
         self.assertTrue((folder / "airport.png").exists())
@@ -465,7 +513,8 @@ class Extracts(unittest.TestCase):
             scene, found = blocks(FOLDER / name)
             np.testing.assert_allclose(scene.geodetic_origin[:2], (lat, lon), atol=1e-6)
             self.assertEqual([one for one in found if "/" in one], ["01/19"])
-        self.assertIn("holds none of its runways", run("airport", file, "--bounds", 1, 1, 2, 2, "-o", fresh("bounds"))[1])
+        self.assertIn("holds none of its runways",
+                      run("airport", file, "--bounds", 1, 1, 2, 2, "-o", fresh("bounds"))[1])
 
 
 class Terrains(unittest.TestCase):
@@ -487,7 +536,8 @@ class Terrains(unittest.TestCase):
         self.x, self.heights = self.x[:201], self.heights[:201, :201]
         surface, ground = _ground.terrain(self.heights - 50.0, (-1500.0, -1500.0), 10.0, origin, 0.25)
         x, y = np.meshgrid(self.x, self.x)
-        places = np.column_stack([x.ravel(), y.ravel(), (self.heights - 50.0).ravel() - _ground.curvature(origin, x, y).ravel()])
+        places = np.column_stack([x.ravel(), y.ravel(),
+                                  (self.heights - 50.0).ravel() - _ground.curvature(origin, x, y).ravel()])
         inner = np.abs(places[:, :2] + 500).max(axis=1) < 999
         self.assertLess(np.abs(self.above(surface, places[inner][::37])).max(), 0.25 + 1e-6)
         self.assertLess(surface.GetNumberOfPolys(), len(self.x) ** 2)
@@ -498,7 +548,8 @@ class Terrains(unittest.TestCase):
         rough, above = _ground.terrain(np.random.default_rng(1).normal(0, 1, (20, 30)), (0.0, 0.0), 10.0, origin, 0.01)
         self.assertEqual(rough.GetNumberOfPolys(), 2 * 19 * 29)  # all posts
         # The heights of its triangles, as rays find them.
-        for mesh, at, (low, high) in ((surface, ground, ((-1490, -1490), (490, 490))), (rough, above, ((1, 1), (289, 189)))):
+        for mesh, at, (low, high) in ((surface, ground, ((-1490, -1490), (490, 490))),
+                                      (rough, above, ((1, 1), (289, 189)))):
             places = np.random.default_rng(2).uniform(low, high, (300, 2))
             np.testing.assert_allclose(siting.ground_of(al.Scene(mesh, material="Wall"), places), at(places), atol=1e-6)
 
@@ -514,7 +565,8 @@ class Terrains(unittest.TestCase):
             self.assertAlmostEqual(spacing, 10.0, delta=0.01)
             self.assertAlmostEqual(here, 50.0, delta=0.01)
             self.assertIn("assumed", words)
-            self.assertLess(np.abs(np.diff(posts, axis=1)).max(), 1.5 * 15.0 * spacing / KNOWN["feather"] + 0.2)  # no step of 15 m
+            # no step of 15 m
+            self.assertLess(np.abs(np.diff(posts, axis=1)).max(), 1.5 * 15.0 * spacing / KNOWN["feather"] + 0.2)
             x = -2500.0 + spacing * np.arange(posts.shape[1])
             inner = np.abs(x) < 1200
             np.testing.assert_allclose(posts[50, inner], 50 + 0.01 * x[inner], atol=0.02)
@@ -527,79 +579,6 @@ class Terrains(unittest.TestCase):
                                                        (-1000.0, 1000.0, -1000.0, 1000.0), KNOWN)
         self.assertAlmostEqual(here, 50.0, delta=1.0)  # as the border is
 
-    def test_units_and_holes_that_a_raster_does_not_name(self):
-        """Units of the band and of a compound system, a scale, a vertical datum, values that no ground has without a word of them."""
-        around = (-1000.0, 1000.0, -1000.0, 1000.0)
-        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
-        truth = _ground.read_heights(write_heights("metres.tif", smooth, (-1500, -1500), 10.0), HERE, around, KNOWN)
-        plain = gdal.Open(str(FOLDER / "metres.tif"))
-
-        def changed(values, unit="", kind=gdal.GDT_Float64, system=None, places=None, **settings):
-            """@param settings of the band, @param system a compound one, which GeoTIFF has no word for @param places as rows of a geotransform"""
-            image = gdal.GetDriverByName("MEM").Create("", plain.RasterXSize, plain.RasterYSize, 1, kind)
-            image.SetGeoTransform(places or plain.GetGeoTransform())
-            image.SetProjection(system if places else plain.GetProjection())
-            image.GetRasterBand(1).WriteArray(values[::-1])
-            image.GetRasterBand(1).SetUnitType(unit)
-            for name, value in settings.items():
-                getattr(image.GetRasterBand(1), f"Set{name}")(value)
-            gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "changed.tif"), image)
-            if system is None or places:
-                return _ground.read_heights(FOLDER / "changed.tif", HERE, around, KNOWN)
-            gdal.Translate(str(FOLDER / "changed.vrt"), str(FOLDER / "changed.tif"), outputSRS=system)
-            return _ground.read_heights(FOLDER / "changed.vrt", HERE, around, KNOWN)
-
-        def above_geoid(unit, metres):
-            return (f'COMPD_CS["with heights",{plain.GetProjection()},VERT_CS["EGM96 height",VERT_DATUM["EGM96 geoid",2005],UNIT["{unit}",{metres!r}],AXIS["Up",UP]]]')
-        units = {"ft": 0.3048, "yd": 0.9144, "Foot_US": 1200 / 3937, "decimetres": 0.1, "km": 1000.0}
-        for posts, _, here, words, *_ in (*(changed(smooth / metres, unit) for unit, metres in units.items()),
-                                      changed(np.round(1000 * (smooth - 20)), kind=gdal.GDT_Int32, Scale=0.001, Offset=20.0),
-                                      changed(smooth, system=above_geoid("metre", 1.0)), changed(smooth / 0.9144, system=above_geoid("Indian yard", 0.9144))):
-            np.testing.assert_allclose(posts, truth[0], atol=2e-3, err_msg=words)
-            self.assertAlmostEqual(here, truth[2], delta=1e-3)
-            self.assertIn("40.0 to 60.0 m", words)
-        for value, unit, metres, declared in ((-501.0, "m", 1.0, {}), (9001.0, "", 1.0, {"NoDataValue": -9998.0}),
-                                              (np.nan, "", 1.0, {}), (30000.0, "ft", 0.3048, {})):
-            holed = smooth / metres
-            holed[140:160, 140:160] = value
-            posts, _, here, words, *_ = changed(holed, unit, **declared)
-            self.assertAlmostEqual(here, 50.0, delta=1.0, msg=(value, unit, declared))
-            self.assertTrue(35.0 < posts.min() and posts.max() < 65.0, (value, unit, declared))
-            self.assertIn("have no height in the file", words)
-        for unit, more, said in (("furlong", {}, "'furlong'"), ("", {"kind": gdal.GDT_Byte}, "holds bytes"),
-                                 ("m", {"system": above_geoid("foot", 0.3048)}, "heights in 'm' and its vertical system in 'foot'")):
-            with self.assertRaisesRegex(al.Error, said):
-                changed(smooth, unit, **more)
-        state_plane = osr.SpatialReference()
-        state_plane.ImportFromWkt(plain.GetProjection())
-        state_plane.SetLinearUnitsAndUpdateParameters("US survey foot", 1200 / 3937)
-        with self.assertWarnsRegex(RuntimeWarning, "says no unit of its heights, .* are likely in US survey foot"):
-            posts = changed(smooth, system=state_plane.ExportToWkt(), places=[value * 3937 / 1200 for value in plain.GetGeoTransform()])[0]
-        np.testing.assert_allclose(posts[:200, :200], truth[0][:200, :200], atol=2e-3)
-
-    def test_formats_of_heights(self):
-        """A tile of SRTM, in degrees, and a raster whose holes are in a mask."""
-        around = (-1000.0, 1000.0, -1000.0, 1000.0)
-        image = gdal.GetDriverByName("MEM").Create("", 1201, 1201, 1, gdal.GDT_Int16)
-        image.SetGeoTransform((13 - 1 / 2400, 1 / 1200, 0, 54 + 1 / 2400, 0, -1 / 1200))
-        degrees = osr.SpatialReference()
-        degrees.ImportFromEPSG(4326)
-        image.SetProjection(degrees.ExportToWkt())
-        image.GetRasterBand(1).WriteArray(np.full((1201, 1201), 77, np.int16))
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        tile = FOLDER / "N53E013.hgt"
-        gdal.GetDriverByName("SRTMHGT").CreateCopy(str(tile), image)
-        self.assertAlmostEqual(_ground.read_heights(tile, HERE, around, KNOWN)[2], 77.0, delta=1e-6)
-        smooth = 50 + 0.01 * np.broadcast_to(self.x, self.heights.shape)
-        masked = gdal.Open(str(write_heights("masked.tif", smooth, (-1500, -1500), 10.0)), gdal.GA_Update)
-        masked.GetRasterBand(1).DeleteNoDataValue()
-        masked.CreateMaskBand(gdal.GMF_PER_DATASET)
-        mask = np.full(smooth.shape, 255, np.uint8)
-        mask[140:160, 140:160] = 0
-        masked.GetRasterBand(1).GetMaskBand().WriteArray(mask)
-        del masked
-        self.assertIn("have no height in the file", _ground.read_heights(FOLDER / "masked.tif", HERE, around, KNOWN)[3])
-
 
 class Wrong(unittest.TestCase):
     def test_extracts_that_are_wrong(self):
@@ -610,14 +589,17 @@ class Wrong(unittest.TestCase):
         for one in (across, beside):
             one.way([(-600, 0), (600, 0)], aeroway="runway")
         nothing.way([(0, 0), (0, 0)], aeroway="runway")
-        files = [(across.write("across.osm"), "cross the meridian of 180 degrees"), (beside.write("beside.osm"), "would reach over the meridian of 180"),
-                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"), (FOLDER / "missing.osm", "no such file"), (FOLDER, "is not an extract by its name")]
-        for name, content, said in (("text.gpkg", "no map", "GDAL cannot"),
-                                    *((f"{at}.geojson", '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"aeroway": "runway"}, '
-                                       f'"geometry": {{"type": "LineString", "coordinates": [[{at}, {at}], [{at}, {at + 1}]]}}}}]}}',
-                                       f"{at}.geojson: holds no runway, expected lines or areas with the tag aeroway=runway; left out: coordinates that are not degrees")
-                                      for at in (95, 5940000)),
-                                    ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read")):
+        files = [(across.write("across.osm"), "cross the meridian of 180 degrees"),
+                 (beside.write("beside.osm"), "would reach over the meridian of 180"),
+                 (nothing.write("nothing.osm"), "holds no runway"), (plan.write("none.osm"), "holds no runway"),
+                 (FOLDER / "missing.osm", "no such file"), (FOLDER, "is not an extract by its name")]
+        for name, content, said in (
+                ("text.gpkg", "no map", "GDAL cannot"),
+                *((f"{at}.geojson", json.dumps(features(({"aeroway": "runway"}, {
+                    "type": "LineString", "coordinates": [[at, at], [at, at + 1]]}))),
+                   f"{at}.geojson: holds no runway, expected lines or areas with the tag aeroway=runway; left out: "
+                   "coordinates that are not degrees") for at in (95, 5940000)),
+                ("cut.geojson", '{"type": "FeatureCollection", "features": [', "GDAL cannot read")):
             (FOLDER / name).write_text(content)
             files.append((FOLDER / name, said))
         large = FOLDER / "large.osm"
@@ -626,11 +608,14 @@ class Wrong(unittest.TestCase):
         self.addCleanup(large.unlink)
         files.append((large, "holds 500 MiB, expected at most 256: cut the extract"))
         # Heights beside an extract that is right.
-        gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"), gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32))
+        gdal.GetDriverByName("GTiff").CreateCopy(str(FOLDER / "nowhere.tif"),
+                                                 gdal.GetDriverByName("MEM").Create("", 4, 4, 1, gdal.GDT_Float32))
         far = write_heights("far.tif", np.ones((10, 10)), (90000, 90000), 10.0)
         (FOLDER / "text.tif").write_text("no raster")
-        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"), (far, "holds no heights from -500 to 9,000 m at the airport"),
-                          (FOLDER / "text.tif", "GDAL cannot read it as heights"), (FOLDER / "none.tif", "no such file")):
+        for dem, said in ((FOLDER / "nowhere.tif", "does not say its coordinate reference system"),
+                          (far, "holds no heights from -500 to 9,000 m at the airport"),
+                          (FOLDER / "text.tif", "GDAL cannot read it as heights"),
+                          (FOLDER / "none.tif", "no such file")):
             files.append(((FOLDER / "whole.osm", "--heights", dem), said))
         crossing().write("whole.osm")
         for file, said in files:
@@ -653,10 +638,13 @@ class Wrong(unittest.TestCase):
             if begun:
                 made(airport.Kept(folder), "1")
             write = unittest.mock.Mock(side_effect=[*stop * [None], KeyboardInterrupt])
-            with unittest.mock.patch.object(airport, "write_whole", lambda path, content: write(path) or path.write_bytes(content)), self.assertRaises(KeyboardInterrupt):
+            stopped = unittest.mock.patch.object(airport, "write_whole", lambda path, content: (
+                write(path) or path.write_bytes(content)))
+            with stopped, self.assertRaises(KeyboardInterrupt):
                 made(airport.Kept(folder), "2")
             kept = airport.Kept(folder)
-            self.assertEqual((made(kept, "3"), kept.edited), ({"airport.geojson": "airport.geojson3", "terrain.vtp": "terrain.vtp3"}, []))
+            self.assertEqual((made(kept, "3"), kept.edited),
+                             ({"airport.geojson": "airport.geojson3", "terrain.vtp": "terrain.vtp3"}, []))
 
 
 class StandsOn(unittest.TestCase):
@@ -666,12 +654,12 @@ class StandsOn(unittest.TestCase):
         FOLDER.mkdir(parents=True, exist_ok=True)
         (FOLDER / "plane.obj").write_text("v -50 -50 -5\nv 50 -50 5\nv 50 50 5\nv -50 50 -5\nf 1 2 3\nf 1 3 4\n")
         shapes = [{"type": "Polygon", "coordinates": [[[-10, -10], [10, -10], [10, 10], [-10, 10], [-10, -10]]]},
-                  {"type": "Polygon", "coordinates": [[[90, 90], [95, 90], [95, 95], [90, 90]]]}, {"type": "Point", "coordinates": [20, 0]}]
-        (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-            {"type": "Feature", "properties": {}, "geometry": shape} for shape in shapes]}))
-        return {"version": 1, "objects": [
-            {"name": "Plane", "file": str(FOLDER / "plane.obj"), "material": "Wall"},
-            {"name": "Things", "footprints": str(FOLDER / "shapes.geojson"), "crs": "local", "material": "Wall", "on": "Plane", **more}]}
+                  {"type": "Polygon", "coordinates": [[[90, 90], [95, 90], [95, 95], [90, 90]]]},
+                  {"type": "Point", "coordinates": [20, 0]}]
+        (FOLDER / "shapes.geojson").write_text(json.dumps(features(*(({}, shape) for shape in shapes))))
+        return {"version": 1, "objects": [{"name": "Plane", "file": str(FOLDER / "plane.obj"), "material": "Wall"},
+                                          {"name": "Things", "footprints": str(FOLDER / "shapes.geojson"),
+                                           "crs": "local", "material": "Wall", "on": "Plane", **more}]}
 
     def triangles(self, **more):
         scene = al.Scene(self.scene(**more))
@@ -696,11 +684,10 @@ class StandsOn(unittest.TestCase):
         """Triangles of a footprint on a ground (OBJ)."""
         scene = self.scene(**more)
         (FOLDER / "plane.obj").write_text(ground)
-        (FOLDER / "shapes.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-            {"type": "Feature", "properties": {}, "geometry": shape}]}))
+        (FOLDER / "shapes.geojson").write_text(json.dumps(features(({}, shape))))
         return next(triangles for name, _, triangles in airport_pages.parts_of(al.Scene(scene)) if name == "Things")
 
-    def test_a_closed_body_is_no_terrain(self):
+    def test_a_closed_body_is_not_a_terrain(self):
         corners = [(x, y, z) for z in (0, 10) for y in (-50, 50) for x in (-50, 50)]
         sides = "1 3 4,1 4 2,5 6 8,5 8 7,1 2 6,1 6 5,3 7 8,3 8 4,1 5 7,1 7 3,2 4 8,2 8 6".split(",")
         points = "".join("v %g %g %g\n" % corner for corner in corners)
@@ -714,7 +701,8 @@ class StandsOn(unittest.TestCase):
     def test_errors(self):
         for more, said in (({"on": "Nothing", "height": 1}, "is Nothing, expected the name of a mesh further up"),
                            ({"on": "Things", "height": 1}, "is Things, expected the name of a mesh"),
-                           ({"height": 1, "position": [0, 0, 1]}, "stands beside on"), ({"height": 1, "scale": 2}, "stands beside on")):
+                           ({"height": 1, "position": [0, 0, 1]}, "stands beside on"),
+                           ({"height": 1, "scale": 2}, "stands beside on")):
             with self.assertRaisesRegex(RuntimeError, said):
                 al.Scene(self.scene(**more))
 
@@ -733,4 +721,4 @@ class RealAirports(unittest.TestCase):
         self.assertEqual([round(runways[name].axis()[1]) for name in ("18L/36R", "18R/36L")], [3398, 3292])
         self.assertGreater(plan_area(found["18L/36R"][1]), 57.6 * 3398)
         self.assertNotIn("says no height", words)
-        self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text(encoding="utf-8"))
+        self.assertIn("default of origin tool, not surveyed", (folder / "README.txt").read_text("utf-8"))

@@ -17,7 +17,8 @@ import numpy as np
 
 import avianlidar as al
 from avianlidar._disk import only_run
-from avianlidar.apps import _maps, _inputs, _report
+from avianlidar.apps.coverage import _maps, _report
+from avianlidar.apps.inputs import _read as _inputs
 from osgeo import gdal
 import helpertools
 from exampletools import emptied

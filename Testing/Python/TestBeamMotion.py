@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mast sway and encoder jitter in the filters: beams leave in other directions than the sensor reports. Ranges are those of
-the real directions, echoes lie along the reported ones. How large both are is tested in TestPointingErrors.cxx."""
+"""Mast sway and encoder jitter in the filters: beams leave in other directions than the sensor reports. Ranges are
+those of the real directions, echoes lie along the reported ones. How large both are is tested in
+TestPointingErrors.cxx."""
 import unittest
 
 import numpy as np

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a beam sees: closed forms, movers, and what is refused. Shares of many triangles are TestVisiblePolygons's (kernel)."""
+"""What a beam sees: closed forms, movers, and what is refused. Shares of many triangles are TestVisiblePolygons's
+(kernel)."""
 import math
 import unittest
 
@@ -52,8 +53,8 @@ def rows(view):
     """The table: {object_id: {column: value}}, summed shares by object."""
     table = view.GetOutputDataObject(2)
     names = [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())]
-    return [{name: table.GetValueByName(i, name).ToString() if name in ("object", "material") else table.GetValueByName(i, name).ToDouble()
-             for name in names} for i in range(table.GetNumberOfRows())]
+    return [{name: table.GetValueByName(i, name).ToString() if name in ("object", "material")
+             else table.GetValueByName(i, name).ToDouble() for name in names} for i in range(table.GetNumberOfRows())]
 
 
 def by_object(view, column):
@@ -67,7 +68,8 @@ class ClosedForms(unittest.TestCase):
     def test_two_plates_halve_a_beam(self):
         for profile in (0, 1):
             view = look(north(BeamProfile=profile), both(plate(-40, 0, 100, 3, 0.6), plate(0, 40, 100, 4, 0.2)))
-            for column, first in (("solid_angle_share", 0.5), ("energy_share", 0.75)):  # energy goes with the reflectance
+            # energy goes with the reflectance
+            for column, first in (("solid_angle_share", 0.5), ("energy_share", 0.75)):
                 shares = by_object(view, column)
                 self.assertAlmostEqual(shares[3], first, delta=1e-5)
                 self.assertAlmostEqual(sum(shares.values()), 1.0, delta=1e-12)
@@ -88,13 +90,15 @@ class ClosedForms(unittest.TestCase):
     def test_what_is_seen_lies_in_the_cone_and_has_the_energy_of_the_echo(self):
         source, wall, radius = north(), plate(-40, 40, 100, 3), 100 * math.tan(HALF)
         view = look(source, wall)
-        np.testing.assert_allclose(view.GetOutputDataObject(0).GetBounds(), (-radius, radius, 100, 100, -radius, radius), atol=2e-3 * radius)
+        np.testing.assert_allclose(view.GetOutputDataObject(0).GetBounds(),
+                                   (-radius, radius, 100, 100, -radius, radius), atol=2e-3 * radius)
         cone = view.GetOutputDataObject(1)
         self.assertEqual(cone.GetPoint(0), (0.0, 0.0, 0.0))
         self.assertAlmostEqual(cone.GetBounds()[3], 100.0, delta=0.01)
         echo = scan(wall, source, Noise=False)
         echo.Update()
-        self.assertAlmostEqual(by_object(view, "energy_received")[3] / array(echo.GetOutput(), "return_energy")[0], 1.0, delta=1e-6)
+        self.assertAlmostEqual(by_object(view, "energy_received")[3] / array(echo.GetOutput(), "return_energy")[0], 1.0,
+                               delta=1e-6)
 
     def test_slanted_plate(self):
         slanted = plate(-40, 40, 100, 3)
@@ -102,7 +106,8 @@ class ClosedForms(unittest.TestCase):
             x, _, z = slanted.GetPoint(i)
             slanted.GetPoints().SetPoint(i, x, 100 + x, z)
         view = look(north(), slanted)
-        np.testing.assert_allclose(vtk_to_numpy(view.GetOutputDataObject(0).GetCellData().GetArray("incidence_angle")), 45, atol=0.5)
+        np.testing.assert_allclose(vtk_to_numpy(view.GetOutputDataObject(0).GetCellData().GetArray("incidence_angle")),
+                                   45, atol=0.5)
         near, far = (100 / (math.cos(HALF) + s * math.sin(HALF)) for s in (1, -1))
         self.assertTrue(near < rows(view)[0]["nearest_m"] < 99.8 and 100.2 < rows(view)[0]["farthest_m"] < far)
 
@@ -132,7 +137,8 @@ class Settings(unittest.TestCase):
         for wanted in (False, True):
             view.SetFullModel(wanted)
             view.Update()
-            self.assertEqual([view.GetOutputDataObject(port).GetFieldData().GetArray("full_model").GetValue(0) for port in range(3)], [wanted] * 3)
+            self.assertEqual([view.GetOutputDataObject(port).GetFieldData().GetArray("full_model").GetValue(0)
+                              for port in range(3)], [wanted] * 3)
 
     def test_a_beam_that_is_not_there(self):
         for beam in (1, -1):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Predictions held against labels: counts by hand, thresholds and curves by brute force, tracks lost, files and their errors."""
+"""Predictions held against labels: counts by hand, thresholds and curves by brute force, tracks lost, files and their
+errors."""
 import itertools
 import json
 import math
@@ -14,8 +15,8 @@ import numpy as np
 
 import avianlidar as al
 from avianlidar import _command
-from avianlidar.apps import _bench
-from avianlidar.apps._bench import Points, write_bench
+from avianlidar.apps.sequences import _bench
+from avianlidar.apps.sequences._bench import Points, write_bench
 from helpertools import rows_of
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"
@@ -26,8 +27,9 @@ SCANS = 6
 def points(**columns):
     """Points of one scan, all clutter of the sky that nobody calls a bird, but for what is given."""
     count = len(next(iter(columns.values())))
-    nothing = {"scan": np.zeros(count, int), "bird": np.zeros(count, bool), "other": np.zeros(count, bool), "instance": np.zeros(count, int),
-               "subset": np.zeros(count, np.uint8), "range": np.full(count, 100.0), "called": np.zeros(count, bool), "score": None}
+    nothing = {"scan": np.zeros(count, int), "bird": np.zeros(count, bool), "other": np.zeros(count, bool),
+               "instance": np.zeros(count, int), "subset": np.zeros(count, np.uint8), "range": np.full(count, 100.0),
+               "called": np.zeros(count, bool), "score": None}
     return Points(**{**nothing, **{name: np.array(values) for name, values in columns.items()}})
 
 
@@ -55,9 +57,11 @@ def write_set(home, bird_class=BIRD, sequences=2):
             (kind + (instance << 16)).astype("<u4").tofile(folder / "labels" / f"{name}.label")
             draw.integers(3, size=count).astype(np.uint8).tofile(folder / "subsets" / f"{name}.subset")
             found[f"{number:02d}", name] = kind
-        (folder / "truth.csv").write_text("bird,species\n10000,crow\n10001,crow\n10002,starling\n", encoding="utf-8")
-    scenario = {"scene": "s.lidarscene.json", "sensor": {"preset": "Search905"}, "bird_class": bird_class, "weather": ["rain:2"]}
-    (home / "manifest.json").write_text(json.dumps({"scenario": scenario, "sequences": {f"{k:02d}": {} for k in range(sequences)}}), encoding="utf-8")
+        (folder / "truth.csv").write_text("bird,species\n10000,crow\n10001,crow\n10002,starling\n", "utf-8")
+    scenario = {"scene": "s.lidarscene.json", "sensor": {"preset": "Search905"}, "bird_class": bird_class,
+                "weather": ["rain:2"]}
+    (home / "manifest.json").write_text(
+        json.dumps({"scenario": scenario, "sequences": {f"{k:02d}": {} for k in range(sequences)}}), "utf-8")
     return found
 
 
@@ -77,7 +81,8 @@ class Scores(unittest.TestCase):
         some = points(bird=[1, 1, 1, 0, 0, 0], other=[0, 0, 0, 0, 1, 1], called=[1, 1, 0, 1, 1, 0])
         some = some._replace(**{name: getattr(some, name).astype(bool) for name in ("bird", "other", "called")})
         found = _bench.scores(some, np.ones(6, bool), 2, ())
-        self.assertEqual(found, {"birds": 3.0, "recall": 2 / 3, "precision": 2 / 3, "iou": 2 / 4, "false": 0.5, "others": 0.5})
+        self.assertEqual(found,
+                         {"birds": 3.0, "recall": 2 / 3, "precision": 2 / 3, "iou": 2 / 4, "false": 0.5, "others": 0.5})
 
     def test_scores_without_bounds(self):
         """Points that all have the same infinite score are not told apart; nothing has no score."""
@@ -102,7 +107,8 @@ class Scores(unittest.TestCase):
             least = _bench.threshold(_bench.ranked(score, bird, other), most)
             fit = [value for value in np.unique(score) if np.count_nonzero((score >= value) & ~bird & ~other) <= most]
             # What lets the most birds through: the same birds, whatever stands between two scores.
-            self.assertEqual(np.count_nonzero(bird & (score >= least)), max((np.count_nonzero(bird & (score >= value)) for value in fit), default=0))
+            self.assertEqual(np.count_nonzero(bird & (score >= least)),
+                             max((np.count_nonzero(bird & (score >= value)) for value in fit), default=0))
 
     def test_curve_and_average_precision_by_brute_force(self):
         for seed in range(3):
@@ -114,11 +120,14 @@ class Scores(unittest.TestCase):
             for recall, precision in zip(_bench.RECALLS, _bench.curve(rank)):
                 self.assertAlmostEqual(precision, max(p for r, p in pairs if r >= recall - 1e-9))
             recalls, precisions = np.array([(0.0, 1.0), *pairs]).T
-            self.assertAlmostEqual(_bench.average_precision(rank), np.diff(recalls) @ precisions[1:])  # as scikit-learn defines it
+            # as scikit-learn defines it
+            self.assertAlmostEqual(_bench.average_precision(rank), np.diff(recalls) @ precisions[1:])
 
     def test_tracks_lost(self):
-        """A bird found in every second scan is not lost; one with three missed in a row is; one seen in two scans only is no track."""
-        cases = {1: ((0, 1, 2, 3, 4, 5), (0, 2, 4)), 2: ((0, 1, 2, 3, 4), (0, 1)), 3: ((0, 1), ()), 4: ((0, 1, 3, 4), ()), 5: ((2, 3, 4), ())}
+        """A bird found in every second scan is not lost; one with three missed in a row is; one seen in two scans only
+        is no track."""
+        cases = {1: ((0, 1, 2, 3, 4, 5), (0, 2, 4)), 2: ((0, 1, 2, 3, 4), (0, 1)), 3: ((0, 1), ()),
+                 4: ((0, 1, 3, 4), ()), 5: ((2, 3, 4), ())}
         rows = [(instance, scan, scan in found) for instance, (seen, found) in cases.items() for scan in seen]
         instance, scan, called = map(np.array, zip(*rows))
         some = points(instance=instance, scan=scan, called=called, bird=np.ones(len(scan), bool))
@@ -133,14 +142,17 @@ class Files(unittest.TestCase):
         cls.labels = write_set(cls.home)
         draw = np.random.default_rng(1)
         cls.noisy = {key: draw.normal(kind == BIRD, 0.5) for key, kind in cls.labels.items()}
-        write_predictions(OUTPUT / "right", cls.labels, lambda kind: np.where(kind == BIRD, BIRD, 1), lambda kind: kind == BIRD)
+        write_predictions(OUTPUT / "right", cls.labels, lambda kind: np.where(kind == BIRD, BIRD, 1),
+                          lambda kind: kind == BIRD)
         write_predictions(OUTPUT / "all", cls.labels, lambda kind: np.full(len(kind), BIRD))
         scores = iter(cls.noisy.values())
-        write_predictions(OUTPUT / "noisy", cls.labels, lambda kind: np.full(len(kind), BIRD + (7 << 16)), lambda kind: next(scores))
+        write_predictions(OUTPUT / "noisy", cls.labels, lambda kind: np.full(len(kind), BIRD + (7 << 16)),
+                          lambda kind: next(scores))
 
     def test_right_predictions_have_all(self):
         scored = write_bench([self.home], [OUTPUT / "right"], OUTPUT / "out")[0][0]
-        for score, value in {"recall_at_1": 1, "average_precision": 1, "iou": 1, "recall": 1, "precision": 1, "false": 0, "lost": 0, "others": 0}.items():
+        for score, value in {"recall_at_1": 1, "average_precision": 1, "iou": 1, "recall": 1, "precision": 1,
+                             "false": 0, "lost": 0, "others": 0}.items():
             self.assertEqual(scored.value(("all", ""), score)[:2], (value, 0), score)
 
     def test_groups_hold_all_points(self):
@@ -148,7 +160,8 @@ class Files(unittest.TestCase):
         birds = sum(int((kind == BIRD).sum()) for kind in self.labels.values())
         for by in ("all", "subset", "range", "species"):
             self.assertEqual(sum(scored.points(group) for group in scored.values if group[0] == by), birds, by)
-        shares = [np.mean(np.concatenate([kind[kind != CAR] for (number, _), kind in self.labels.items() if number == one]) == BIRD) for one in ("00", "01")]
+        shares = [np.mean(np.concatenate([kind[kind != CAR] for (number, _), kind in self.labels.items() if number
+                                          == one]) == BIRD) for one in ("00", "01")]
         self.assertAlmostEqual(scored.value(("all", ""), "precision").value, np.mean(shares))
         self.assertAlmostEqual(scored.value(("all", ""), "precision").error, np.std(shares, ddof=1) / np.sqrt(2))
         self.assertAlmostEqual(scored.value(("all", ""), "iou").value, np.mean(shares))
@@ -159,7 +172,8 @@ class Files(unittest.TestCase):
         out = OUTPUT / "page"
         shutil.rmtree(out, ignore_errors=True)
         by_name = [OUTPUT / "noisy", OUTPUT / "right"]
-        self.assertIn(_command.main(["bench", str(self.home), "--predictions", *map(str, by_name), "--first", "2", "-o", str(out)]), (None, 0))
+        self.assertIn(_command.main(["bench", str(self.home), "--predictions", *map(str, by_name), "--first", "2", "-o",
+                                     str(out)]), (None, 0))
         page = (out / "bench.html").read_text()
         self.assertIn("The first 2 scans", page)
         self.assertEqual(page.count("data:image/png"), 1)
@@ -182,7 +196,8 @@ class Files(unittest.TestCase):
         for name, found, bird in (("set", self.labels, BIRD), ("second", labels, 259)):
             write_predictions(OUTPUT / "both" / name, found, lambda kind, bird=bird: np.where(kind == bird, bird, 1))
         by_set = write_bench([self.home, OUTPUT / "second"], [OUTPUT / "both"], OUTPUT / "out", ["00"])
-        self.assertEqual([(len(scored.values["all", ""]), scored.value(("all", ""), "iou").value) for scored, in by_set], [(1, 1), (1, 1)])
+        self.assertEqual([(len(scored.values["all", ""]), scored.value(("all", ""), "iou").value)
+                          for scored, in by_set], [(1, 1), (1, 1)])
         with self.assertRaisesRegex(al.Error, "right: holds no predictions for second"):
             write_bench([OUTPUT / "second", self.home], [OUTPUT / "right"], OUTPUT / "out")
 
@@ -190,7 +205,7 @@ class Files(unittest.TestCase):
         """The disk is full at the picture, after two tables."""
         out = OUTPUT / "full"
         shutil.rmtree(out, ignore_errors=True)
-        with unittest.mock.patch.object(_bench.pictures, "draw", side_effect=OSError(28, "No space left on device")), \
+        with unittest.mock.patch.object(_bench.drawing, "draw", side_effect=OSError(28, "No space left on device")), \
                 self.assertRaises(OSError):
             write_bench([self.home], [OUTPUT / "right"], out)
         self.assertFalse(out.exists())
@@ -207,30 +222,31 @@ class Files(unittest.TestCase):
         damaged = OUTPUT / "damaged" / "set"
         shutil.rmtree(damaged, ignore_errors=True)
         shutil.copytree(self.home, damaged)
-        (damaged / "sequences" / "00" / "done.json").write_text("{}", encoding="utf-8")
+        (damaged / "sequences" / "00" / "done.json").write_text("{}", "utf-8")
         lost = OUTPUT / "lost" / "set"
         shutil.rmtree(lost, ignore_errors=True)
         shutil.copytree(self.home, lost)
         manifest = json.loads((lost / "manifest.json").read_text())
         manifest["sequences"]["00"] = {"sha256": "of a set that `avianlidar sequence` has made"}
-        (lost / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+        (lost / "manifest.json").write_text(json.dumps(manifest), "utf-8")
         for number, (key, value) in enumerate((("bird_class", "x"), ("weather", 5), ("sensor", 5), (None, 5))):
             other = OUTPUT / f"manifest{number}"
             other.mkdir(exist_ok=True)
             manifest = json.loads((self.home / "manifest.json").read_text())
             manifest["scenario"] = {**manifest["scenario"], key: value} if key else value
-            (other / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+            (other / "manifest.json").write_text(json.dumps(manifest), "utf-8")
             with self.subTest(key), self.assertRaisesRegex(al.Error, f"manifest{number}/manifest.json: .*scenario"):
                 write_bench([other], [OUTPUT / "right"], OUTPUT / "out-wrong")
         nan = np.full(len(self.labels["00", "000002"]), np.nan, "<f4").tobytes()
-        for words, spoil, folder, options in (
-                ("its files differ from the sha256", None, damaged, {}), ("00/done.json: cannot be read", None, lost, {}),
-                ("holds no manifest.json", None, OUTPUT / "right", {}),
-                ("has no sequence 07", None, self.home, {"numbers": ["07"]}),
-                ("no scan from number 6 on", None, self.home, {"first": 6}),
-                ("000003.label: is missing", spoilt("000003.label", None), self.home, {}),
-                ("000003.label: has 1 values", spoilt("000003.label", b"abcd"), self.home, {}),
-                ("000002.score: has a score", spoilt("000002.score", nan), self.home, {})):
+        for words, spoil, folder, options in (("its files differ from the sha256", None, damaged, {}),
+                                              ("00/done.json: cannot be read", None, lost, {}),
+                                              ("holds no manifest.json", None, OUTPUT / "right", {}),
+                                              ("has no sequence 07", None, self.home, {"numbers": ["07"]}),
+                                              ("no scan from number 6 on", None, self.home, {"first": 6}),
+                                              ("000003.label: is missing", spoilt("000003.label", None), self.home, {}),
+                                              ("000003.label: has 1 values", spoilt("000003.label", b"abcd"), self.home,
+                                               {}), ("000002.score: has a score", spoilt("000002.score", nan),
+                                                     self.home, {})):
             shutil.rmtree(wrong, ignore_errors=True)
             shutil.copytree(OUTPUT / "right", wrong)
             if spoil:

@@ -24,7 +24,8 @@ class Bird(InFolder):
         surface = bird(Reflectance=0.15, ObjectId=7)
         cells = {name: set(vtk_to_numpy(surface.GetCellData().GetArray(name)))
                  for name in ("kd", "ks", "kp", "object_id", "material_id", "part")}
-        self.assertEqual(cells, {"kd": {0.15}, "ks": {0}, "kp": {1}, "object_id": {7}, "material_id": {4}, "part": {0, 1, 2}})
+        self.assertEqual(cells,
+                         {"kd": {0.15}, "ks": {0}, "kp": {1}, "object_id": {7}, "material_id": {4}, "part": {0, 1, 2}})
         self.assertEqual(surface.GetFieldData().GetAbstractArray("object_names").GetValue(0), "herring gull")
 
     def test_flaps_glides_and_turns(self):
@@ -41,17 +42,18 @@ class Bird(InFolder):
 
     def test_species_of_ones_own(self):
         rows = HEADER + "swift,0.04,0.17,0.42,0.016,no,10\n"
-        (self.folder / "own.csv").write_text(rows, encoding="utf-8")
+        (self.folder / "own.csv").write_text(rows, "utf-8")
         body = points(bird(Species="swift", SpeciesFileName="own.csv"), "Body")
         self.assertAlmostEqual(np.ptp(body[:, 1]) / (0.65 * 0.17), 1, delta=0.1)
         self.assertGreater(bird(Species="crow", SpeciesFileName="own.csv").GetNumberOfCells(), 0)
-        (self.folder / "own.csv").write_text(rows + "swift,heavy,0.17,0.42,0.016,no,10\n", encoding="utf-8")
+        (self.folder / "own.csv").write_text(rows + "swift,heavy,0.17,0.42,0.016,no,10\n", "utf-8")
         with self.assertRaisesRegex(Error, r"own\.csv: line 3: mass is 'heavy'"):
             bird(Species="swift", SpeciesFileName="own.csv")
 
     def test_bad_values_name_the_property(self):
-        for name, value in (("Species", "dodo"), ("SpeciesFileName", "/nowhere.csv"), ("WingPhase", float("nan")), ("Heading", float("inf")),
-                            ("Bank", float("nan")), ("Position", (0.0, float("nan"), 0.0)), ("Reflectance", 1.5), ("ObjectId", -2)):
+        for name, value in (("Species", "dodo"), ("SpeciesFileName", "/nowhere.csv"), ("WingPhase", float("nan")),
+                            ("Heading", float("inf")), ("Bank", float("nan")), ("Position", (0.0, float("nan"), 0.0)),
+                            ("Reflectance", 1.5), ("ObjectId", -2)):
             with self.subTest(name), self.assertRaisesRegex(Error, name + ".* is |cannot be read"):
                 bird(**{name: value})
 

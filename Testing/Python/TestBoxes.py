@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Boxes about what moves: size, place and heading in closed form, what hides and what cuts them, and points of a sequence that lie in them."""
+"""Boxes about what moves: size, place and heading in closed form, what hides and what cuts them, and points of a
+sequence that lie in them."""
 import pathlib
 import tempfile
 import unittest
@@ -11,8 +12,8 @@ from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 import avianlidar as al
 from avianlidar._cloud import add_array as _set
-from avianlidar.apps._boxes import Boxes, _rotation
-from avianlidar.apps._sequence import Sequence
+from avianlidar.apps.sequences._boxes import Boxes, _rotation
+from avianlidar.apps.sequences._sequence import Sequence
 from echotools import group
 from helpertools import box
 from TestSequence import scenario_file
@@ -36,7 +37,8 @@ def tree_of(*surfaces):
 
 
 def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **settings):
-    """The words of the line of a mover of so much (x right, y forward, z up) in the middle of its frame. @param settings of the sensor"""
+    """The words of the line of a mover of so much (x right, y forward, z up) in the middle of its frame. @param
+    settings of the sensor"""
     low = -np.array(size) / 2
     thing = al.mover(al.mesh(*box(low, -low)), [place, place], [0, 10], [turned(heading)] * 2)
     _set(thing.GetCellData(), "object_id", np.full(thing.GetNumberOfCells(), 1007, np.int32))
@@ -44,8 +46,8 @@ def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **setting
     report = al.mesh([place], np.empty((0, 3), int))
     for name, value in (("object_id", np.int32(1007)), ("timestamp", 2e6), ("number_of_echoes", np.int32(points))):
         _set(report.GetPointData(), name, np.array([value]))
-    sensor = al.Sensor(**{"channel_elevations": list(np.linspace(*ELEVATIONS, 5)), "number_of_channels": 5, "half_beamwidth": 0.001,
-                          "range_gate": 500.0, **settings})
+    sensor = al.Sensor(**{"channel_elevations": list(np.linspace(*ELEVATIONS, 5)), "number_of_channels": 5,
+                          "half_beamwidth": 0.001, "range_gate": 500.0, **settings})
     boxes = Boxes(tree_of(*surfaces) if surfaces else al.vtkAvianLidar.vtkAvianLidarCollisionTree(), sensor, POSE)
     return boxes.lines(al.Cloud(report), group(thing)).split()
 
@@ -68,7 +70,8 @@ class TestBoxes(unittest.TestCase):
             wanted = [[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
             for sign in (1, -1):
                 quaternions = np.array([turned(20), sign * np.array(turned(80))])
-                self.assertLess(np.abs(_rotation(np.array([4.0, 6.0]), quaternions, 4 + 2 * share) - wanted).max(), 1e-12)
+                self.assertLess(np.abs(_rotation(np.array([4.0, 6.0]), quaternions, 4 + 2 * share) - wanted).max(),
+                                1e-12)
 
     def test_what_is_hidden(self):
         """A plate across the view, of which a wall covers the left half, all, or nothing."""
@@ -82,14 +85,16 @@ class TestBoxes(unittest.TestCase):
         surfaces = random.normal(size=(300, 3, 3)) + random.uniform(-10, 10, (300, 1, 3))
         tree, place = tree_of(surfaces.reshape(-1, 3), np.arange(900).reshape(-1, 3)), (0.5, -0.2, 0.1)
         points = np.concatenate([random.uniform(-12, 12, (2000, 3)), [place, (np.nan, 0, 0), (np.inf, 0, 0)]])
-        locator, hit, hidden = vtkStaticCellLocator(), (reference(0.0), [0.0] * 3, [0.0] * 3, reference(0)), vtkUnsignedCharArray()
+        locator, hit = vtkStaticCellLocator(), (reference(0.0), [0.0] * 3, [0.0] * 3, reference(0))
+        hidden = vtkUnsignedCharArray()
         locator.SetDataSet(tree.GetOutput())
         locator.BuildLocator()
         tree.FindHiddenPoints(place, numpy_to_vtk(points), hidden)
         expected = [bool(locator.IntersectWithLine(place, point, 0.0, *hit)) for point in points[:2000]]
         self.assertTrue(300 < sum(expected) < 1700)
         np.testing.assert_array_equal(vtk_to_numpy(hidden), [*expected, 0, 0, 0])
-        self.assertEqual(al.vtkAvianLidar.vtkAvianLidarCollisionTree().FindHiddenPoints(place, numpy_to_vtk(points), hidden), None)
+        self.assertEqual(
+            al.vtkAvianLidar.vtkAvianLidarCollisionTree().FindHiddenPoints(place, numpy_to_vtk(points), hidden), None)
         self.assertFalse(vtk_to_numpy(hidden).any())  # without a tree
         said = []
         tree.AddObserver("ErrorEvent", lambda *_: said.append(1))
@@ -130,8 +135,10 @@ class TestBoxes(unittest.TestCase):
                         self.assertEqual((length, width, height), (4, 2, 2))
                     ahead = ours[:, :2] @ [np.cos(yaw), np.sin(yaw)]
                     aside = ours[:, :2] @ [-np.sin(yaw), np.cos(yaw)]
-                    # Beams are metres wide there, and ranges have noise. Those that met it in the revolution before are far.
-                    far = np.max(np.abs([ahead, aside, ours[:, 2]]) - np.array([[length], [width], [height]]) / 2, axis=0, initial=-1)
+                    # Beams are metres wide there, and ranges have noise. Those that met it in the revolution before are
+                    # far.
+                    far = np.max(np.abs([ahead, aside, ours[:, 2]]) - np.array([[length], [width], [height]]) / 2,
+                                 axis=0, initial=-1)
                     seen, near = seen + len(ours), near + np.count_nonzero(far < 4)
             self.assertGreater(seen, 10)
             self.assertGreater(near, 0.9 * seen)

@@ -70,7 +70,8 @@ class BruteForce(unittest.TestCase):
         for port, expected in ((0, forth), (1, back)):
             array = comparison.GetOutputDataObject(port).GetPointData().GetArray("nearest_distance")
             np.testing.assert_allclose(vtk_to_numpy(array), expected, rtol=1e-15, atol=0)
-        expected = [max(forth.max(), back.max()), forth.max(), back.max(), math.sqrt((forth ** 2).mean()), math.sqrt((back ** 2).mean())]
+        expected = [max(forth.max(), back.max()), forth.max(), back.max(), math.sqrt((forth ** 2).mean()),
+                    math.sqrt((back ** 2).mean())]
         self.check_fields(comparison, FIELDS, expected, "m")
         forth, back = density_aware(a, b, 1.0), density_aware(b, a, 1.0)
         self.check_fields(comparison, CHAMFER, ((forth + back) / 2, forth, back), "1")
@@ -84,16 +85,19 @@ class BruteForce(unittest.TestCase):
                 self.assertEqual(array.GetInformation().Get(array.UNITS_LABEL()), unit)
 
     def test_clouds_of_every_shape(self):
-        """Sizes of one and more, far apart, flat, straight, in one place, in clusters, far from the origin, and in single precision."""
+        """Sizes of one and more, far apart, flat, straight, in one place, in clusters, far from the origin, and in
+        single precision."""
         draw = np.random.default_rng(1920)
         plane = draw.uniform(size=(200, 3)) * (10.0, 10.0, 0.0)
         line, heap = plane * (1.0, 0.0, 0.0), np.ones((20, 3))
-        clusters = np.vstack([draw.normal(scale=0.01, size=(60, 3)) + c for c in ((0, 0, 0), (1000, 0, 0), (0, 1000, 50), (-3000, 2, 1))])
+        clusters = np.vstack([draw.normal(scale=0.01, size=(60, 3)) + c
+                              for c in ((0, 0, 0), (1000, 0, 0), (0, 1000, 50), (-3000, 2, 1))])
         utm = np.array((338036.3, 3453012.2, 3.0))
         for a, b in (*((draw.normal(size=(n, 3)), draw.normal(size=(m, 3))) for n, m in ((1, 1), (1, 50), (300, 200))),
                      *((a, b) for a in (plane, line, heap) for b in (plane[::-1], line, heap)),
                      (line, line + (5e3, -2e3, 40.0)), (clusters, draw.uniform(-3000.0, 3000.0, (200, 3))),
-                     (plane + utm, draw.uniform(size=(200, 3)) * 50 + utm), (plane.astype(np.float32), draw.uniform(size=(90, 3)))):
+                     (plane + utm, draw.uniform(size=(200, 3)) * 50 + utm),
+                     (plane.astype(np.float32), draw.uniform(size=(90, 3)))):
             self.check(a, b)
 
     def test_type_of_points_is_kept(self):
@@ -110,8 +114,8 @@ class ClosedForms(unittest.TestCase):
             forth, back = (3.0, math.sqrt((9 + 16 + 144) / 3))[::-1 if turned else 1]
             self.assertAlmostEqual(comparison.GetRMSESimulatedToReference(), forth, places=14)
             self.assertAlmostEqual(comparison.GetRMSEReferenceToSimulated(), back, places=14)
-            self.assertEqual([comparison.GetHausdorffSimulatedToReference(), comparison.GetHausdorffReferenceToSimulated()],
-                             [3.0, 12.0][::-1 if turned else 1])
+            self.assertEqual([comparison.GetHausdorffSimulatedToReference(),
+                              comparison.GetHausdorffReferenceToSimulated()], [3.0, 12.0][::-1 if turned else 1])
             self.assertEqual(comparison.GetHausdorffDistance(), 12.0)
 
 

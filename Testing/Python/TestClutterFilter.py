@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The clutter filter on scans made by hand: time, tables, bad input. Persistence in closed form, neighbours by brute force, order and
-memory of the map are TestClutterMap's (kernel), NaN in each property TestBadInput's."""
+"""The clutter filter on scans made by hand: time, tables, bad input. Persistence in closed form, neighbours by brute
+force, order and memory of the map are TestClutterMap's (kernel), NaN in each property TestBadInput's."""
 
 import unittest
 
@@ -17,7 +17,8 @@ WINDOW = 20.0
 
 def place(azimuth, elevation, distance):
     """Points at azimuths (degrees clockwise from y), elevations and ranges."""
-    a, e, r = (np.asarray(values, float) for values in np.broadcast_arrays(np.radians(azimuth), np.radians(elevation), distance))
+    a, e, r = (np.asarray(values, float)
+               for values in np.broadcast_arrays(np.radians(azimuth), np.radians(elevation), distance))
     return np.stack([r * np.cos(e) * np.sin(a), r * np.cos(e) * np.cos(a), r * np.sin(e)], axis=-1).reshape(-1, 3)
 
 
@@ -100,9 +101,9 @@ class Persistence(unittest.TestCase):
         stream = Stream(WarmUp=7, SensorPosition=(1, 2, 3))
         stream.give(cloud(HERE + (1, 2, 3), time=0, kind=vtkUnstructuredGrid))
         self.assertTrue(stream.filter.GetOutputDataObject(0).IsA("vtkUnstructuredGrid"))
-        expected = {"clutter_window": 20, "clutter_threshold": 0.05, "clutter_range_step": 1.5, "clutter_azimuth_step": 0.375,
-                    "clutter_elevation_step": 0.375, "clutter_range_tolerance": 1, "clutter_angular_tolerance": 1,
-                    "clutter_warm_up": 7, "clutter_learning": 1, "learned_scans": 1}
+        expected = {"clutter_window": 20, "clutter_threshold": 0.05, "clutter_range_step": 1.5,
+                    "clutter_azimuth_step": 0.375, "clutter_elevation_step": 0.375, "clutter_range_tolerance": 1,
+                    "clutter_angular_tolerance": 1, "clutter_warm_up": 7, "clutter_learning": 1, "learned_scans": 1}
         for port in (0, 1):
             fields = stream.filter.GetOutputDataObject(port).GetFieldData()
             self.assertEqual({name: fields.GetArray(name).GetTuple1(0) for name in expected}, expected)
@@ -161,9 +162,10 @@ class Time(unittest.TestCase):
         self.assertEqual(stream.learned(), 4)
 
     def test_what_empties_the_memory(self):
-        for name, value, left in (("RangeStep", 1.0, 1), ("AzimuthStep", 0.2, 1), ("ElevationStep", 0.2, 1), ("Window", 30.0, 1),
-                                  ("SensorPosition", (1, 0, 0), 1), ("Forget", None, 1), ("ClutterThreshold", 0.5, 3),
-                                  ("RangeTolerance", 3, 3), ("AngularTolerance", 0, 3), ("WarmUp", 9, 3)):
+        for name, value, left in (("RangeStep", 1.0, 1), ("AzimuthStep", 0.2, 1), ("ElevationStep", 0.2, 1),
+                                  ("Window", 30.0, 1), ("SensorPosition", (1, 0, 0), 1), ("Forget", None, 1),
+                                  ("ClutterThreshold", 0.5, 3), ("RangeTolerance", 3, 3), ("AngularTolerance", 0, 3),
+                                  ("WarmUp", 9, 3)):
             stream = Stream().stand_still(3)
             stream.filter.Forget() if name == "Forget" else getattr(stream.filter, "Set" + name)(value)
             stream.filter.Update()
@@ -174,7 +176,8 @@ class Time(unittest.TestCase):
         for k in range(2):
             found, _ = stream.give(cloud(place(30, 2, 20) + (1, 2, 3), time=k, position=(1, 2, 3)))
         self.assertEqual(stream.field("position"), (1, 2, 3))  # that of the data wins
-        np.testing.assert_allclose(stream.filter.GetOutputDataObject(1).GetPoint(0), (place(30.0, 1.875, 20.25) + (1, 2, 3))[0])
+        np.testing.assert_allclose(stream.filter.GetOutputDataObject(1).GetPoint(0),
+                                   (place(30.0, 1.875, 20.25) + (1, 2, 3))[0])
 
     def test_scans_of_a_sensor(self):
         """Echoes bring position and time; the steps of a revolution are one scan."""
@@ -229,13 +232,15 @@ class Table(unittest.TestCase):
         def point(name, number, value):
             return lambda data: data.GetPointData().GetArray(name).SetComponent(number, 0, value)
 
-        for change, words in (
-                (without("clutter_cell"), "'clutter_cell' are missing"), (without("learned_scans"), "'learned_scans'"),
-                (field("clutter_azimuth_step", 0.2), "clutter_azimuth_step is 0.2"), (field("learned_scans", -1), "'learned_scans'"),
-                (point("clutter_cell", 4, 960), "point 4: 'clutter_cell'"),
-                (point("clutter_probability", 5, 1.5), "point 5: .* is 1.5")):
+        for change, words in ((without("clutter_cell"), "'clutter_cell' are missing"),
+                              (without("learned_scans"), "'learned_scans'"),
+                              (field("clutter_azimuth_step", 0.2), "clutter_azimuth_step is 0.2"),
+                              (field("learned_scans", -1), "'learned_scans'"),
+                              (point("clutter_cell", 4, 960), "point 4: 'clutter_cell'"),
+                              (point("clutter_probability", 5, 1.5), "point 5: .* is 1.5")):
             with self.subTest(words):
-                self.assertRegex(Stream(table=spoilt(change)).error(cloud(HERE, time=0)), r"input port 1 \(table\).*" + words)
+                self.assertRegex(Stream(table=spoilt(change)).error(cloud(HERE, time=0)),
+                                 r"input port 1 \(table\).*" + words)
 
     def test_the_table_alone(self):
         first, rng = self.learn()

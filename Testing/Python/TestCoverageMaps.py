@@ -13,7 +13,7 @@ import exampletools
 import helpertools
 from avianlidar import siting
 from avianlidar._command import main
-from avianlidar.apps._maps import coordinate_system
+from avianlidar.apps.places._gdal import coordinate_system
 from osgeo import osr
 from reporttools import airport, written
 
@@ -29,7 +29,8 @@ class Maps(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = exampletools.folder("TestCoverageMaps")
         plan = airport(heights=[30], extent=[-400, 600, -300, 500], spacing=50, places=100)
-        assert main(["coverage", str(written("small", plan)), "-o", cls.folder, "--sensor-set", "azimuth_range=0,180", "--coverage-set", "species=crow"]) == 0
+        assert main(["coverage", str(written("small", plan)), "-o", cls.folder, "--sensor-set", "azimuth_range=0,180",
+                     "--coverage-set", "species=crow"]) == 0
         sensor = al.Sensor("Search905", position=(0, 0, 3), azimuth_range=(0.0, 180.0))
         cls.cover = al.Coverage(plan["scene"], sensor, species="crow", visibility=23000.0,
                                 bounds=(-400, 600, -300, 500, 30, 30), spacing=(50, 50, 1))
@@ -38,15 +39,19 @@ class Maps(unittest.TestCase):
         info = json.loads(run("gdalinfo", "-json", os.path.join(self.folder, "detection_probability_30m.tif")))
         self.assertEqual(info["size"], [21, 17])
         self.assertEqual(info["geoTransform"], [-425.0, 50.0, 0.0, 525.0, 0.0, -50.0])
-        self.assertEqual((info["bands"][0]["type"], info["bands"][0]["description"]), ("Float32", "detection_probability at 30 m"))
+        self.assertEqual((info["bands"][0]["type"], info["bands"][0]["description"]),
+                         ("Float32", "detection_probability at 30 m"))
         self.assertIn("assumed", info["metadata"][""]["target"])
-        for corner, place in ((1, (-425.0, -325.0)), (3, (625.0, 525.0))):  # to a tenth of a metre, by the coordinates that scenes have
+        # to a tenth of a metre, by the coordinates that scenes have
+        for corner, place in ((1, (-425.0, -325.0)), (3, (625.0, 525.0))):
             longitude, latitude = info["wgs84Extent"]["coordinates"][0][corner][:2]
             np.testing.assert_allclose(siting.to_enu([(longitude, latitude)], ORIGIN)[0], place, atol=0.1)
 
     def test_maps_hold_what_coverage_says(self):
-        for name in ("detection_probability", "track_probability", "photoelectrons", "minimum_effective_area", "status"):
-            text = run("gdal_translate", "-q", "-of", "XYZ", os.path.join(self.folder, f"{name}_30m.tif"), "/vsistdout/")
+        for name in ("detection_probability", "track_probability", "photoelectrons", "minimum_effective_area",
+                     "status"):
+            text = run("gdal_translate", "-q", "-of", "XYZ", os.path.join(self.folder, f"{name}_30m.tif"),
+                       "/vsistdout/")
             rows = np.array([[float(value) for value in line.split()] for line in text.splitlines()])
             x, y = np.meshgrid(np.arange(-400, 601, 50), np.arange(500, -301, -50))
             np.testing.assert_array_equal(rows[:, :2], np.column_stack([x.ravel(), y.ravel()]))
@@ -56,8 +61,9 @@ class Maps(unittest.TestCase):
         names = run("gdalinfo", "-stats", os.path.join(self.folder, "status_30m.tif"))
         for number, word in enumerate(self.cover.status_names):
             self.assertIn(f"{number}: {word}", names)
-        said = json.loads(run("gdalinfo", "-json", "-stats", os.path.join(self.folder, "minimum_effective_area_30m.tif")))["bands"][0]
-        self.assertTrue(np.isfinite(said["maximum"]) and np.isfinite(said["mean"]))  # what is no number is marked
+        said = json.loads(run("gdalinfo", "-json", "-stats",
+                              os.path.join(self.folder, "minimum_effective_area_30m.tif")))["bands"][0]
+        self.assertTrue(np.isfinite(said["maximum"]) and np.isfinite(said["mean"]))  # missing values are marked
         self.assertGreater(al.load_cloud(os.path.join(self.folder, "clutter.vtp")).number_of_points, 100)
 
     def test_the_birds_of_a_mix_are_named(self):

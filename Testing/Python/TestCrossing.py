@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Birds that cross a strip or an approach: the share that is detected at least twice, against birds that are flown through the
-echo filter, scan after scan, and against the binomial law; where the birds fly."""
+"""Birds that cross a strip or an approach: the share that is detected at least twice, against birds that are flown
+through the echo filter, scan after scan, and against the binomial law; where the birds fly."""
 import itertools
 import math
 import unittest
@@ -14,18 +14,19 @@ import avianlidar as al
 import exampletools  # noqa: F401  (finds the studies)
 import flown
 from avianlidar import Coverage
-from avianlidar.apps import _crossing
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._plan import Plan
+from avianlidar.apps.coverage import _crossing
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.inputs._read import read_plan
 from reporttools import plan, written
 
 SPEED = 12.5  # airspeed of a herring gull in Filters/Birds/species.csv, m/s
 
 
 def wanted(**changes):
-    return Plan(read_plan(written("crossing", plan(**{
-        "siting": None, "sensor": {"preset": "Search905", "position": [-60, 2900, 10]}, "regions": {"approaches": {"18L": 1}},
-        "heights": [15, 40], "places": 200, "coverage": {"visibility": 10e3, "clutter": False}, **changes}))))
+    return Plan(read_plan(written("crossing", plan(
+                                      **{"siting": None, "sensor": {"preset": "Search905", "position": [-60, 2900, 10]},
+                                         "regions": {"approaches": {"18L": 1}}, "heights": [15, 40], "places": 200,
+                                         "coverage": {"visibility": 10e3, "clutter": False}, **changes}))))
 
 
 class Crossings(unittest.TestCase):
@@ -36,15 +37,18 @@ class Crossings(unittest.TestCase):
         p = np.random.default_rng(1).uniform(size=(4, 6))
         ways = np.array(list(itertools.product((0, 1), repeat=6)))
         each = np.prod(np.where(ways[None] == 1, p[:, None], 1.0 - p[:, None]), axis=2)
-        np.testing.assert_allclose(_crossing.detected_at_least(2, p), each[:, ways.sum(axis=1) >= 2].sum(axis=1), atol=1e-12)
+        np.testing.assert_allclose(_crossing.detected_at_least(2, p), each[:, ways.sum(axis=1) >= 2].sum(axis=1),
+                                   atol=1e-12)
 
     def test_speeds_are_those_of_the_species(self):
         for species, speed in (("herring gull", SPEED), ("kestrel", 10.0), ("Canada goose", 16.5)):
             self.assertEqual(_crossing.speed_of(species), speed)
 
     def test_birds_cross_at_right_angles(self):
-        """From one side of the region to the other, at the height and the distance of a drawn place, a step in each scan."""
-        asked = wanted(regions={"strips": 1, "approaches": {"18L": 1}}, sensor={"preset": "Search905", "rotation_rate": 0.4})
+        """From one side of the region to the other, at the height and the distance of a drawn place, a step in each
+        scan."""
+        asked = wanted(regions={"strips": 1, "approaches": {"18L": 1}},
+                       sensor={"preset": "Search905", "rotation_rate": 0.4})
         chosen, positions, headings = _crossing.flights(asked, SPEED, np.random.default_rng(2))
         region_of = {number: name for name, members in asked.ends.items() for number in members}
         self.assertEqual(len(chosen), 200)
@@ -70,9 +74,11 @@ class Crossings(unittest.TestCase):
         self.assertAlmostEqual(found.scans, 0.4 * np.mean(spans), delta=0.1)
 
     def test_headings_to_both_sides_of_the_line_of_sight_are_alike(self):
-        """A bird is symmetric. Silhouettes are drawn at this elevation, 0. Headings of gliding birds are sampled symmetrically. Flapping
-        birds have a small error of interpolation, because the mirror image of a phase's headings is that of another phase."""
-        cover = Coverage(al.Scene(), al.Sensor("Search905"), species="herring gull", visibility=23e3, clutter=False, pose_probabilities=True)
+        """A bird is symmetric. Silhouettes are drawn at this elevation, 0. Headings of gliding birds are sampled
+        symmetrically. Flapping birds have a small error of interpolation, because the mirror image of a phase's
+        headings is that of another phase."""
+        cover = Coverage(al.Scene(), al.Sensor("Search905"), species="herring gull", visibility=23e3, clutter=False,
+                         pose_probabilities=True)
         aside = np.radians(np.arange(5.0, 180.0, 10.0))
         for gliding, error in ((True, 1e-6), (False, 0.006)):
             cover.gliding = gliding
@@ -92,9 +98,10 @@ class Crossings(unittest.TestCase):
             every = _crossing._seen(cover, places, ways)
             computed = []
             seen = _crossing._seen
-            with unittest.mock.patch.object(_crossing, "PROBED", 100), \
-                    unittest.mock.patch.object(_crossing, "_seen", lambda cover, places, ways: computed.append(len(places)) or seen(cover, places, ways)):
-                np.testing.assert_array_equal(_crossing._seen_near(cover, places, ways), np.where(every > 1e-5, every, _crossing._seen_near(cover, places, ways)))
+            with unittest.mock.patch.multiple(_crossing, PROBED=100, _seen=lambda cover, places, ways: (
+                    computed.append(len(places)) or seen(cover, places, ways))):
+                np.testing.assert_array_equal(_crossing._seen_near(cover, places, ways),
+                                              np.where(every > 1e-5, every, _crossing._seen_near(cover, places, ways)))
             self.assertGreater(every.max(), 0.01)
             self.assertLess(sum(computed) / 2 / len(places), most)
 
@@ -102,9 +109,10 @@ class Crossings(unittest.TestCase):
         asked = wanted(places=10)
         names = ("places", "species", "all_species", "pose_probabilities")
         before = [getattr(asked.regions, name) for name in names]
-        for work in (_crossing.crossing, lambda plan: plan.in_airs([{"visibility": 5e3}]), lambda plan: plan.mixed(plan.regions)):
-            with unittest.mock.patch.object(Coverage, "data", new_callable=unittest.mock.PropertyMock, side_effect=KeyboardInterrupt), \
-                    unittest.mock.patch.object(Coverage, "table", new_callable=unittest.mock.PropertyMock, side_effect=KeyboardInterrupt), \
+        for work in (_crossing.crossing, lambda plan: plan.in_airs([{"visibility": 5e3}]),
+                     lambda plan: plan.mixed(plan.regions)):
+            stopped = unittest.mock.PropertyMock(side_effect=KeyboardInterrupt)
+            with unittest.mock.patch.multiple(Coverage, data=stopped, table=stopped), \
                     self.assertRaises(KeyboardInterrupt):
                 work(asked)
             self.assertEqual([getattr(asked.regions, name) for name in names], before)
@@ -118,17 +126,20 @@ class Crossings(unittest.TestCase):
         _, positions, headings = _crossing.flights(asked, SPEED, np.random.default_rng(asked.seed))
         places, counts = np.concatenate(positions), np.array([len(of) for of in positions])
         of_bird, ways = np.repeat(np.arange(len(positions)), counts), np.repeat(headings, counts)
-        near = np.linalg.norm(places - asked.sensor.position, axis=1) < 900.0  # a tenth of the gulls are detected to 700 m
+        # a tenth of the gulls are detected to 700 m
+        near = np.linalg.norm(places - asked.sensor.position, axis=1) < 900.0
         air = float(asked.regions.data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0))
         times = 3
         twice = []
         for seed in range(times):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # about beams without echoes
-                seen, _ = flown.fly(asked.scene, asked.sensor, places[near], 1, "herring gull", air, 1000, seed, ways[near])
+                seen, _ = flown.fly(asked.scene, asked.sensor, places[near], 1, "herring gull", air, 1000, seed,
+                                    ways[near])
             twice.append(np.bincount(of_bird[near], seen, len(positions)) >= 2)
         share = np.mean(twice)
-        self.assertAlmostEqual(share, found.share, delta=3.0 * math.sqrt(found.share * (1.0 - found.share) / (times * len(positions))))
+        self.assertAlmostEqual(share, found.share,
+                               delta=3.0 * math.sqrt(found.share * (1.0 - found.share) / (times * len(positions))))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ NOT_OURS = {"table.md", "tables.md", "example.py", "X.h", "X.cxx", "TestX.cxx", 
 
 
 def anchors(text):
-    """Of the headings of a page, as web pages of repositories make them."""
+    """Anchors of the headings of a page, as web pages of repositories make them."""
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
             for heading in re.findall(r"^#+ (.*)$", text, re.M)}
 
@@ -31,7 +31,7 @@ def anchors(text):
 class Documentation(unittest.TestCase):
     def test_links_lead_somewhere(self):
         for page in PAGES:
-            text = page.read_text(encoding="utf-8")
+            text = page.read_text("utf-8")
             for link in re.findall(r"\]\(([^)]+)\)", text):
                 if "://" in link:
                     continue
@@ -40,18 +40,18 @@ class Documentation(unittest.TestCase):
                     target = page.parent / name if name else page
                     self.assertTrue(target.is_file(), "a link leads to a file, not to a folder")
                     if anchor:
-                        self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
+                        self.assertIn(anchor, anchors(target.read_text("utf-8")))
 
     def test_index_names_every_page(self):
         folder = SOURCE / "Documentation"
-        index = (folder / "README.md").read_text(encoding="utf-8")
+        index = (folder / "README.md").read_text("utf-8")
         for page in folder.rglob("*.md"):
             self.assertTrue(page == folder / "README.md" or f"({page.relative_to(folder)}" in index, page.name)
 
     def test_named_files_exist(self):
         found = 0
         for page in PAGES:
-            text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+            text = re.sub(r"```.*?```", "", page.read_text("utf-8"), flags=re.S)
             for name in re.findall(r"`(?:[^`\n]*[/ ])?(\w[\w.\-]*\.(?:h|cxx|py|sh|md|cmake))`", text):
                 if name not in NOT_OURS:
                     found += 1
@@ -70,7 +70,7 @@ class Presets(unittest.TestCase):
     def setUpClass(cls):
         head, *rows = page_tables.rows("presets")
         cls.cells = {row[0]: dict(zip((name.strip("`") for name in head[1:]), row[1:])) for row in rows}
-        cls.text = {file: " ".join((SOURCE / file).read_text(encoding="utf-8").replace("///", " ").replace("%%", "%").split())
+        cls.text = {file: " ".join((SOURCE / file).read_text("utf-8").replace("///", " ").replace("%%", "%").split())
                     for file in ("Filters/vtkAvianLidarScanFilter.h", "Plugin/Filters/AvianLidarEchoFilter.xml",
                                  "Python/avianlidar/_command.py", "Documentation/guide/accuracy.md")}
 
@@ -91,21 +91,22 @@ class Presets(unittest.TestCase):
             outdoors = [[float(part.split()[0].lstrip("≤")) for part in cells[preset].split(", ")]
                         for place, cells in self.cells.items() if not place.startswith("corridor")]
             for span, part in ((spans[0], 0), (spans[1], 2)):
-                for said, true in zip(re.findall(r"[\d.]+", span), (min(c[part] for c in outdoors), max(c[part] for c in outdoors))):
+                for said, true in zip(re.findall(r"[\d.]+", span),
+                                      (min(c[part] for c in outdoors), max(c[part] for c in outdoors))):
                     digits = len(said.partition(".")[2])
                     self.assertLessEqual(abs(float(said) - true), 0.5001 * 10**-digits, (preset, span, true))
             self.assertEqual(spans[2].strip(), self.cells["airport, Airport16"][preset].split(", ")[1], preset)
 
 
 class Paper(unittest.TestCase):
-    """The page of the paper's claims has a row for every equation, figure, table and algorithm, verdicts and numbers that agree with
-    the tables, and names tests that exist."""
+    """The page of the paper's claims has a row for every equation, figure, table and algorithm, verdicts and numbers
+    that agree with the tables, and names tests that exist."""
 
     @classmethod
     def setUpClass(cls):
-        cls.text = verdicts.PAGE.read_text(encoding="utf-8")
+        cls.text = verdicts.PAGE.read_text("utf-8")
         cls.rows = verdicts.rows_of(cls.text)
-        cls.kernel = "".join(file.read_text(encoding="utf-8") for file in (SOURCE / "Testing").rglob("Test*.cxx"))
+        cls.kernel = "".join(file.read_text("utf-8") for file in (SOURCE / "Testing").rglob("Test*.cxx"))
 
     def test_rows_are_numbered_and_short(self):
         self.assertEqual([row[0] for row in self.rows], [str(number + 1) for number in range(len(self.rows))])
@@ -134,5 +135,5 @@ class Paper(unittest.TestCase):
     def is_there(self, suite, case):
         """`TestX.test_y` of Python or `Suite.Case` of C++."""
         file = next((SOURCE / "Testing").rglob(f"{suite}.py"), None)
-        return f"def {case}(" in file.read_text(encoding="utf-8") if file else \
+        return f"def {case}(" in file.read_text("utf-8") if file else \
             re.search(rf"^(TYPED_)?TEST(_F|_P)?\({suite}, {case}\)", self.kernel, re.M) is not None

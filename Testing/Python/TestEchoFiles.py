@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Echoes and trees through files: everything in field data comes back, no tree built twice. Tables keep units in the names of their
-columns (TestHelperFiles writes CSV files)."""
+"""Echoes and trees through files: everything in field data comes back, no tree built twice. Tables keep units in the
+names of their columns (TestHelperFiles writes CSV files)."""
 
 import os
 import pathlib
@@ -39,13 +39,14 @@ beam_fields = echo.GetInputDataObject(0, 0).GetFieldData()
 assert written.issuperset(beam_fields.GetArrayName(i) for i in range(beam_fields.GetNumberOfArrays()))
 assert written.issuperset("avian_lidar_version scene_checksum perceivable_range object_names material_names".split())
 for name in sorted(written):
-    one, two = ([data.GetAbstractArray(name).GetVariantValue(i).ToString() for i in range(data.GetAbstractArray(name).GetNumberOfValues())]
-                for data in (fields, again))
+    one, two = ([data.GetAbstractArray(name).GetVariantValue(i).ToString()
+                 for i in range(data.GetAbstractArray(name).GetNumberOfValues())] for data in (fields, again))
     assert one == two, name
 assert back.GetPointData().GetArray("energy").GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) == "J"
 
 # They are every property, but for those that the class's comment names.
-header = (pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "vtkAvianLidarEchoFilter.h").read_text(encoding="utf-8")
+header = (pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters"
+          / "vtkAvianLidarEchoFilter.h").read_text("utf-8")
 comment = " ".join(header.replace("\n *", " ").split()).split("every property of this filter in snake case", 1)[1]
 exceptions = comment.split("`avian_lidar_version`")[0].partition("but for ")[2]
 properties = {name[3:] for name in dir(echo) if name.startswith("Set") and hasattr(echo, "Get" + name[3:])
@@ -90,7 +91,8 @@ print(len(os.listdir("/proc/self/task")) - before)
 """
 if os.path.isdir("/proc/self/task"):
     environment = {**os.environ, "OMP_NUM_THREADS": "4", "PYTHONPATH": os.pathsep.join(sys.path)}
-    more = subprocess.run([sys.executable, "-c", ONE_THREAD], env=environment, check=True, capture_output=True, text=True).stdout
+    more = subprocess.run([sys.executable, "-c", ONE_THREAD], env=environment, check=True, capture_output=True,
+                          text=True).stdout
     assert more.split()[-1] == "0", more
 
 # A tree of another geometry: one warning, and a tree that fits is built.

@@ -11,8 +11,8 @@ from avianlidar import vtkAvianLidar as al
 from cloudtools import names
 from echotools import RAYS, array, arrays, assert_same_bits, copy_of, given, scan, sensor, town
 
-# By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. Beams that meet the
-# wall, of which more than 100 triangles enter each, have cells.
+# By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. Beams that
+# meet the wall, of which more than 100 triangles enter each, have cells.
 SAMPLED = {"BeamSamples": RAYS}
 TOWN, FEW = town(), town(count=20)
 LABELS = ("laser_id", "azimuth", "vertical_angle")
@@ -20,7 +20,8 @@ LABELS = ("laser_id", "azimuth", "vertical_angle")
 
 def town_with_wall():
     wall, blocks = vtk.vtkPlaneSource(), town()
-    for set_corner, corner in ((wall.SetOrigin, (-20, 100, -2)), (wall.SetPoint1, (20, 100, -2)), (wall.SetPoint2, (-20, 100, 6))):
+    for set_corner, corner in ((wall.SetOrigin, (-20, 100, -2)), (wall.SetPoint1, (20, 100, -2)),
+                               (wall.SetPoint2, (-20, 100, 6))):
         set_corner(*corner)
     wall.SetResolution(280, 56)
     wall.Update()
@@ -84,7 +85,8 @@ class EchoPipeline(unittest.TestCase):
             assert_same_bits(echoes, append.GetOutput())
 
     def test_objects_without_triangles_keep_their_names(self):
-        """The echoes list them with or without a tree, also where the tree's output was copied, so that its content is merged."""
+        """The echoes list them with or without a tree, also where the tree's output was copied, so that its content is
+        merged."""
         blocks = town(count=4)
         blocks.SetBlock(4, vtk.vtkPolyData())
         blocks.GetMetaData(4).Set(vtk.vtkCompositeDataSet.NAME(), "meadow")
@@ -97,7 +99,8 @@ class EchoPipeline(unittest.TestCase):
                              [*(f"house {i}" for i in range(4)), "meadow"])
 
     def test_progress_and_abort(self):
-        """Progress rises from the calling thread; abort within blocks, with empty and valid outputs. Rays take long enough for that."""
+        """Progress rises from the calling thread; abort within blocks, with empty and valid outputs. Rays take long
+        enough for that."""
         busy, seen, calls = scan(TOWN, sensor(720, 8), NumberOfThreads=1, **SAMPLED), [], []
         busy.AddObserver("ProgressEvent", lambda *_: seen.append(busy.GetProgress()))
         busy.Update()
@@ -136,7 +139,8 @@ class EchoPipeline(unittest.TestCase):
         np.testing.assert_allclose(azimuth * 100, data["azimuth"], atol=1e-6)
         self.assertTrue(names.GetValue(int(data["object_id"][0])).startswith("house "))
         text = str(scan(TOWN, RaysPerBeam=1000000, Seed=-123456789))  # printed, numbers have all their digits
-        for line in ("RaysPerBeam: 1000000", "Seed: -123456789", "AttenuationCoefficient: 3.5e-05 1/m", "MaximumCacheSize: 1024 MiB"):
+        for line in ("RaysPerBeam: 1000000", "Seed: -123456789", "AttenuationCoefficient: 3.5e-05 1/m",
+                     "MaximumCacheSize: 1024 MiB"):
             self.assertIn(line, text)
 
 
@@ -151,7 +155,8 @@ class TreeDisplay(unittest.TestCase):
                 tree.SetDisplayLevel(level)
                 tree.Update()
                 shown, scene = tree.GetOutput(1), numpy_support.vtk_to_numpy(tree.GetOutput().GetPoints().GetData())
-                node, triangles, depth = (numpy_support.vtk_to_numpy(shown.GetCellData().GetArray(name)).reshape(-1, faces)
+                node, triangles, depth = (numpy_support.vtk_to_numpy(
+                                              shown.GetCellData().GetArray(name)).reshape(-1, faces)
                                           for name in ("node_id", "triangles", "depth"))
                 volumes = numpy_support.vtk_to_numpy(shown.GetPoints().GetData()).reshape(-1, corners, 3)
                 self.assertEqual(len(volumes), len(set(node[:, 0])))
@@ -165,13 +170,15 @@ class TreeDisplay(unittest.TestCase):
                         held |= (np.abs(away) < 1 + 1e-6).all(axis=1)
                         if volume == 0:
                             np.testing.assert_allclose(axes, np.diag(np.diag(axes)), atol=1e-9)
-                        np.testing.assert_allclose(axes @ axes.T, np.diag((axes**2).sum(axis=1)), atol=1e-6 * (axes**2).sum())
+                        np.testing.assert_allclose(axes @ axes.T, np.diag((axes**2).sum(axis=1)),
+                                                   atol=1e-6 * (axes**2).sum())
                     else:
                         center, radius = 0.5 * (points[0] + points[-1]), 0.5 * np.linalg.norm(points[0] - points[-1])
                         np.testing.assert_allclose(np.linalg.norm(points - center, axis=1), radius, rtol=1e-9)
                         held |= np.linalg.norm(scene - center, axis=1) < radius * (1 + 1e-6)
                 self.assertTrue(held.all())
-                if corners == 8: # The faces of a box look outwards, and none is twisted: they enclose what its edges span.
+                # The faces of a box look outwards, and none is twisted: they enclose what its edges span.
+                if corners == 8:
                     quads = numpy_support.vtk_to_numpy(shown.GetPolys().GetConnectivityArray()).reshape(-1, 4)
                     a, b, c, d = np.moveaxis(volumes.reshape(-1, 3)[quads], 1, 0)
                     enclosed = ((a + b + c + d) * np.cross(c - a, d - b)).sum(axis=1).reshape(-1, 6).sum(axis=1) / 24

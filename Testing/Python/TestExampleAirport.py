@@ -20,21 +20,24 @@ class Airport(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = et.folder("ExampleAirport")
-        cls.scene, cls.results = airport.main(["--no-pictures", "--preset", "Airport16", "--rays", "40", "--seed", "3", "--out", cls.folder])
+        cls.scene, cls.results = airport.main(["--no-pictures", "--preset", "Airport16", "--rays", "40", "--seed", "3",
+                                               "--out", cls.folder])
         cls.found = et.arrays(cls.results["Airport16"][0])
 
     def test_leaves_files(self):
         echoes, found = self.results["Airport16"][0], self.found
-        self.assertEqual(sorted(os.listdir(self.folder)), sorted([f"Airport16.{kind}" for kind in ("vtp", "csv", "las", "pcd",
-                                                                                                   "geojson")] + ["table.csv", "table.md"]))
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted([f"Airport16.{kind}"
+                                                                  for kind in ("vtp", "csv", "las", "pcd", "geojson")]
+                                                                 + ["table.csv", "table.md"]))
         self.assertEqual([et.number(echoes, name) for name in ("seed", "rays_per_beam")], [3, 40])
         table = et.read_table(os.path.join(self.folder, "table.md"))["Airport16"]
         self.assertEqual([int(table[name]) for name in ("triangles", "beams", "rays emitted", "echoes")],
                          [5510, 15360, 40 * 15360, echoes.GetNumberOfPoints()])
         self.assertEqual(sum(int(value) for key, value in table.items() if key.startswith("- ")), 15360)
-        self.assertEqual(int(table["- with echoes below saturation"]) + int(table["- saturated"]), len(np.unique(found["beam_id"])))
-        # No beam looks down, and none higher than a cone's half-width above 25 m meets anything. The ground is 3 m above the
-        # ellipsoid, which curves away below the plane by d^2/2R.
+        self.assertEqual(int(table["- with echoes below saturation"]) + int(table["- saturated"]),
+                         len(np.unique(found["beam_id"])))
+        # No beam looks down, and none higher than a cone's half-width above 25 m meets anything. The ground is 3 m
+        # above the ellipsoid, which curves away below the plane by d^2/2R.
         up, sagitta = found["points"][:, 2], (found["points"][:, :2] ** 2).sum(axis=1) / (2 * 6.37e6)
         self.assertTrue(((up >= 3 - 1e-9) & (up < 25 + 5.7e-3 * found["distance_m"])).all())
         np.testing.assert_allclose(found["height"], 3 + up + sagitta, atol=0.01)
@@ -74,7 +77,8 @@ class AllWall(unittest.TestCase):
     def test_hue_in_range_units_of_1_ns(self):
         # As Documentation/guide/airport.md says.
         folder = et.folder("ExampleAirportUnit")
-        airport.main(["--no-pictures", "--all-wall", "--preset", "Airport16", "--unit", "1", "--rays", "100", "--out", folder])
+        airport.main(["--no-pictures", "--all-wall", "--preset", "Airport16", "--unit", "1", "--rays", "100", "--out",
+                      folder])
         rows = et.read_table(os.path.join(folder, "table.md"))["Airport16"]
         self.assertAlmostEqual(int(rows["median hue of Terminal 1 (deg)"]), 228, delta=2)
 
@@ -96,6 +100,7 @@ class Arguments(unittest.TestCase):
             self.assertEqual((end.exception.code, said.getvalue().count("\n"), out.exists()), (2, 1, False))
             self.assertRegex(said.getvalue(), f"{option}.*{value}")
         page = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "README.md")
-        with self.assertRaisesRegex(SystemExit, r"\A.*README.md: (is not JSON|.*No suitable reader).*\Z"):  # Python prints it, returns 1
+        # Python prints it, returns 1
+        with self.assertRaisesRegex(SystemExit, r"\A.*README.md: (is not JSON|.*No suitable reader).*\Z"):
             airport.main(["--no-pictures", "--scene", page, "--out", str(out)])
         self.assertFalse(out.exists())

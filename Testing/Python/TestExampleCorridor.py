@@ -72,7 +72,7 @@ class Corridor(unittest.TestCase):
                                      for material in (WALL, WOOD, GLASS))
                 self.assertGreater(wall, wood, (low, energy))
                 self.assertGreater(wood, 3 * glass, (low, energy))
-            # Of what is met in whole, the weakest wall is stronger than the strongest wood.
+            # Among surfaces that fill the beam, the weakest wall is stronger than the strongest wood.
             weakest = found["return_energy"][self.on("North wall", here)].min()
             self.assertGreater(weakest, found["return_energy"][self.on("Door", here)].max(), low)
 
@@ -88,12 +88,14 @@ class Corridor(unittest.TestCase):
     def test_boundaries_of_materials_are_clear(self):
         # Echoes two steps apart, so that the beam on the boundary may lie between them, at ranges of at most 4 m.
         found = self.found
-        of = {(round(found["azimuth"][i]), round(100 * found["vertical_angle"][i])): i for i in np.flatnonzero(self.pure)}
+        of = {(round(found["azimuth"][i]), round(100 * found["vertical_angle"][i])): i
+              for i in np.flatnonzero(self.pure)}
         ratios = {}
         for (azimuth, elevation), i in of.items():
             for there in (((azimuth + 400) % 36000, elevation), (azimuth, elevation + 400)):
                 k = of.get(there)
-                if k is not None and found["distance_m"][i] < 4 and abs(found["distance_m"][i] - found["distance_m"][k]) < 0.5:
+                if k is not None and found["distance_m"][i] < 4 and abs(
+                        found["distance_m"][i] - found["distance_m"][k]) < 0.5:
                     both = frozenset(int(found["material_id"][j]) for j in (i, k))
                     energies = sorted(found["return_energy"][[i, k]])
                     ratios.setdefault(both, []).append(energies[1] / energies[0])
@@ -146,7 +148,8 @@ class Corridor(unittest.TestCase):
         # Where a wall 1.2 m aside vanishes, with steps of 0.1 degrees: 12.2 m for an infinite number of rays.
         sensor = al.Sensor("CorridorC16", position=corridor_scene.LIDAR, channel_elevations=[0], azimuth_range=(70, 89),
                            azimuth_step=0.1)
-        found = al.Scan(al.Scene(self.scene), sensor, attenuation_coefficient=corridor_scene.HAZE, rays_per_beam=2000).echoes
+        found = al.Scan(al.Scene(self.scene), sensor, attenuation_coefficient=corridor_scene.HAZE,
+                        rays_per_beam=2000).echoes
         wall = found["object_id"] == self.names.index("North wall")
         self.assertAlmostEqual(found["distance_m"][wall].max(), 12.2, delta=0.5)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The paper's configuration is what the example says that it is, its energies have no bias, and the clouds of the paper's
-protocol differ by as much as their columns lie apart."""
+"""The paper's configuration is what the example says that it is, its energies have no bias, and the clouds of the
+paper's protocol differ by as much as their columns lie apart."""
 import math
 import os
 import unittest
@@ -14,12 +14,13 @@ import paper
 import protocol
 import trade_runs
 
-# What the field data of every scan must say (vtkAvianLidarScanFilter.h: Rays is 1, MonteCarlo is 0, Beams is 2; RangeUnits is 4).
+# What the field data of every scan must say (vtkAvianLidarScanFilter.h: Rays is 1, MonteCarlo is 0, Beams is 2;
+# RangeUnits is 4).
 SAID = {"preset": 0, "rays_per_beam": 100, "beam_samples": 1, "sampling": 0, "reflectance_model": 0,
-        "number_of_reflections": 2, "beam_constraint": 1, "light_energy_constraint": 1,
-        "light_energy_threshold": 1, "batch_collision_detection": 2,
-        "full_model": 0, "noise": 1, "return_mode": 4, "beam_profile": 0, "receiver_model": 0, "receiver_aperture": 0, "half_beamwidth": 5.6e-3,
-        "noise_photon_rate": 20e3, "frequency": 3.313e14, "upper_energy_limit": 6.25e-5, "lower_energy_limit": 2e-6}
+        "number_of_reflections": 2, "beam_constraint": 1, "light_energy_constraint": 1, "light_energy_threshold": 1,
+        "batch_collision_detection": 2, "full_model": 0, "noise": 1, "return_mode": 4, "beam_profile": 0,
+        "receiver_model": 0, "receiver_aperture": 0, "half_beamwidth": 5.6e-3, "noise_photon_rate": 20e3,
+        "frequency": 3.313e14, "upper_energy_limit": 6.25e-5, "lower_energy_limit": 2e-6}
 PULSE = {"CorridorC16": (2.5e-4, 8.8e-5), "Airport16": (3.6e-4, 3.5e-5), "Airport32": (3.6e-4, 3.5e-5)}
 UNIT = 0.5 * 299792458 * 5e-9  # m
 FAINT_PATHS_TOO = {**paper.SCAN, "LightEnergyThreshold": 0}  # a share of the limit: nothing is lost

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The room example on scans that are made here and written as PCD, LAS and KITTI: a scan from its own surface is the scan, and so it is
-from that of another one where the poses are right. And on its real scans and on those of other sensors, which are not in the
-repository: without AVIANLIDAR_DATA_DIR skipped."""
+"""The room example on scans that are made here and written as PCD, LAS and KITTI: a scan from its own surface is the
+scan, and so it is from that of another one where the poses are right. And on its real scans and on those of other
+sensors, which are not in the repository: without AVIANLIDAR_DATA_DIR skipped."""
 import json
 import os
 import pathlib
@@ -26,7 +26,8 @@ class Scans(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         # A hall around the sensor.
-        cls.hall = scan(box((1.0, 2.0, 0.5), (12.0, 9.0, 4.0), "Wall"), given(sensor(COLUMNS, CHANNELS), ElevationStep=2.0))
+        cls.hall = scan(box((1.0, 2.0, 0.5), (12.0, 9.0, 4.0), "Wall"),
+                        given(sensor(COLUMNS, CHANNELS), ElevationStep=2.0))
         cls.hall.Update()
         cls.files = {kind: et.emptied("ExampleRoomScans", kind) / f"cloud.{kind}" for kind in KINDS}
         for kind, settings in KINDS.items():
@@ -92,9 +93,9 @@ class Room(unittest.TestCase):
 
 @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is not set")
 class OtherSensors(unittest.TestCase):
-    """(file, rings, columns of a turn, fewest answers): beams that fire together stay apart, those that nothing answered
-    are found. The Helios stands on a vehicle, most of whose points lie within a metre: there its beams, which leave it
-    beside its middle, cross, and cannot be told apart by azimuth."""
+    """(file, rings, columns of a turn, fewest answers): beams that fire together stay apart, those that nothing
+    answered are found. The Helios stands on a vehicle, most of whose points lie within a metre: there its beams, which
+    leave it beside its middle, cross, and cannot be told apart by azimuth."""
     FILES = (("lidar_ouster/os0_32.pcd", 32, 1024, 1.0), ("lidar_ouster/os1_32.pcd", 32, 1024, 1.0),
              ("lidar_ouster/os2_32.pcd", 32, 1024, 1.0), ("lidar_outdoor/xt16.pcd", 16, 2000, 0.95),
              ("lidar_vlp16_mrpt/vlp16.pcd", 16, 1809, 1.0), ("lidar_outdoor/helios16p_frame0.pcd", 16, None, 0.7),

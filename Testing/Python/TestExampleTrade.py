@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The trade of speed for accuracy on a small scene: errors fall and standard errors hold as theory says, and the table has every
-column."""
+"""The trade of speed for accuracy on a small scene: errors fall and standard errors hold as theory says, and the table
+has every column."""
 import os
 import unittest
 
@@ -30,7 +30,8 @@ class Trade(unittest.TestCase):
 
     def test_standard_errors_hold(self):
         # 1.96 of them: 95 % if estimates were normal, and what is missed is not held.
-        for family, rays, wanted in (("Monte Carlo", 64, 0.93), ("Monte Carlo", 400, 0.93), ("stratified", 8, 0.9), ("stratified", 64, 0.93)):
+        for family, rays, wanted in (("Monte Carlo", 64, 0.93), ("Monte Carlo", 400, 0.93), ("stratified", 8, 0.9),
+                                     ("stratified", 64, 0.93)):
             with self.subTest(family, rays=rays):
                 self.assertGreater(self.named(family, rays).mean("held"), wanted)
 

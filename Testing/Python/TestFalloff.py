@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fall of signal with range, of a made frame: its planes are found where they are, the estimator returns n = 2 of its signal
-and of the simulation, and n = 0 of a reflectivity from which range was taken out."""
+"""The fall of signal with range, of a made frame: its planes are found where they are, the estimator returns n = 2 of
+its signal and of the simulation, and n = 0 of a reflectivity from which range was taken out."""
 import contextlib
 import io
 import pathlib

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A process that forks after a scan, as Python's multiprocessing does with the context `fork`: the child and its own child
-scan, build trees and compare clouds, with the numbers of the parent. A child that hangs is killed, and a failure."""
+"""A process that forks after a scan, as Python's multiprocessing does with the context `fork`: the child and its own
+child scan, build trees and compare clouds, with the numbers of the parent. A child that hangs is killed, and a
+failure."""
 import hashlib
 import multiprocessing
 import unittest
@@ -21,7 +22,8 @@ def work(threads):
     """What a scan with a tree of its own, one with a tree made before, and a comparison of both clouds give."""
     tree = al.vtkAvianLidarCollisionTree()
     tree.SetInputData(town(2, 20))
-    scans = [scan(surfaces, sensor(180, 8), NumberOfThreads=threads, NumberOfReflections=2) for surfaces in (town(1, 20), tree)]
+    scans = [scan(surfaces, sensor(180, 8), NumberOfThreads=threads, NumberOfReflections=2)
+             for surfaces in (town(1, 20), tree)]
     comparison = al.vtkAvianLidarCloudComparison()
     for port, echo in enumerate(scans):
         echo.Update()

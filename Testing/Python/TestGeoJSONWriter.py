@@ -51,17 +51,20 @@ class TestGeoJSONWriter(InFolder):
         add_array(self.data, "pair", pair)
         self.write()
         told = self.ogrinfo()
-        for words in (f"Feature Count: {self.data.GetNumberOfPoints()}", "Geometry: 3D Point", 'GEOGCRS["WGS 84"', "energy: Real",
-                      "object_id: Integer", "material: String"):
+        for words in (f"Feature Count: {self.data.GetNumberOfPoints()}", "Geometry: 3D Point", 'GEOGCRS["WGS 84"',
+                      "energy: Real", "object_id: Integer", "material: String"):
             self.assertIn(words, told)
         rows = features()
         self.assert_places(rows)
-        whole = json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))
-        np.testing.assert_array_equal([[one["properties"][f"pair_{c}"] for c in (0, 1)] for one in whole["features"]], pair)
+        whole = json.loads(pathlib.Path(FILE).read_text("utf-8"))
+        np.testing.assert_array_equal([[one["properties"][f"pair_{c}"] for c in (0, 1)] for one in whole["features"]],
+                                      pair)
         for name in set(names(self.data)) - {"pair"}:  # GDAL writes 15 digits; the file has them all
             np.testing.assert_allclose(column(rows, name), array(self.data, name), rtol=1e-14, err_msg=name)
-            np.testing.assert_array_equal([one["properties"][name] for one in whole["features"]], array(self.data, name), name)
-        for name, ids, texts in (("object", "object_id", "object_names"), ("object_class", "object_id", "object_classes"),
+            np.testing.assert_array_equal([one["properties"][name] for one in whole["features"]],
+                                          array(self.data, name), name)
+        for name, ids, texts in (("object", "object_id", "object_names"),
+                                 ("object_class", "object_id", "object_classes"),
                                  ("material", "material_id", "material_names")):
             self.assertEqual([row[name] for row in rows], [field(self.data, texts)[i] for i in array(self.data, ids)])
         self.assertNotIn("crs", whole)  # RFC 7946: it is always WGS84
@@ -99,9 +102,9 @@ class TestGeoJSONWriter(InFolder):
         for data in (self.data, cloud([])):
             self.write(data, UseFieldDataLimit=False, MinimumEnergy=1.0)
             self.assertIn("successful", self.ogrinfo())
-            self.assertEqual(json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"], [])
+            self.assertEqual(json.loads(pathlib.Path(FILE).read_text("utf-8"))["features"], [])
 
-    def test_what_json_has_no_words_for(self):
+    def test_values_that_json_lacks(self):
         data = cloud([[0, 0, 0], [1, 0, 0]])
         add_field(data, "geodetic_origin", (31.0, 121.0, 3.0))
         add_array(data, "energy", np.array([1.0, 2.0]))
@@ -109,8 +112,9 @@ class TestGeoJSONWriter(InFolder):
         add_array(data, "object_id", np.array([0, 7]))
         add_field(data, "object_names", ['a "quoted" name\\\n\u00e9'])
         self.write(data)
-        properties = [one["properties"] for one in json.loads(pathlib.Path(FILE).read_text(encoding="utf-8"))["features"]]
-        self.assertEqual([(one["share"], one["object"]) for one in properties], [(None, 'a "quoted" name\\\n\u00e9'), (None, "")])
+        properties = [one["properties"] for one in json.loads(pathlib.Path(FILE).read_text("utf-8"))["features"]]
+        self.assertEqual([(one["share"], one["object"]) for one in properties],
+                         [(None, 'a "quoted" name\\\n\u00e9'), (None, "")])
 
     def test_bad_input(self):
         for change, words in (

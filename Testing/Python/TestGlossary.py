@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Documentation/reference/arrays.md is the table of vtkAvianLidarNames.h and has every array of the echo filter's outputs with its unit; what
-Documentation/reference/glossary.md names exists."""
+"""Documentation/reference/arrays.md is the table of vtkAvianLidarNames.h and has every array of the echo filter's
+outputs with its unit; what Documentation/reference/glossary.md names exists."""
 import os
 import pathlib
 import re
@@ -19,8 +19,9 @@ SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "CMake"))
 import arrays_page  # noqa: E402
 
-ROWS = [[cell.strip() for cell in row.split("|")] for row in re.findall(
-    r"^\| (?!paper|-)(.*) \|$", (SOURCE / "Documentation" / "reference" / "glossary.md").read_text(encoding="utf-8"), re.M)]
+ROWS = [[cell.strip() for cell in row.split("|")]
+        for row in re.findall(r"^\| (?!paper|-)(.*) \|$",
+                              (SOURCE / "Documentation" / "reference" / "glossary.md").read_text("utf-8"), re.M)]
 UNITS = {name: unit for name, unit, _, _ in arrays_page.rows()}
 # Names of the glossary; those that are not in the header have their units there.
 GLOSSARY = {name for row in ROWS for name in re.findall(r"`([^`]+)`", row[2])}
@@ -56,26 +57,30 @@ def of_advisor():
         met = all(table.GetValueByName(row, name).ToDouble() <= most for name, most in asked.items())
         assert (table.GetValueByName(row, "verdict").ToInt() == 2) == met, row
     assert table.GetNumberOfRows() == 37
-    arrays = [table.GetColumn(i) for i in range(table.GetNumberOfColumns())] + [table.GetFieldData().GetAbstractArray(name) for name in ("advised", "advice")]
+    arrays = [*map(table.GetColumn, range(table.GetNumberOfColumns())),
+              *map(table.GetFieldData().GetAbstractArray, ("advised", "advice"))]
     return {array.GetName(): array.GetInformation().Get(vtkDataArray.UNITS_LABEL()) or "" for array in arrays}
 
 
 class Glossary(unittest.TestCase):
     def test_names_and_units_of_lidarview(self):
-        """Frozen from LidarView's source, IO/Lidar/Velodyne/vtkVelodynePacketInterpreter.cxx (Apache-2.0). Its other arrays have no counterpart."""
-        wanted = {"azimuth": "0.01 deg", "vertical_angle": "deg", "distance_m": "m", "timestamp": "us", "intensity": "1", "laser_id": ""}
+        """Frozen from LidarView's source, IO/Lidar/Velodyne/vtkVelodynePacketInterpreter.cxx (Apache-2.0). Its other
+        arrays have no counterpart."""
+        wanted = {"azimuth": "0.01 deg", "vertical_angle": "deg", "distance_m": "m", "timestamp": "us",
+                  "intensity": "1", "laser_id": ""}
         echoes, beams = next(outputs()), al.Sensor("Airport16", azimuth_step=5).beams
         for name, unit in wanted.items():
             self.assertEqual(echoes.units.get(name, ""), unit, name)
             if name in beams:
                 self.assertEqual(beams.units.get(name, ""), unit, name)
-        self.assertTrue(echoes["intensity"].max() <= 255 and beams["laser_id"].min() == 0 and 1e5 < beams["timestamp"].max() < 2e6)
+        self.assertTrue(echoes["intensity"].max() <= 255 and beams["laser_id"].min() == 0
+                        and 1e5 < beams["timestamp"].max() < 2e6)
 
     def test_the_table_of_arrays_is_current(self):
         """Else run CMake/arrays_page.py."""
-        page = arrays_page.PAGE.read_text(encoding="utf-8")
+        page = arrays_page.PAGE.read_text("utf-8")
         self.assertEqual(arrays_page.with_table(page), page)
-        declared = re.findall(r'\bName \w+\{ "', arrays_page.HEADER.read_text(encoding="utf-8"))
+        declared = re.findall(r'\bName \w+\{ "', arrays_page.HEADER.read_text("utf-8"))
         self.assertEqual(len(arrays_page.rows()), len(declared))
         self.assertEqual(len(UNITS), len(declared))
 
@@ -83,7 +88,8 @@ class Glossary(unittest.TestCase):
         """Arrays have the unit of the page; field data are there, or are properties; what the page names exists."""
         clouds, advised = list(outputs()), of_advisor()
         units = {**NAMED, **UNITS}
-        for name, unit in [*advised.items(), *((name, cloud.units.get(name, "")) for cloud in clouds for name in cloud)]:
+        for name, unit in [*advised.items(),
+                           *((name, cloud.units.get(name, "")) for cloud in clouds for name in cloud)]:
             self.assertEqual(units.get(name), unit, name)
         for name, unit in ((name, unit) for cloud in clouds for name, unit in cloud.field_units.items()):
             prop = "".join(word.title() for word in name.split("_"))
@@ -95,4 +101,5 @@ class Glossary(unittest.TestCase):
         for name, unit in NAMED.items():
             self.assertEqual(unit, there.get(name, unit), name)
         for name in GLOSSARY:
-            self.assertTrue(name in there or name in others or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES), name)
+            self.assertTrue(name in there or name in others
+                            or any(hasattr(one, "Set" + name) or hasattr(one, name) for one in CLASSES), name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes of mesh files, arrays and mappings, materials for each triangle, copies, what is shown of a scene, a sensor and a
-scan, and warnings where a sensor can see nothing."""
+"""Scenes of mesh files, arrays and mappings, materials for each triangle, copies, what is shown of a scene, a sensor
+and a scan, and warnings where a sensor can see nothing."""
 import copy
 import os
 import pathlib
@@ -44,7 +44,7 @@ class Sources(unittest.TestCase):
     def setUpClass(cls):
         exampletools.emptied("helper-scenes")
         cls.stl = OUTPUT / "hangar.stl"
-        cls.stl.write_text(stl(CORNERS, TRIANGLES), encoding="utf-8")
+        cls.stl.write_text(stl(CORNERS, TRIANGLES), "utf-8")
         cls.las = OUTPUT / "cloud.las"
         cls.las.write_bytes(b"LASF")
 
@@ -61,14 +61,15 @@ class Sources(unittest.TestCase):
 
     def test_the_axis_that_is_up(self):
         file = OUTPUT / "up.stl"
-        file.write_text(stl(y_up(CORNERS), TRIANGLES), encoding="utf-8")
+        file.write_text(stl(y_up(CORNERS), TRIANGLES), "utf-8")
         self.assertEqual(al.Scene(file, up_axis="y").bounds, BOUNDS)
         self.assertEqual(al.Scene(file, up_axis="z").bounds, (1, 2, 0, 3, -4, -2))
 
     def test_known_names_of_materials(self):
         file = OUTPUT / "panes.obj"
-        file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), encoding="utf-8")
-        self.assertRegex(" ".join(said(lambda: al.Scene(file))), "no material or material_map for .*paint.*: taken as Wall")
+        file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), "utf-8")
+        self.assertRegex(" ".join(said(lambda: al.Scene(file))),
+                         "no material or material_map for .*paint.*: taken as Wall")
         self.assertEqual(said(lambda: al.Scene(file, material="Metal")), [])
         self.assertEqual(sorted(cells(al.Scene(file), "material_id")), [0] * 6 + [1] * 6)
 
@@ -79,23 +80,28 @@ class Sources(unittest.TestCase):
 
         theirs, corners = PolyData(), np.asarray(WALL[0], dtype=float)
         theirs.ShallowCopy(al.mesh(*WALL))
-        trimesh = types.SimpleNamespace(vertices=corners, faces=WALL[1], triangles=corners[WALL[1]])  # whose triangles are points
-        meshes = [types.SimpleNamespace(vertices=WALL[0], triangles=WALL[1]), types.SimpleNamespace(vertices=corners, faces=WALL[1]), trimesh]
+        # whose triangles are points
+        trimesh = types.SimpleNamespace(vertices=corners, faces=WALL[1], triangles=corners[WALL[1]])
+        meshes = [types.SimpleNamespace(vertices=WALL[0], triangles=WALL[1]),
+                  types.SimpleNamespace(vertices=corners, faces=WALL[1]), trimesh]
         points = [types.SimpleNamespace(points=WALL[0])]
         wanted = al.Scan(al.Scene(WALL), al.Sensor(azimuth_step=5)).echoes
         for number, mesh in enumerate([theirs, *meshes]):
             with self.subTest(number):
-                self.assertTrue(same(al.Scan(al.Scene(mesh, material="Wall"), al.Sensor(azimuth_step=5)).echoes, wanted))
+                self.assertTrue(same(al.Scan(al.Scene(mesh, material="Wall"), al.Sensor(azimuth_step=5)).echoes,
+                                     wanted))
         for cloud in (*points, theirs):
             self.assertEqual(al.Cloud(cloud).points.tolist(), corners.tolist())
         self.assertTrue(same(al.Cloud(wanted), wanted))
 
     def test_a_mapping(self):
-        description = {"version": 1, "origin": {"latitude": 31, "longitude": 121, "height": 3}, "lidar": {"position": [0, 0, 2]},
-                       "objects": [{"ground": {"size": 50}, "material": "Wall"},
-                                   {"file": str(self.stl), "position": [9, 0, 0], "material": "Metal"}]}
+        description = {"version": 1, "origin": {"latitude": 31, "longitude": 121, "height": 3},
+                       "lidar": {"position": [0, 0, 2]}, "objects": [{"ground": {"size": 50}, "material": "Wall"},
+                                                                     {"file": str(self.stl), "position": [9, 0, 0],
+                                                                      "material": "Metal"}]}
         scene = al.Scene(description)
-        self.assertEqual((scene.objects, scene.geodetic_origin, scene.lidar_position), (["Ground", "hangar"], (31, 121, 3), (0, 0, 2)))
+        self.assertEqual((scene.objects, scene.geodetic_origin, scene.lidar_position),
+                         (["Ground", "hangar"], (31, 121, 3), (0, 0, 2)))
         with self.assertRaisesRegex(al.Error, r"scene: objects\[0\]\.grond"):
             al.Scene({"version": 1, "objects": [{"ground": {"size": 5}, "grond": 1}]})
 
@@ -110,15 +116,16 @@ class Sources(unittest.TestCase):
         self.assertEqual(cells(given, "roughness").tolist(), rows[:, 3].tolist())
         self.assertEqual((len(set(cells(even, "material_id"))), set(cells(even, "roughness"))), (3, {0}))
         self.assertEqual(len(set(cells(al.Scene(*WALL, material=["wall", "Wall"] * 6), "material_id"))), 1)
-        count = 5000  # rows that all differ are no work
+        count = 5000  # rows that all differ take no time
         points = np.random.default_rng(3).uniform(-50, 50, (3 * count, 3))
-        scene = al.Scene(points, np.arange(3 * count).reshape(-1, 3), material=np.random.default_rng(4).uniform(0, 0.4, (count, 3)))
+        scene = al.Scene(points, np.arange(3 * count).reshape(-1, 3),
+                         material=np.random.default_rng(4).uniform(0, 0.4, (count, 3)))
         self.assertEqual(scene.number_of_triangles, count)
         self.assertEqual(al.Scene(self.stl, material=["Wood"] * 12).number_of_triangles, 12)
 
     def test_errors_say_what_is_expected(self):
         text = OUTPUT / "text.stl"
-        text.write_text("no mesh", encoding="utf-8")
+        text.write_text("no mesh", "utf-8")
         points, faces = WALL
         for kind, words, call in (
                 (TypeError, "material=", lambda: al.Scene(self.stl, "Glass")),
@@ -158,8 +165,9 @@ class Copies(unittest.TestCase):
         sensor = al.Sensor(azimuth_step=2)
         expected = al.Scan(scene, sensor, noise=False).echoes
         for again in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene), copy.copy(scene)):
-            self.assertEqual((again.objects, again.materials, again.bounds, again.geodetic_origin, again.lidar_position),
-                             (scene.objects, scene.materials, scene.bounds, scene.geodetic_origin, scene.lidar_position))
+            self.assertEqual((again.objects, again.materials, again.bounds, again.geodetic_origin,
+                              again.lidar_position), (scene.objects, scene.materials, scene.bounds,
+                                                      scene.geodetic_origin, scene.lidar_position))
             self.assertEqual(again.tree.GetMaximumLeafSize(), 7)
             self.assertTrue(same(al.Scan(again, sensor, noise=False).echoes, expected))
             again.add(WALL, name="wall")  # a copy does not change the first
@@ -185,13 +193,15 @@ class Shown(unittest.TestCase):
         self.assertRegex(repr(scene), "<Scene: cells 5510; extent east -6000 to 6000")
         east, north = (axis.ravel() for axis in np.meshgrid(np.arange(150.0), np.arange(150.0)))
         corner = np.arange(150 * 150).reshape(150, 150)[:-1, :-1].ravel()
-        hills = al.Scene(np.column_stack([east, north, np.sin(east / 20)]), np.column_stack([corner, corner + 1, corner + 150]))
-        for thing, rows in ((scan, 4), (scene, 6), (sensor, 11), (hills, 4)):  # the last has too many triangles for their outlines
+        hills = al.Scene(np.column_stack([east, north, np.sin(east / 20)]),
+                         np.column_stack([corner, corner + 1, corner + 150]))
+        # the last has too many triangles for their outlines
+        for thing, rows in ((scan, 4), (scene, 6), (sensor, 11), (hills, 4)):
             page = thing._repr_html_()
             self.assertEqual(page.count("<tr>"), rows)
             self.assertRegex(page, r"<img alt='picture' src='data:image/png;base64,[A-Za-z0-9+/=]{1000,}'/>")
 
-    def test_what_fails_is_shown_all_the_same(self):
+    def test_representations_show_failures(self):
         self.assertIn("<Scene: cells 0", repr(al.Scene()))
         self.assertIn("<table>", al.Scene()._repr_html_())
         foggy = al.Scan(al.Scene(WALL), al.Sensor("Search905", azimuth_step=5), visibility=300).update()
@@ -216,10 +226,10 @@ class Shown(unittest.TestCase):
         self.assertEqual(len(pandas.concat([frame, frame])), 2 * len(frame))  # its attributes can be compared
 
     def test_without_pandas_and_matplotlib(self):
-        program = ("import sys; sys.modules['pandas'] = sys.modules['matplotlib'] = None\nimport avianlidar as al\n"
-                   "page = al.Sensor()._repr_html_()\nassert '<table>' in page and '<img' not in page\n"
-                   "try:\n al.Sensor().beams.to_pandas()\nexcept ImportError as error:\n assert 'needs pandas' in str(error)\n"
-                   "else:\n assert False")
+        program = ("import sys; sys.modules['pandas'] = sys.modules['matplotlib'] = None\nimport avianlidar as "
+                   "al\npage = al.Sensor()._repr_html_()\nassert '<table>' in page and '<img' not in page\ntry:\n "
+                   "al.Sensor().beams.to_pandas()\nexcept ImportError as error:\n assert 'needs pandas' in "
+                   "str(error)\nelse:\n assert False")
         subprocess.run([sys.executable, "-c", program], check=True)
 
 
@@ -229,29 +239,34 @@ class NothingToSee(unittest.TestCase):
     def words(self, scene, **sensor):
         return said(al.Scan(scene, al.Sensor(azimuth_step=5, **sensor)).update)
 
-    def test_what_is_wrong_is_said(self):
+    def test_likely_mistakes_are_named(self):
         airport, walls = al.Scene(SCENE), al.Scene(WALL)
         hill = al.Scene([(-500, -500, 0), (500, -500, 0), (500, 500, 40), (-500, 500, 40)], [(0, 1, 2), (0, 2, 3)])
         tall = np.concatenate([box((-50, 300, 0), (50, 340, 12))[0], box((80, -300, 0), (90, -290, 30))[0]])
         faces = np.concatenate([WALL[1], WALL[1] + 8])
         millimetres = r"the scene extends east -.*millimetres, read it with the scale 0.001"
         for scene, sensor, words in (
-                (airport, {"position": (0, 0, -50)}, "^the sensor at .0, 0, -50. m is below the scene, .* 0 m no echoes of 1152 beams: "),
+                (airport, {"position": (0, 0, -50)},
+                 "^the sensor at .0, 0, -50. m is below the scene, .* 0 m no echoes of 1152 beams: "),
                 (hill, {"position": (0, 0, 10)}, "has surfaces above it and none below"),
-                (al.Scene(box((-20, 50000, -5), (20, 50002, 15))), {}, "no echoes of .* 50000 m away or more, the range gate ends at 4000 m$"),
-                (walls, {"minimum_elevation": 40}, "^no echoes of 1152 beams: no surface 1152; the beams point 40 to 45.62 deg up, .* north 50 to 52"),
+                (al.Scene(box((-20, 50000, -5), (20, 50002, 15))), {},
+                 "no echoes of .* 50000 m away or more, the range gate ends at 4000 m$"),
+                (walls, {"minimum_elevation": 40},
+                 "^no echoes of 1152 beams: no surface 1152; the beams point 40 to 45.62 deg up, .* north 50 to 52"),
                 (walls, {"pulse_energy": 1e-12}, r"^no echoes of 1152 beams: .*below the lower limit \d+$"),
                 (al.Scene(box((-900, 9000, 0), (900, 13500, 1500))), {}, millimetres),
                 (al.Scene(y_up(tall), faces), {}, "lowest point is 340 m below the origin.*read it with the up axis y"),
-                (al.Scene(box((346600, 3451000, 3), (346700, 3451100, 30))), {"position": (0, 0, 3)}, "of a map, such as UTM")):
+                (al.Scene(box((346600, 3451000, 3), (346700, 3451100, 30))), {"position": (0, 0, 3)},
+                 "of a map, such as UTM")):
             with self.subTest(words):
                 self.assertRegex(" ".join(self.words(scene, **sensor)), words)
         self.assertNotIn("none below", " ".join(self.words(hill, position=(0, 0, 30))))
         self.assertNotIn("up axis y", " ".join(self.words(al.Scene(tall, faces))))
 
     def test_a_place_inside_a_closed_surface(self):
-        """Also where triangles are single, twice there or turned, of one of two solids in an object, below a roof on walls without a
-        floor, in a room of thick walls and in such a wall, and on a diagonal; not beside a solid, in an open box or below a loose roof."""
+        """Also where triangles are single, twice there or turned, of one of two solids in an object, below a roof on
+        walls without a floor, in a room of thick walls and in such a wall, and on a diagonal; not beside a solid, in an
+        open box or below a loose roof."""
         low, high = np.array([-4.0, -3, 0]), np.array([4.0, 3, 5])
         points, faces = box(low, high)
         soup = points[faces.ravel()], np.arange(36).reshape(-1, 3)
@@ -261,25 +276,32 @@ class NothingToSee(unittest.TestCase):
         down, up = ((normals[:, 2] != 0) & (points[faces][:, :, 2].max(axis=1) == z) for z in (0, 5))
         twice = np.concatenate([faces, faces[:, ::-1]])
         for name, (corners, triangles), place, expected in (
-                ("box", (points, faces), (0, 0, 2), True), ("beside", (points, faces), (9, 0, 2), False), ("above", (points, faces), (0, 0, 9), False),
-                ("below", (points, faces), (0, 0, -2), False), ("turned", (points, np.where(np.arange(12)[:, None] % 2, faces, faces[:, ::-1])), (0, 0, 2), True),
-                ("single", soup, (1, 1, 2), True), ("twice", (points, twice), (1, 1, 2), True), ("second", others, (20, 0, 2), True), ("between", others, (10, 0, 2), False),
-                ("no floor", (points, faces[~down]), (0, 0, 2), True), ("no roof", (points, faces[~up]), (0, 0, 2), False),
-                ("roof", (points, faces[up]), (0, 0, 2), False), ("room", room, (0, 0, 2), True), ("in a wall", room, (3.5, 0, 2), True),
+                ("box", (points, faces), (0, 0, 2), True), ("beside", (points, faces), (9, 0, 2), False),
+                ("above", (points, faces), (0, 0, 9), False), ("below", (points, faces), (0, 0, -2), False),
+                ("turned", (points, np.where(np.arange(12)[:, None] % 2, faces, faces[:, ::-1])), (0, 0, 2), True),
+                ("single", soup, (1, 1, 2), True), ("twice", (points, twice), (1, 1, 2), True),
+                ("second", others, (20, 0, 2), True), ("between", others, (10, 0, 2), False),
+                ("no floor", (points, faces[~down]), (0, 0, 2), True),
+                ("no roof", (points, faces[~up]), (0, 0, 2), False), ("roof", (points, faces[up]), (0, 0, 2), False),
+                ("room", room, (0, 0, 2), True), ("in a wall", room, (3.5, 0, 2), True),
                 ("diagonal", (points, faces), (1.6, 1.2, 2), True)):
             with self.subTest(name):
-                ground = al.mesh([(-90, -90, -0.5), (90, -90, -0.5), (90, 90, -0.5), (-90, 90, -0.5)], [(0, 1, 2), (0, 2, 3)])
+                ground = al.mesh([(-90, -90, -0.5), (90, -90, -0.5), (90, 90, -0.5), (-90, 90, -0.5)],
+                                 [(0, 1, 2), (0, 2, 3)])
                 scene = al.Scene(ground, material="Grass", name="ground")
                 scene.add((corners, triangles), material="Wall", name=name)
                 words = [text for text in self.words(scene, position=place) if "closed surface" in text]
-                self.assertEqual([f"is inside the closed surface of '{name}'" in text for text in words], [True] * expected)
+                self.assertEqual([f"is inside the closed surface of '{name}'" in text for text in words],
+                                 [True] * expected)
         with self.assertWarnsRegex(RuntimeWarning, "inside the closed surface of 'object'"):
-            al.Coverage(al.Scene(al.mesh(points, faces), material="Wall", name="object"), al.Sensor("Search905", position=(0, 0, 2)), places=[(0, 9, 2)]).update()
+            al.Coverage(al.Scene(al.mesh(points, faces), material="Wall", name="object"),
+                        al.Sensor("Search905", position=(0, 0, 2)), places=[(0, 9, 2)]).update()
 
     def test_scenes_that_are_as_meant(self):
         """Each has echoes, or nothing wrong but that."""
         for scene, place in ((SCENE, (0, 0, 3)), (SCENE, (0, 0, 0)), (box((-20, 50, 0.3), (20, 52, 15)), (0, 0, 0)),
-                             (box((-10, 300, 40), (10, 320, 60)), (0, 0, 32)), (box((-15, 0, -10), (15, 0.2, 20)), (0, -60, 3)),
+                             (box((-10, 300, 40), (10, 320, 60)), (0, 0, 32)),
+                             (box((-15, 0, -10), (15, 0.2, 20)), (0, -60, 3)),
                              (box((-5, 0, -30), (5, 10, 30)), (0, -60, 3))):
             self.assertEqual(self.words(al.Scene(scene), position=place), [], place)
         self.assertEqual(list(_sight.of_scene((-10000, 10000, -10000, 10000, 1500, 4000))), [])  # hills

@@ -25,7 +25,8 @@ SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport",
 
 class Properties(unittest.TestCase):
     def test_every_property_by_both_names(self):
-        for owner, cls in ((al.Sensor(), wrapped.vtkAvianLidarBeamSource), (al.Scan(al.Scene()), wrapped.vtkAvianLidarEchoFilter)):
+        for owner, cls in ((al.Sensor(), wrapped.vtkAvianLidarBeamSource),
+                           (al.Scan(al.Scene()), wrapped.vtkAvianLidarEchoFilter)):
             own = {m for base in cls.__mro__ if base.__name__.startswith("vtkAvianLidar") for m in vars(base)}
             names = [m[3:] for m in own if m.startswith("Set") and hasattr(cls, "Get" + m[3:])]
             names = [n for n in names if n not in ("ChannelElevation", "NumberOfChannelElevations", "ErrorsAsData")]
@@ -56,7 +57,8 @@ class Properties(unittest.TestCase):
         scene, sensor = al.Scene(WALL), al.Sensor(azimuth_step=10)
 
         def read():
-            return scene.objects, scene.materials, scene.number_of_triangles, scene.bounds, sensor.beams.number_of_points
+            return [scene.objects, scene.materials, scene.number_of_triangles, scene.bounds,
+                    sensor.beams.number_of_points]
         known = read()
         with mock.patch("avianlidar._scene.update") as one, mock.patch("avianlidar._sensor.update") as other:
             self.assertEqual(read(), known)
@@ -70,7 +72,8 @@ class Properties(unittest.TestCase):
             self.assertNotEqual(now, before)
 
     def test_tables_are_set_as_a_whole_or_not_at_all(self):
-        sensor = al.Sensor(channel_elevations=np.array([3.0, -1.0, 2.0]), position=np.array([1, 2, 3]), azimuth_step=np.float32(5))
+        sensor = al.Sensor(channel_elevations=np.array([3.0, -1.0, 2.0]), position=np.array([1, 2, 3]),
+                           azimuth_step=np.float32(5))
         self.assertEqual((sensor.channel_elevations, sensor.position), ((3, -1, 2), (1, 2, 3)))
         self.assertEqual(sensor.beams["vertical_angle"][:3].tolist(), [3, -1, 2])
         self.assertEqual(sensor.beams.number_of_points, 3 * 72)
@@ -100,10 +103,11 @@ class Properties(unittest.TestCase):
         self.assertEqual(scan.properties(), before)  # nothing is set if one name is unknown
 
     def test_switches(self):
-        """A text is no switch: "off" would turn it on."""
+        """A text is not a switch: "off" would turn it on."""
         scan = al.Scan(al.Scene(), noise=False)
         for value in ("off", None, 2):
-            for call in (lambda v=value: scan.set(Noise=v), lambda v=value: al.save(al.mesh(*WALL), "x.bin", write_labels=v)):
+            for call in (lambda v=value: scan.set(Noise=v),
+                         lambda v=value: al.save(al.mesh(*WALL), "x.bin", write_labels=v)):
                 with self.assertRaisesRegex(TypeError, "(noise|write_labels) is "):
                     call()
             self.assertIs(scan.noise, False)
@@ -120,7 +124,8 @@ class Scans(unittest.TestCase):
         scan = al.Scan(al.Scene(town()), al.Sensor(azimuth_step=4, position=(1, 2, 3)), rays_per_beam=64, seed=5)
         for port, found in ((0, scan.echoes), (1, scan.report)):
             self.assertGreater(found.number_of_points, 20)
-            assert_same_bits(echo.GetOutput(port), found.data, ("candidates", "nodes_visited"))  # costs, which the shared tree may change
+            # costs, which the shared tree may change
+            assert_same_bits(echo.GetOutput(port), found.data, ("candidates", "nodes_visited"))
         self.assertEqual(scan["energy"].tobytes(), scan.echoes["energy"].tobytes())
 
     def test_units_and_fields(self):
@@ -170,7 +175,8 @@ class Scans(unittest.TestCase):
     def test_the_checksum_is_that_of_the_scene_with_its_materials(self):
         def of(kd, sensor="Search905"):
             scene = al.Scene()
-            scene.add(al.mesh([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]), material=np.array([(kd, 0.0, 1.0)]))
+            scene.add(al.mesh([(-9, 50, -9), (9, 50, -9), (9, 50, 9)], [(0, 1, 2)]),
+                      material=np.array([(kd, 0.0, 1.0)]))
             return al.Scan(scene, sensor).echoes.fields["scene_checksum"]
         self.assertEqual(of(0.5), of(0.5, "Search1550"))
         self.assertNotEqual(of(0.5), of(0.4))
@@ -189,13 +195,15 @@ class Surfaces(unittest.TestCase):
         paint = wrapped.vtkAvianLidarMaterial()
         paint.SetInputData(al.mesh(*WALL))
         paint.SetMaterialToMetal()
-        for surfaces in (al.mesh(*WALL), list(WALL), (WALL[0].tolist(), WALL[1].astype(np.uint8)), paint, paint.GetOutputPort()):
+        for surfaces in (al.mesh(*WALL), list(WALL), (WALL[0].tolist(), WALL[1].astype(np.uint8)), paint,
+                         paint.GetOutputPort()):
             self.assertTrue(same(self.echoes(surfaces, material="Metal", name="wall"), expected), type(surfaces))
         self.assertTrue(same(self.echoes(*WALL, material="Metal", name="wall"), expected))
         cube = vtkCubeSource()
         cube.SetBounds(-20, 20, 50, 52, -5, 15)
         cube.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
-        self.assertTrue(np.allclose(self.echoes(cube, material=(0.075, 0.634, 6803))["distance_m"], expected["distance_m"], rtol=1e-6))
+        self.assertTrue(np.allclose(self.echoes(cube, material=(0.075, 0.634, 6803))["distance_m"],
+                                    expected["distance_m"], rtol=1e-6))
 
     def test_arrays_are_copied(self):
         points, triangles = WALL[0].copy(), WALL[1].copy()
@@ -237,7 +245,8 @@ class EditsInPlace(unittest.TestCase):
             scan = al.Scan(scene, al.Sensor(azimuth_step=4))
             before = scan.echoes
             points, kd = data.GetPoints().GetData(), data.GetCellData().GetArray("kd")
-            for array, told in ((points, whole), (points, whole.GetBlock(0)), (points, data.GetPoints()), (points, points), (kd, kd)):
+            for array, told in ((points, whole), (points, whole.GetBlock(0)), (points, data.GetPoints()),
+                                (points, points), (kd, kd)):
                 values = vtk_to_numpy(array)
                 values *= 1.1
                 told.Modified()
@@ -276,7 +285,8 @@ class Refused(unittest.TestCase):
                 (ValueError, "'sensor' needs field data", lambda: points.coordinates("sensor")),
                 (ValueError, "geodetic_origin", lambda: points.coordinates("geodetic")),
                 (ValueError, "enu, sensor, geodetic, utm, ecef", lambda: points.coordinates("polar")),
-                (ValueError, "cannot draw 'direction', which has 3 components", lambda: sensor.beams.plot_map("direction"))):
+                (ValueError, "cannot draw 'direction', which has 3 components",
+                 lambda: sensor.beams.plot_map("direction"))):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 call()
         self.assertEqual(len(cover.height_limits), cover.algorithm.GetNumberOfHeightLimits())
@@ -285,7 +295,8 @@ class Refused(unittest.TestCase):
 class Docstrings(unittest.TestCase):
     def test_examples_run(self):
         names, tried = {name: getattr(al, name) for name in al.__all__}, 0
-        for module in ("_cloud", "_files", "_pipeline", "_plot", "_properties", "_scan", "_scene", "_sensor", "_writers"):
+        for module in ("_cloud", "_files", "_pipeline", "_plot", "_properties", "_scan", "_scene", "_sensor",
+                       "_writers"):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 result = doctest.testmod(importlib.import_module("avianlidar." + module), extraglobs=names)

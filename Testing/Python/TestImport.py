@@ -16,7 +16,7 @@ def own_names(cls):
 
 
 def properties(one):
-    """Of those that can be read without an argument: name and value."""
+    """Name and value of each property that can be read without an argument."""
     for name in sorted(own_names(type(one))):
         if name.startswith("Set") and hasattr(one, "Get" + name[3:]):
             try:

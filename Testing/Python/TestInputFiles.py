@@ -301,7 +301,7 @@ class Contents(Inputs):
         self.assert_said([(self.scene({"footprints": name, "height": 3}), words) for name in ("plan2.geojson.gz", "plan2.kml.gz", "city.json.gz")]
                          + [(self.scene({"file": name}), words) for name in ("city.json.gz", "unknown.gz", "points.obj.gz", "wall.stl.gz")])
         self.assertLess(time.monotonic() - start, 60.0)
-        from avianlidar.apps import _inputs  # not in the processes with limits
+        from avianlidar.apps.inputs import _read as _inputs  # not in the processes with limits
         for name in ("plan.coverage.json", "cloud.csv"):
             with self.assertRaisesRegex(avianlidar.Error, name + ": holds more than [0-9]+ MiB, which is too much"):
                 (_inputs.read_plan if "json" in name else avianlidar.load_cloud)(packed(name, zeros, many, b'{"a":[', b"0]}"))

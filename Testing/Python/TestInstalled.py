@@ -31,7 +31,7 @@ print(scan.echoes.number_of_points, al.load_cloud("echoes.vtp").number_of_points
 
 
 def names(folder):
-    """Of the files in a folder and those in it."""
+    """Checksums of the files in a folder and its subfolders."""
     return {str(file.relative_to(folder)) for file in folder.rglob("*") if file.is_file()}
 
 
@@ -57,7 +57,7 @@ class Installed(unittest.TestCase):
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(PREFIX), "PYTHONDONTWRITEBYTECODE": "1",
                        "PYTHONPATH": os.pathsep.join([str(self.package.parent), *vtk])}
         program = PREFIX / "program.py"
-        program.write_text(PROGRAM, encoding="utf-8")
+        program.write_text(PROGRAM, "utf-8")
         for interpreter in [sys.executable] if vtk else [sys.executable, "pvpython", "pvbatch"]:
             with self.subTest(interpreter):
                 result = subprocess.run([interpreter, program, PREFIX], cwd=PREFIX, env=environment,
@@ -73,4 +73,5 @@ class Installed(unittest.TestCase):
             self.assertGreater(len(beside), 8)
             for one in beside:
                 installed = PREFIX / one.relative_to(BUILD)
-                self.assertTrue(installed.exists() and (one == file or installed.read_bytes() == one.read_bytes()), installed)
+                self.assertTrue(installed.exists() and (one == file or installed.read_bytes() == one.read_bytes()),
+                                installed)

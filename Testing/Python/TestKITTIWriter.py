@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""KITTI scans read by the Mobile Robot Programming Toolkit, scans and SemanticKITTI's labels by NumPy as that data set's own
-tools do, and by the reader."""
+"""KITTI scans read by the Mobile Robot Programming Toolkit, scans and SemanticKITTI's labels by NumPy as that data
+set's own tools do, and by the reader."""
 
 import os
 import pathlib
@@ -16,11 +16,13 @@ from echotools import InFolder, Messages, array, given
 FILE, LABELS = "TestKITTIWriter.bin", "TestKITTIWriter.label"
 
 # (LAS, SemanticKITTI) of the words for classes of objects, as the page has them; a few as the standards do.
-with open(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", "reference", "formats.md"), encoding="utf-8") as page:
+with open(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Documentation", "reference", "formats.md"),
+          encoding="utf-8") as page:
     ROWS = re.findall(r"^\| ((?:`\w+`(?:, )?)+) \| (\d+)[^|]*\| (\d+)[^|]*\|$", page.read(), re.M)
 WORDS = {word: (int(las), int(kitti)) for words, las, kitti in ROWS for word in re.findall(r"`(\w+)`", words)}
-STANDARD = {"ground": (2, 72), "water": (9, 49), "runway": (11, 40), "building": (6, 50), "bridge": (17, 52), "fence": (1, 51), "pole": (1, 80),
-            "sign": (1, 81), "tree": (5, 70), "car": (1, 10), "truck": (1, 18), "vehicle": (1, 20), "bird": (1, 99)}
+STANDARD = {"ground": (2, 72), "water": (9, 49), "runway": (11, 40), "building": (6, 50), "bridge": (17, 52),
+            "fence": (1, 51), "pole": (1, 80), "sign": (1, 81), "tree": (5, 70), "car": (1, 10), "truck": (1, 18),
+            "vehicle": (1, 20), "bird": (1, 99)}
 
 
 def parse():
@@ -59,7 +61,8 @@ class TestKITTIWriter(InFolder):
         self.assertLess(np.abs(scan[:, :3] - expected).max(), 512 * 2.0**-25 * 1.01)
         np.testing.assert_array_equal(scan[:, 3], (array(self.data, "intensity") / 255).astype("f4"))
         # The toolkit's reader finds the same floats in the same order.
-        result = subprocess.run([os.environ["AVIANLIDAR_KITTI_READER"], FILE], capture_output=True, text=True, check=True)
+        result = subprocess.run([os.environ["AVIANLIDAR_KITTI_READER"], FILE], capture_output=True, text=True,
+                                check=True)
         np.testing.assert_array_equal(np.array([line.split() for line in result.stdout.splitlines()], dtype="f4"), scan)
 
     def test_labels(self):
@@ -101,14 +104,18 @@ class TestKITTIWriter(InFolder):
         np.testing.assert_allclose(array(read(FILE), "intensity"), [0, 51, 255], rtol=1e-6)
 
     def test_measured_clouds(self):
-        """Without objects: the labels that were read, or none; far from the sensor, the loss in single precision and its remedy."""
+        """Without objects: the labels that were read, or none; far from the sensor, the loss in single precision and
+        its remedy."""
         near = cloud([[1, 2, 3], [4, 5, 6]])
         far = cloud(points(near) + (448123.4, 5412345.6, 420.1))
         position, none, lost = self.write(far)
         self.assertIn("'position' of a sensor: its points are taken for coordinates in the sensor's frame", position)
-        self.assertIn("no labels are written, because the input has no point array 'object_id' or 'semantic_label'", none)
+        self.assertIn("no labels are written, because the input has no point array 'object_id' or 'semantic_label'",
+                      none)
         loss = np.abs(np.float32(points(far)) - points(far)).max()
-        self.assertRegex(lost, rf"moves coordinates by up to {round(loss, 3):g} m: set .*'position', or --position of avianlidar convert")
+        self.assertRegex(lost,
+                         rf"moves coordinates by up to {round(loss, 3):g} m: set .*'position', or --position of "
+                         r"avianlidar convert")
         self.assertFalse(os.path.exists(LABELS))
         add_field(far, "position", (448123.4, 5412345.6, 420.1))
         self.assertEqual(len(self.write(far)), 1)
@@ -117,7 +124,8 @@ class TestKITTIWriter(InFolder):
             add_array(far, name, np.array(values, np.uint16))
         self.assertEqual(self.write(far), [])
         again = read(FILE)
-        self.assertEqual([array(again, name).tolist() for name in ("semantic_label", "instance_id")], [[40, 252], [0, 65535]])
+        self.assertEqual([array(again, name).tolist() for name in ("semantic_label", "instance_id")],
+                         [[40, 252], [0, 65535]])
         before = pathlib.Path(FILE).read_bytes()  # these labels would label other points
         heard = Messages(self.writer)
         self.assertEqual(given(self.writer, InputData=near, FileName=FILE).Write(), 0)
@@ -129,7 +137,8 @@ class TestKITTIWriter(InFolder):
         self.write()
         again = read(FILE)
         np.testing.assert_allclose(points(again), points(self.data) - (10, 20, 3), rtol=0, atol=512 * 2.0**-25 * 1.01)
-        for name, rounding in (("intensity", (1e-7, 0)), ("distance_m", (1e-6, 0)), ("azimuth", (0, 0.01)), ("vertical_angle", (1e-7, 1e-4))):
+        for name, rounding in (("intensity", (1e-7, 0)), ("distance_m", (1e-6, 0)), ("azimuth", (0, 0.01)),
+                               ("vertical_angle", (1e-7, 1e-4))):
             np.testing.assert_allclose(array(again, name), array(self.data, name), *rounding, err_msg=name)
         self.assertEqual(array(again, "instance_id").tolist(), (array(self.data, "object_id") + 1).tolist())
         self.assertEqual(set(array(again, "semantic_label")), {0, 40, 50, 51, 72})

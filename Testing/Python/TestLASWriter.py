@@ -18,8 +18,8 @@ from cloudtools import (add_array, add_field, assert_refused, assert_same_arrays
 from echotools import InFolder, array, copy_of
 
 FILE = "TestLASWriter.las"
-EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id", "secondary_share",
-         "incidence_angle", "distance_m", "laser_id"]
+EXTRA = ["energy", "energy_received", "return_energy", "energy_std_error", "object_id", "material_id",
+         "secondary_share", "incidence_angle", "distance_m", "laser_id"]
 # In fields that LAS has for them.
 CORE = {"intensity", "return_number", "number_of_returns", "timestamp"}
 
@@ -64,13 +64,15 @@ class TestLASWriter(InFolder):
     def test_header_and_dimensions(self):
         found = self.write(SourceId=65535)
         header, n = found["header"], self.data.GetNumberOfPoints()
-        for name, value in {"majorVersion": 1, "minorVersion": 4, "pointDataRecordFormat": 6, "globalEncoding": 16, "fileSourceId": 65535,
-                            "systemIdentifier": "SIMULATION", "headerLength": 375, "pointCount": n}.items():
+        for name, value in {"majorVersion": 1, "minorVersion": 4, "pointDataRecordFormat": 6, "globalEncoding": 16,
+                            "fileSourceId": 65535, "systemIdentifier": "SIMULATION", "headerLength": 375,
+                            "pointCount": n}.items():
             self.assertEqual(header[name], value, name)  # the encoding: WKT, and time of no epoch
         self.assertEqual(found["endOfPoints"], found["size"])
         counts = np.bincount(array(self.data, "return_number"), minlength=16)[1:]
         self.assertEqual(header["pointCountByReturn"], counts.tolist())
-        np.testing.assert_allclose([header["min"], header["max"]], [positions(found).min(axis=0), positions(found).max(axis=0)], rtol=0, atol=1e-8)
+        np.testing.assert_allclose([header["min"], header["max"]],
+                                   [positions(found).min(axis=0), positions(found).max(axis=0)], rtol=0, atol=1e-8)
         got = {name: np.array(values) for name, values in found["points"].items()}
         np.testing.assert_array_equal(got["Intensity"], np.rint(array(self.data, "intensity") * 257))
         np.testing.assert_array_equal(got["ReturnNumber"], array(self.data, "return_number"))
@@ -90,15 +92,18 @@ class TestLASWriter(InFolder):
         self.assertEqual([words[name] for name in ("energy", "incidence_angle", "distance_m", "laser_id")],
                          ["within receiver limits [J]", "at the surface [deg]", "range [m]", "channel"])
         notes = json.loads(text_of(found, "LASF_Spec", 3))["avian_lidar"]["field_data"]
-        self.assertEqual(notes["scene_checksum"]["value"], [str(self.data.GetFieldData().GetArray("scene_checksum").GetValue(0))])
+        self.assertEqual(notes["scene_checksum"]["value"],
+                         [str(self.data.GetFieldData().GetArray("scene_checksum").GetValue(0))])
 
     def test_coordinate_systems(self):
         """Places are those of the geodetic transform, and PROJ understands the system."""
         south = echoes(origin=(-33.9461, 151.1772, 6.0))
         for data, settings, frame, words, name in (
                 (self.data, {}, "UTM", ('AUTHORITY["EPSG","32651"]', 'VERT_DATUM["Ellipsoid",2002]'), "UTM zone 51N"),
-                (south, {}, "UTM", ('"32756"',), "UTM zone 56S"), (south, {"UTMZone": -55}, None, ('"32755"',), "UTM zone 55S"),
-                (self.data, {"CoordinateSystem": 1}, "ECEF", ("GEOCCS[",), "geocentricX"), (self.data, {"CoordinateSystem": 2}, None, (), "")):
+                (south, {}, "UTM", ('"32756"',), "UTM zone 56S"),
+                (south, {"UTMZone": -55}, None, ('"32755"',), "UTM zone 55S"),
+                (self.data, {"CoordinateSystem": 1}, "ECEF", ("GEOCCS[",), "geocentricX"),
+                (self.data, {"CoordinateSystem": 2}, None, (), "")):
             with self.subTest(name):
                 found = self.write(data, **settings)
                 if frame:
@@ -141,7 +146,8 @@ class TestLASWriter(InFolder):
             np.testing.assert_array_equal(np.array(found["points"][one["name"]]), values, one["name"])
 
     def test_extra_bytes(self):
-        """Every numeric array once, or only those of the list: what is left out then is the user's choice, and no warning says so."""
+        """Every numeric array once, or only those of the list: what is left out then is the user's choice, and no
+        warning says so."""
         others = [name for name in names(self.data) if name not in CORE and name not in EXTRA]
         self.assertLessEqual({"azimuth", "beam_id", "label_share", "vertical_angle"}, set(others))
         self.check_extra_bytes(self.write(), EXTRA + others)
@@ -154,20 +160,21 @@ class TestLASWriter(InFolder):
         self.assertEqual([one["name"] for one in self.write()["extraBytes"]][-9:], [f"tensor [{c}]" for c in range(9)])
         assert_same_arrays(self.data, read(FILE), left_out=("intensity", "timestamp"))
 
-    def test_what_is_left_out_or_changed_is_named(self):
+    def test_changes_and_omissions_are_named(self):
         n = self.data.GetNumberOfPoints()
         words = vtk.vtkStringArray()
         words.SetName("words")
         words.SetNumberOfValues(n)
         self.data.GetPointData().AddArray(words)
         add_array(self.data, "serial", np.full(n, 2**53 + 1))
-        for name in ("n" * 31 + "a", "n" * 31 + "b", "q" * 27 + "é€"):  # 31 bytes are what there is: cut between characters
+        # 31 bytes are what there is: cut between characters
+        for name in ("n" * 31 + "a", "n" * 31 + "b", "q" * 27 + "é€"):
             add_array(self.data, name, np.zeros(n))
         add_array(self.data, "user_data", np.full(n, 2.5))
         add_field(self.data, "object_names", ["n" * 1000] * 80)
         warnings = " ".join(sorted(write(self.writer, self.data, FILE)))
-        for words in ("'words' (no numbers)", "'serial' (whole numbers beyond 2^53)", "n" * 31 + "b' (another's name", "n" * 31 + "a' (its name is cut",
-                      "'user_data' (no", "'object_names'"):
+        for words in ("'words' (no numbers)", "'serial' (whole numbers beyond 2^53)", "n" * 31 + "b' (another's name",
+                      "n" * 31 + "a' (its name is cut", "'user_data' (no", "'object_names'"):
             self.assertIn(words, warnings)
         self.assertEqual(set(outside()["points"]["UserData"]), {0})
         again = read(FILE)
@@ -185,11 +192,11 @@ class TestLASWriter(InFolder):
         again = read(FILE)
         self.assertEqual((array(again, "array 340").tolist(), "array 341" in names(again)), ([340, 680], False))
 
-    def test_what_other_files_have_stays(self):
+    def test_fields_of_other_files_stay(self):
         """Fields of LAS that no scan of this project has go back to where they were read."""
         n, draw = self.data.GetNumberOfPoints(), np.random.default_rng(4)
-        for name, high, kind in (("classification", 256, "u1"), ("classification_flags", 16, "u1"), ("user_data", 256, "u1"),
-                                 ("point_source_id", 65536, "u2")):
+        for name, high, kind in (("classification", 256, "u1"), ("classification_flags", 16, "u1"),
+                                 ("user_data", 256, "u1"), ("point_source_id", 65536, "u2")):
             withheld = 4 if name == "classification_flags" else 0  # such points are not read
             add_array(self.data, name, (draw.integers(0, high, n) & ~withheld).astype(kind))
         add_array(self.data, "scan_angle", draw.integers(-30000, 30001, n) * 0.006, "deg")
@@ -227,17 +234,20 @@ class TestLASWriter(InFolder):
         found = outside()
         self.assertIn("'return_number' (no", warning)
         self.assertEqual(found["points"]["ReturnNumber"], [*range(1, 16), *[15] * 5])
-        self.assertEqual((found["points"]["return_number"], found["header"]["pointCountByReturn"]), (list(range(1, 21)), [*[1] * 14, 6]))
+        self.assertEqual((found["points"]["return_number"], found["header"]["pointCountByReturn"]),
+                         (list(range(1, 21)), [*[1] * 14, 6]))
 
     def test_bad_input(self):
         def place(i, x, y):
             return lambda data: data.GetPoints().SetPoint(i, x, y, 0)
 
+        def given(name, value):
+            return lambda data: add_field(data, name, value)
+
         for system, change, words in (
                 (0, place(3, np.nan, 0), "point 3"), (2, place(3, 0, -1.1e15), "point 3"),
-                (0, place(4, 1e9, 0), "point 4"),
-                (0, lambda data: add_field(data, "geodetic_origin", (91.0, 0.0, 0.0)), "latitude is 91"),
-                *((0, lambda data, text=text: add_field(data, "crs_wkt", [text]), "'crs_wkt'") for text in ("[", "<gml>PROJCS[</gml>"))):
+                (0, place(4, 1e9, 0), "point 4"), (0, given("geodetic_origin", (91.0, 0.0, 0.0)), "latitude is 91"),
+                *((0, given("crs_wkt", [text]), "'crs_wkt'") for text in ("[", "<gml>PROJCS[</gml>"))):
             self.data.DeepCopy(self.made)
             change(self.data)
             self.writer.SetCoordinateSystem(system)

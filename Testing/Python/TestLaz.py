@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""LAZ holds the bits that LAS holds, for us and for a program that is not ours (laspy); damaged files are errors; a build
-without LASzip says so."""
+"""LAZ holds the bits that LAS holds, for us and for a program that is not ours (laspy); damaged files are errors; a
+build without LASzip says so."""
 
 import importlib.util
 import os
@@ -26,9 +26,11 @@ def random_cloud(count, rgb):
     draw = np.random.default_rng(count)
     data = cloud(draw.uniform(-500, 500, (count, 3)))  # none of them withheld
     add_field(data, "geodetic_origin", (31.0, 121.0, 3.0))
-    for name, most, kind in (("return_number", 16, "u1"), ("number_of_returns", 16, "u1"), ("classification", 256, "u1"),
-                             ("classification_flags", 16, "u1"), ("user_data", 256, "u1"), ("point_source_id", 65536, "u2")):
-        add_array(data, name, (draw.integers(0, most, count) & (~4 if name == "classification_flags" else ~0)).astype(kind))
+    for name, most, kind in (("return_number", 16, "u1"), ("number_of_returns", 16, "u1"),
+                             ("classification", 256, "u1"), ("classification_flags", 16, "u1"),
+                             ("user_data", 256, "u1"), ("point_source_id", 65536, "u2")):
+        add_array(data, name,
+                  (draw.integers(0, most, count) & (~4 if name == "classification_flags" else ~0)).astype(kind))
     add_array(data, "intensity", draw.uniform(0, 255, count), "1")
     add_array(data, "scan_angle", draw.uniform(-180, 180, count), "deg")
     add_array(data, "timestamp", draw.uniform(0, 1e9, count), "us")
@@ -40,7 +42,8 @@ def random_cloud(count, rgb):
 
 
 def bits(data):
-    return {"points": points(data).tobytes(), **{name: (array(data, name).dtype, array(data, name).tobytes()) for name in names(data)}}
+    return {"points": points(data).tobytes(),
+            **{name: (array(data, name).dtype, array(data, name).tobytes()) for name in names(data)}}
 
 
 def content(name):
@@ -85,11 +88,12 @@ class TestLaz(InFolder):
         layers = data + 8 + length + 4
         for cut in (0, 200, data, layers, table - 1, len(whole) - 1):
             self.assert_damaged(whole[:cut], "damaged or cut short|not a LAS file|ends before")
-        # Behind the header numbers of the table of chunks, of layers and of the record that describes the packing. (FuzzPointCloud has more.)
-        for offset, kind, value in (
-            (96, "<I", 2**32 - 1), (247, "<Q", 201), (247, "<Q", 199), (105, "<H", length - 1), (data, "<q", -1), (table, "<I", 1),
-            (table + 4, "<I", 2**32 - 1), (layers - 4, "<I", 199), (layers, "<I", 2**32 - 1), (record + 2, "<B", 0), (record + 92, "<H", 9),
-        ):
+        # Behind the header numbers of the table of chunks, of layers and of the record that describes the packing.
+        # (FuzzPointCloud has more.)
+        for offset, kind, value in ((96, "<I", 2**32 - 1), (247, "<Q", 201), (247, "<Q", 199), (105, "<H", length - 1),
+                                    (data, "<q", -1), (table, "<I", 1), (table + 4, "<I", 2**32 - 1),
+                                    (layers - 4, "<I", 199), (layers, "<I", 2**32 - 1), (record + 2, "<B", 0),
+                                    (record + 92, "<H", 9)):
             changed = bytearray(whole)
             struct.pack_into(kind, changed, offset, value)
             with self.subTest(offset=offset - data, value=value):
@@ -124,7 +128,8 @@ class TestLaz(InFolder):
             self.assertEqual(laz.points.array.tobytes(), las.points.array.tobytes())
             self.assertEqual((laz.header.point_format.id, laz.header.point_count), (7 if rgb else 6, CHUNK + 1))
             np.testing.assert_array_equal(laz.header.maxs, las.header.maxs)
-            self.assertEqual(laz.vlrs.get("WktCoordinateSystemVlr")[0].string, las.vlrs.get("WktCoordinateSystemVlr")[0].string)
+            self.assertEqual(laz.vlrs.get("WktCoordinateSystemVlr")[0].string,
+                             las.vlrs.get("WktCoordinateSystemVlr")[0].string)
         draw = np.random.default_rng(4)
         for form in (0, 1, 2, 3, 6, 7, 8):
             header = laspy.LasHeader(point_format=form, version="1.4" if form > 5 else "1.2")

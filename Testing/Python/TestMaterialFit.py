@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Materials fitted to measured tables: the fit's models are those of the scan, cells of MERL tables lie where its authors put
-them, known coefficients come back with and without noise, and files that are wrong are one line each."""
+"""Materials fitted to measured tables: the fit's models are those of the scan, cells of MERL tables lie where its
+authors put them, known coefficients come back with and without noise, and files that are wrong are one line each."""
 import contextlib
 import io
 import json
@@ -37,8 +37,8 @@ class Models(unittest.TestCase):
         """A plate turned by an angle, looked at by one narrow beam through an aperture: energy r2/A is 1/sr."""
         distance, aperture, pulse = 100.0, 0.01, 1e-3
         sensor = al.Sensor("CorridorC16", channel_elevations=[0.0], azimuth_range=(90.0, 90.5), azimuth_step=1.0,
-                           half_beamwidth=1e-6, pulse_energy=pulse, receiver_aperture=aperture, lower_energy_limit=1e-30,
-                           upper_energy_limit=1.0, pulse_width=0.0)
+                           half_beamwidth=1e-6, pulse_energy=pulse, receiver_aperture=aperture,
+                           lower_energy_limit=1e-30, upper_energy_limit=1.0, pulse_width=0.0)
         for angle in (0.0, 2.0, 60.0):
             turn = np.radians(angle)
             along = np.array([-np.sin(turn), np.cos(turn), 0.0])
@@ -48,10 +48,12 @@ class Models(unittest.TestCase):
             for material in MATERIALS:
                 scene = al.Scene((corners, [(0, 1, 2), (0, 2, 3)]), material=material)
                 for model in MODELS:
-                    scan = al.Scan(scene, sensor, reflectance_model=model, attenuation_coefficient=0.0, noise=False, number_of_reflections=1)
+                    scan = al.Scan(scene, sensor, reflectance_model=model, attenuation_coefficient=0.0, noise=False,
+                                   number_of_reflections=1)
                     self.assertEqual(len(scan["return_energy"]), 1)
                     seen = scan["return_energy"][0] / pulse * distance**2 / aperture
-                    np.testing.assert_allclose(fit.reflected(model, material, g)[0], seen, rtol=1e-3, err_msg=f"{angle} {material} {model}")
+                    np.testing.assert_allclose(fit.reflected(model, material, g)[0], seen, rtol=1e-3,
+                                               err_msg=f"{angle} {material} {model}")
 
 
 class Merl(InFolder):
@@ -62,7 +64,8 @@ class Merl(InFolder):
     def test_cells_lie_where_its_authors_put_them(self):
         half, difference, azimuth = np.unravel_index(np.arange(0, self.g.cos_lobe.size, 7919), fit.MERL_SHAPE)
         for i, j, k in zip(half, difference, azimuth):
-            theta, along = np.radians((i + 0.5)**2 / 90), fit.directions(np.radians([j + 0.5]), np.radians([k + 0.5]))[0]
+            theta = np.radians((i + 0.5)**2 / 90)
+            along = fit.directions(np.radians([j + 0.5]), np.radians([k + 0.5]))[0]
             turn = np.array([[np.cos(theta), 0, np.sin(theta)], [0, 1, 0], [-np.sin(theta), 0, np.cos(theta)]])
             source, viewer = turn @ along, turn @ (along * (-1, -1, 1))
             number = (i * 90 + j) * 180 + k
@@ -82,7 +85,8 @@ class Merl(InFolder):
         for model, material, noise, tolerance in zip(MODELS, MATERIALS, (0.0, 0.0, 0.1), (1e-4, 1e-4, 0.03)):
             with self.subTest(model=model, material=material, noise=noise):
                 exact = fit.reflected(model, material, self.g) / np.maximum(self.g.cos_outgoing, 1e-6)
-                found, log, *_ = check_fit.fitted(self.write(exact * random.lognormal(0, noise, exact.size)), model=model)
+                found, log, *_ = check_fit.fitted(self.write(exact * random.lognormal(0, noise, exact.size)),
+                                                  model=model)
                 np.testing.assert_allclose(found, material, rtol=tolerance)
                 self.assertAlmostEqual(log, noise, delta=1e-4 + 0.05 * noise)
 
@@ -90,7 +94,8 @@ class Merl(InFolder):
 class Command(InFolder):
     def table(self, name, header, rows):
         file = self.folder / name
-        file.write_text("\n".join([header, *(",".join(f"{value:.10g}" for value in row) for row in rows)]) + "\n", "utf-8")
+        file.write_text("\n".join([header, *(",".join(f"{value:.10g}" for value in row) for row in rows)]) + "\n",
+                        "utf-8")
         return file
 
     def run_it(self, *arguments):
@@ -107,7 +112,8 @@ class Command(InFolder):
         said = self.run_it(one, "--within", 180)
         written = json.loads((self.folder / "out" / "materials.json").read_text("utf-8"))
         self.assertIn(json.dumps(written, indent=2), said)
-        np.testing.assert_allclose([written["materials"]["back"][key] for key in ("kd", "ks", "kp")], material, rtol=1e-4)
+        np.testing.assert_allclose([written["materials"]["back"][key] for key in ("kd", "ks", "kp")], material,
+                                   rtol=1e-4)
         self.assertGreater((self.folder / "out" / "back.png").stat().st_size, 5000)
         scene = {"version": 1, **written, "objects": [{"ground": {"size": 10}, "material": "back"}]}
         file = self.folder / "made.lidarscene.json"

@@ -9,7 +9,8 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource
 
 import avianlidar as al
-from avianlidar.vtkAvianLidar import vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter, vtkAvianLidarMedium
+from avianlidar.vtkAvianLidar import (vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter,
+                                      vtkAvianLidarMedium)
 from cloudtools import field as texts
 from echotools import InFolder, Messages, array, box, given, group
 
@@ -53,7 +54,8 @@ class Source(unittest.TestCase):
         np.testing.assert_allclose(turned.GetBounds(), (-5, 5, -1, 1, -1, 1), atol=0.03)
         layer = medium(Bottom=0.0, Top=10.0, DisplaySize=100.0)
         self.assertEqual(layer.GetBounds(), (-50, 50, -50, 50, 0, 10))
-        self.assertEqual(medium(Kind=5, Shape=3).GetFieldData().GetAbstractArray("object_classes").GetValue(0), "vegetation")
+        self.assertEqual(medium(Kind=5, Shape=3).GetFieldData().GetAbstractArray("object_classes").GetValue(0),
+                         "vegetation")
 
     def test_bad_values_are_named(self):
         plane = vtkPlaneSource()
@@ -71,8 +73,9 @@ class Source(unittest.TestCase):
 
 
 class Echoes(unittest.TestCase):
-    def test_what_is_behind_a_bank_is_weakened(self):
-        bank = medium(Kind=6, Extinction=0.02, BackscatterRatio=1e9, Shape=2, Center=(0.0, 100.0, 0.0), Lengths=(100.0, 30.0, 100.0))
+    def test_surfaces_behind_a_bank_are_weakened(self):
+        bank = medium(Kind=6, Extinction=0.02, BackscatterRatio=1e9, Shape=2, Center=(0.0, 100.0, 0.0),
+                      Lengths=(100.0, 30.0, 100.0))
         behind = echoes(group(wall(), bank))["energy_received"].mean()
         self.assertAlmostEqual(behind / echoes(wall())["energy_received"].mean() / math.exp(-2 * 0.6), 1, delta=1e-6)
         cube = vtkCubeSource()
@@ -90,7 +93,8 @@ class Echoes(unittest.TestCase):
             surfaces = group(tree.GetOutput())
 
     def test_a_tree_by_beer_and_lambert(self):
-        crown = medium(Kind=5, LeafAreaDensity=0.4, Shape=3, Center=(0.0, 100.0, 0.0), Lengths=(6.0, 6.0, 6.0), Name="oak")
+        crown = medium(Kind=5, LeafAreaDensity=0.4, Shape=3, Center=(0.0, 100.0, 0.0), Lengths=(6.0, 6.0, 6.0),
+                       Name="oak")
         seen = echoes(group(wall(), crown))
         behind = seen["distance_m"] > 150
         # There and back through all leaves; a beam of some width meets others on its way back (TestBeamCrowns.cxx).
@@ -103,7 +107,8 @@ class Echoes(unittest.TestCase):
         self.assertTrue((np.abs(seen["distance_m"][~behind] - 100) < 3.5).all())
 
     def test_trees_without_a_name_are_named_as_surfaces_are(self):
-        trees = [medium(Kind=5, Shape=2, Center=(0.0, 50.0 + 50 * k, 0.0), Lengths=(40.0, 1.0, 40.0), Name="") for k in range(3)]
+        trees = [medium(Kind=5, Shape=2, Center=(0.0, 50.0 + 50 * k, 0.0), Lengths=(40.0, 1.0, 40.0), Name="")
+                 for k in range(3)]
         blocks = group(wall(), *trees)
         blocks.GetMetaData(1).Set(vtkMultiBlockDataSet.NAME(), "lime")
         seen = echoes(blocks)
@@ -133,7 +138,8 @@ class Coverage(unittest.TestCase):
         return array(coverage.GetOutputDataObject(0), "detection_probability")
 
     def test_it_knows_media(self):
-        ground, clear_air = box((0, 0, -6), (900, 900, 1), "Grass", "ground"), {"Visibility": 0.0, "AttenuationCoefficient": 0.0}
+        ground = box((0, 0, -6), (900, 900, 1), "Grass", "ground")
+        clear_air = {"Visibility": 0.0, "AttenuationCoefficient": 0.0}
         clear = self.probabilities(ground, **clear_air)
         weather = self.probabilities(ground, Visibility=800.0, AirBackscatter=True)
         everywhere = self.probabilities(group(ground, medium(Visibility=800.0, Shape=0)), **clear_air)
@@ -141,13 +147,14 @@ class Coverage(unittest.TestCase):
         self.assertGreater(clear.sum(), 1.5 * weather.sum())
         bank = medium(Visibility=100.0, Shape=2, Center=(0.0, 50.0, 0.0), Lengths=(40.0, 60.0, 500.0))
         behind = self.probabilities(group(ground, bank), **clear_air)
-        self.assertTrue((behind <= clear + 1e-6).all() and (behind < clear - 0.2).any() and (behind[clear > 0.9] > 0.9).any())
+        self.assertTrue((behind <= clear + 1e-6).all() and (behind < clear - 0.2).any()
+                        and (behind[clear > 0.9] > 0.9).any())
 
 
 class SceneFiles(InFolder):
     def scene(self, objects):
         file = self.folder / "airport.lidarscene.json"
-        file.write_text(json.dumps({"version": 1, "objects": objects}), encoding="utf-8")
+        file.write_text(json.dumps({"version": 1, "objects": objects}), "utf-8")
         return file
 
     def test_fog_trees_rows_and_woods(self):
@@ -157,12 +164,13 @@ class SceneFiles(InFolder):
             feature("Point", [10.0, 50.0], natural="tree"), feature("Point", [20.0, 50.0], natural="tree", height="12"),
             feature("LineString", [[0.0, 100.0], [30.0, 100.0]], natural="tree_row"),
             feature("Polygon", [[[-60, 80], [-20, 80], [-20, 120], [-60, 120], [-60, 80]]], natural="wood")]}
-        trees = {"footprints": "trees.geojson", "crs": "local", "name": "trees", "class": "vegetation", "base": 2, "height": 8,
-                 "height_attribute": "height", "width": 6, "medium": {"kind": "foliage", "leaf_area_density": 0.5}}
-        (self.folder / "trees.geojson").write_text(json.dumps(plan), encoding="utf-8")
+        trees = {"footprints": "trees.geojson", "crs": "local", "name": "trees", "class": "vegetation", "base": 2,
+                 "height": 8, "height_attribute": "height", "width": 6,
+                 "medium": {"kind": "foliage", "leaf_area_density": 0.5}}
+        (self.folder / "trees.geojson").write_text(json.dumps(plan), "utf-8")
         file = self.scene([{"ground": {"size": 1000}, "name": "ground", "material": "Grass"}, trees,
-                                   {"medium": {"kind": "fog", "visibility": 200, "shape": "layer", "top": 3, "softness": 2},
-                                    "name": "ground fog"}])
+                           {"medium": {"kind": "fog", "visibility": 200, "shape": "layer", "top": 3, "softness": 2},
+                            "name": "ground fog"}])
         scene = al.Scene(str(file))
         scan = al.Scan(scene, al.Sensor("Search905", position=(0, 0, 5), azimuth_range=(-50, 50)), noise=False)
         kinds = [json.loads(said)["kind"] for said in texts(scan.echoes.data, "media")]
@@ -182,7 +190,8 @@ class SceneFiles(InFolder):
                           ({"medium": {"kind": "soup", "shape": "layer"}, "name": "x"}, "kind: "),
                           ({"medium": {**fog, "rain_rate": 3}}, "rain_rate: unknown key"),
                           ({"medium": {**fog, "shape": "everywhere"}}, "top: unknown key"),
-                          ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}}, "objects[0]")):
+                          ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}},
+                           "objects[0]")):
             with self.subTest(part), self.assertRaises(al.Error) as raised:
                 al.Scene(str(self.scene([one])))
             self.assertIn(part, str(raised.exception))

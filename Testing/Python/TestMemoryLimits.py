@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory that runs out is an error with its message, wherever on the way it does, never the end of the process: each algorithm under
-an address limit that leaves ever more to it, and requests too large for the memory there is. After each the same algorithm, without
-the limit, gives what it gives otherwise."""
+"""Memory that runs out is an error with its message, wherever on the way it does, never the end of the process: each
+algorithm under an address limit that leaves ever more to it, and requests too large for the memory there is. After each
+the same algorithm, without the limit, gives what it gives otherwise."""
 import os
 import resource
 import struct
@@ -55,15 +55,16 @@ def on(algorithm, *inputs):
 
 
 def way():
-    """Every algorithm by name, with inputs that are there already; what needs little comes first: later it might find it among what
-    others left."""
+    """Every algorithm by name, with inputs that are there already; what needs little comes first: later it might find
+    it among what others left."""
     beams = echotools.sensor(columns=360, channels=8)
     beams.Update()
     surfaces, random = ball(), np.random.default_rng(7)
     echoes = echotools.scan(surfaces, beams.GetOutput(), RaysPerBeam=10)
     echoes.Update()
     data = cloud(100 * random.random((POINTS, 3)))
-    for name, values in (("energy", random.random(POINTS)), ("laser_id", random.integers(0, 16, POINTS).astype(np.int32)),
+    for name, values in (("energy", random.random(POINTS)),
+                         ("laser_id", random.integers(0, 16, POINTS).astype(np.int32)),
                          ("object_id", np.zeros(POINTS, np.int32)), ("material_id", np.zeros(POINTS, np.int32))):
         add_array(data, name, values)
     add_field(data, "geodetic_origin", (31.2, 121.3, 3.0))
@@ -147,7 +148,8 @@ def too_large():
     def check(algorithm, words, method="Update"):
         heard = echotools.Messages(algorithm)
         getattr(algorithm, method)()
-        assert len(heard.errors) == 1 and words in heard.errors[0] and " GB are available" in heard.errors[0], heard.errors
+        assert len(
+            heard.errors) == 1 and words in heard.errors[0] and " GB are available" in heard.errors[0], heard.errors
 
     source = make("BeamSource", FiringInterval=0, NumberOfChannels=100000, ElevationStep=0.0001, AzimuthStep=0.36)
     check(source, "100,000,000 beams need about 20 GB, ")
@@ -173,7 +175,8 @@ def too_large():
 
 
 # Threads, and memory that goes back to the system when it is freed, so that the next has to ask.
-ENVIRONMENT = {"OMP_NUM_THREADS": "2", "MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "65536", "MALLOC_ARENA_MAX": "1"}
+ENVIRONMENT = {"OMP_NUM_THREADS": "2", "MALLOC_MMAP_THRESHOLD_": "65536", "MALLOC_TRIM_THRESHOLD_": "65536",
+               "MALLOC_ARENA_MAX": "1"}
 
 
 class MemoryLimits(unittest.TestCase):
@@ -183,13 +186,15 @@ class MemoryLimits(unittest.TestCase):
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
         with tempfile.TemporaryDirectory() as folder:
-            run = subprocess.run([sys.executable, os.path.abspath(__file__), "--task", task, *arguments], preexec_fn=limit, cwd=folder,
-                                 env={**os.environ, **ENVIRONMENT}, text=True, errors="replace", capture_output=True, check=False)
+            run = subprocess.run([sys.executable, os.path.abspath(__file__), "--task", task, *arguments],
+                                 preexec_fn=limit, cwd=folder, env={**os.environ, **ENVIRONMENT}, text=True,
+                                 errors="replace", capture_output=True, check=False)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr[-2000:])
         return run.stdout
 
     def test_every_limit_gives_a_result_or_one_error(self):
-        """Which algorithm finds how much depends on what malloc kept of those before it; the limits are felt all the same."""
+        """Which algorithm finds how much depends on what malloc kept of those before it; the limits are felt all the
+        same."""
         lines = [line.split(" ", 2) for line in self.run_apart("walk").splitlines() if line.startswith("WALKED")]
         print(", ".join(f"{name}: {failed}" for _, failed, name in lines))
         self.assertGreater(sum(int(failed) for _, failed, _ in lines), 10)

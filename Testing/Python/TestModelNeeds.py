@@ -13,8 +13,8 @@ from avianlidar._cloud import field_values
 from echotools import CELLS, RAYS
 from needstools import BEAM, BEYOND, Found, airport_filters, compare_units, corridor_filter, needed_and_full
 
-NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths", "note_small_objects",
-         "note_detail_between_rays", "note_planes", "note_perceivable_range")
+NOTES = ("note_all_left_out", "note_noise", "note_two_reflections", "note_further_reflections", "note_faint_paths",
+         "note_small_objects", "note_detail_between_rays", "note_planes", "note_perceivable_range")
 TOWN = echotools.town(count=20)
 
 
@@ -25,11 +25,12 @@ class ModelNeeds(unittest.TestCase):
         self.assertEqual((f["noise_modelled"], full.fields["noise_modelled"]), (0, 1))
         self.assertEqual(f["secondary_reflections_modelled"], 1)
         self.assertAlmostEqual(f["skipped_energy_bound"] / (1e-3 * lower + f["noise_bound"]), 1.0, places=12)
-        # Of the largest kd + ks, from the range at which air leaves Qlow of it.
+        # The limit is that of the largest kd + ks, at the range where the air leaves Qlow.
         largest = lower / pulse * math.exp(2.0 * f["attenuation_coefficient"] * f["perceivable_range"])
         self.assertEqual(f["rays_per_beam"], 100)
         rays = 100 if f["beam_samples"] == RAYS else 1024 * math.pi  # of the grid
-        self.assertAlmostEqual(f["missed_detail_energy"] / (pulse * largest * (1.0 - 0.05 ** (1.0 / rays))), 1.0, places=6)
+        self.assertAlmostEqual(f["missed_detail_energy"] / (pulse * largest * (1.0 - 0.05 ** (1.0 / rays))), 1.0,
+                               places=6)
         self.assertTrue(0.1 < largest <= 1.0)
 
     def test_full_model_is_within_the_bounds(self):
@@ -97,7 +98,8 @@ def notes_of(echo, port=0):
 
 class ModelNotes(unittest.TestCase):
     def test_numbers_are_those_of_the_fields(self):
-        echo = echotools.scan(TOWN, echotools.given(echotools.sensor(), LowerEnergyLimit=7e-6), LightEnergyFraction=0.25)
+        echo = echotools.scan(TOWN, echotools.given(echotools.sensor(), LowerEnergyLimit=7e-6),
+                              LightEnergyFraction=0.25)
         notes = notes_of(echo)
         self.assertEqual((tuple(notes), notes_of(echo, 1)), (NOTES, notes))
         found = field_values(echo.GetOutput())
@@ -116,20 +118,24 @@ class ModelNotes(unittest.TestCase):
             return echotools.scan(TOWN, echotools.given(echotools.sensor(), **dict(sensor)), **settings)
 
         for echo, expected in (
-                (scanned(), {"all_left_out": "at most", "further_reflections": "not modelled: [^,]*$", "noise": "left out", "two_reflections": "modelled, without", "faint_paths": "left out",
-                             "small_objects": "more rays", "planes": "integrated", "perceivable_range": "nothing beyond .* km"}),
+                (scanned(), {"all_left_out": "at most", "further_reflections": "not modelled: [^,]*$",
+                             "noise": "left out", "two_reflections": "modelled, without", "faint_paths": "left out",
+                             "small_objects": "more rays", "planes": "integrated",
+                             "perceivable_range": "nothing beyond .* km"}),
                 # No light after two reflections reaches such a limit.
                 (scanned({"PulseEnergy": 1e-3, "LowerEnergyLimit": 10.0, "UpperEnergyLimit": 20.0}),
-                 {"two_reflections": "left out", "further_reflections": "not modelled: .*, which return at most", "perceivable_range": "nothing beyond 0 m"}),
+                 {"two_reflections": "left out", "further_reflections": "not modelled: .*, which return at most",
+                  "perceivable_range": "nothing beyond 0 m"}),
                 (scanned(AttenuationCoefficient=0.0, FullModel=True),
-                 {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$", "faint_paths": "followed",
-                  "perceivable_range": "without end"}),
+                 {"all_left_out": "nothing", "noise": "modelled", "two_reflections": "modelled$",
+                  "faint_paths": "followed", "perceivable_range": "without end"}),
                 # Each faint path is below the limit, but the bound of their sum is far above it.
-                (scanned(LightEnergyThreshold=1), {"all_left_out": "paths with two reflections below the lower energy limit$",
-                                                   "faint_paths": "left out below the lower energy limit$"}),
+                (scanned(LightEnergyThreshold=1),
+                 {"all_left_out": "paths with two reflections below the lower energy limit$",
+                  "faint_paths": "left out below the lower energy limit$"}),
                 (scanned({"ReceiverAperture": 0.01}, NumberOfReflections=1, Noise=False, BeamSamples=echotools.RAYS),
-                 {"noise": "not modelled", "two_reflections": "not modelled", "further_reflections": "not modelled: paths over two",
-                  "planes": "sampled"})):
+                 {"noise": "not modelled", "two_reflections": "not modelled",
+                  "further_reflections": "not modelled: paths over two", "planes": "sampled"})):
             notes = notes_of(echo)
             for name, text in expected.items():
                 self.assertRegex(notes["note_" + name], "^" + text, name)

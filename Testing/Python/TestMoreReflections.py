@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the echo filter leaves out after three reflections and more: the tracer that measures it has the orders one and two of
-the filter. And what the paper's second reflection brings, read to the letter."""
+"""What the echo filter leaves out after three reflections and more: the tracer that measures it has the orders one and
+two of the filter. And what the paper's second reflection brings, read to the letter."""
 import math
 import unittest
 
@@ -15,7 +15,8 @@ HALF = 5.6e-3
 
 def differences(found):
     """Tracer less filter, in standard errors, for the orders one and two."""
-    one, two = (mr.Measured.mean((found.orders - np.pad(found.filter, ((0, 0), (0, mr.ORDERS - 2))))[:, m]) for m in (0, 1))
+    one, two = (mr.Measured.mean((found.orders - np.pad(found.filter, ((0, 0), (0, mr.ORDERS - 2))))[:, m])
+                for m in (0, 1))
     return one[0] / max(one[1], 1e-12), two[0] / max(two[1], 1e-12)
 
 
@@ -29,7 +30,8 @@ class AgainstTheFilter(unittest.TestCase):
                 self.assertLess(abs(difference), 4, f"order {order}")
             self.assertGreater(found.filter[:, 1].sum(), 0)
         share, error = found.share(found.more())
-        self.assertLess(share + 3 * error, 1e-3)  # of a corridor; over three mirrors comes twenty times what the filter has
+        # of a corridor; over three mirrors comes twenty times what the filter has
+        self.assertLess(share + 3 * error, 1e-3)
 
 
 class ToTheLetter(unittest.TestCase):
@@ -56,7 +58,8 @@ class ToTheLetter(unittest.TestCase):
                        np.random.default_rng(0))
         way = (places[1] - places[0]) / np.linalg.norm(places[1] - places[0])
         expected = 0.0
-        for ray, on, back, n1, n2 in ((rays[0], way, -rays[1], (0, 1, 0), (1, 0, 0)), (rays[1], -way, -rays[0], (1, 0, 0), (0, 1, 0))):
+        for ray, on, back, n1, n2 in ((rays[0], way, -rays[1], (0, 1, 0), (1, 0, 0)),
+                                      (rays[1], -way, -rays[0], (1, 0, 0), (0, 1, 0))):
             product = 1.0
             for come, go, n in ((ray, on, np.array(n1)), (on, back, np.array(n2))):
                 mirror = come - 2 * (come @ n) * n

@@ -41,7 +41,8 @@ def with_fields(surface, **fields):
     for name, values in fields.items():
         changed.GetFieldData().RemoveArray(name)
         if values is not None:
-            _cloud.add_array(changed.GetFieldData(), name, [values] if isinstance(values, str) else np.array(values, dtype=float))
+            _cloud.add_array(changed.GetFieldData(), name,
+                             [values] if isinstance(values, str) else np.array(values, dtype=float))
     return changed
 
 
@@ -56,7 +57,8 @@ class Movers(unittest.TestCase):
         flaps.update(flap_frequency=[0.125] * 2, flap_phase=[0, 0])  # up when the second revolution begins, at 2 s
         scans = []
         at = (200 * np.cos(np.radians(3)), 0.0, 200 * np.sin(np.radians(3)))
-        for movers in (with_fields(al.mover(gull, [at]), **flaps), al.mover(bird(WingPhase=0.25), [at]), al.mover(gull, [at])):
+        for movers in (with_fields(al.mover(gull, [at]), **flaps), al.mover(bird(WingPhase=0.25), [at]),
+                       al.mover(gull, [at])):
             scan = al.Scan(al.Scene(), sensor, noise=False, movers=movers)
             scan.algorithm.UpdateTimeStep(2.0)
             scans.append(al.Cloud(scan.algorithm.GetOutput(0))["photoelectrons"].sum())
@@ -102,10 +104,11 @@ class Movers(unittest.TestCase):
         self.assertTrue(type(scan.algorithm)().GetReportMovers())
 
     def test_ids_and_names(self):
-        """Of an object that is there already, of two that share a number, and of numbers that leave a gap."""
+        """Numbers of an existing object, of two objects, and numbers with a gap."""
         for ids, expected in (((1, 2), [3, 4]), ((10, 12), [10, 12])):
             gulls = [al.mover(bird(ObjectId=k), [(0, 30, 1)]) for k in ids]
-            names = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK), movers=gulls).echoes.fields["object_names"]
+            names = al.Scan(al.Scene(echotools.town(3, 3)), al.Sensor(**CLOCK),
+                            movers=gulls).echoes.fields["object_names"]
             self.assertEqual(list(names[:3]), ["house 0", "house 1", "house 2"])
             self.assertEqual([k for k, name in enumerate(names) if name == "herring gull"], expected)
 
@@ -140,7 +143,7 @@ class Movers(unittest.TestCase):
             scan.update()
 
     def test_shapes_are_checked(self):
-        """Turned or flat arrays are no rows: they used to be read in another order."""
+        """Turned or flat arrays are not rows; older versions read them in another order."""
         row = np.array([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)])
         turn = np.array([(1.0, 0.0, 0.0, 0.0)] * 3)
         for kind, words, arguments in (
@@ -152,13 +155,16 @@ class Movers(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(kind, words):
                 al.mover(bird(), *arguments)
         fields = al.mover(bird(), row, [0, 1], turn[:2]).GetFieldData()
-        self.assertEqual([fields.GetArray(name).GetTuple(1) for name in ("pose_position", "pose_time", "pose_orientation")],
+        self.assertEqual([fields.GetArray(name).GetTuple(1)
+                          for name in ("pose_position", "pose_time", "pose_orientation")],
                          [(4.0, 5.0, 6.0), (1.0,), (1.0, 0.0, 0.0, 0.0)])
 
     def test_the_report_has_both_ends_of_the_revolution(self):
-        """What the last column and the first meet is there twice, at two places; elsewhere it is within some columns."""
+        """What the last column and the first meet is there twice, at two places; elsewhere it is within some
+        columns."""
         seam = al.mover(plate(2.0, 4.0), [(0, 50, 0), (0, 70, 0)], times=[0, 1])
-        side = al.mover(plate(2.0, 4.0), [(50, 0, 0), (50, 20, 0)], times=[0, 1], orientations=[(np.sqrt(0.5), 0, 0, np.sqrt(0.5))] * 2)
+        side = al.mover(plate(2.0, 4.0), [(50, 0, 0), (50, 20, 0)], times=[0, 1],
+                        orientations=[(np.sqrt(0.5), 0, 0, np.sqrt(0.5))] * 2)
         report = al.Scan(al.Scene(), al.Sensor(**CLOCK), movers=[seam, side], noise=False).mover_report
         first, last = np.array(report["first_timestamp"]), np.array(report["last_timestamp"])
         at_seam, aside = np.argsort(np.abs(np.array(report.points)[:, 0]))

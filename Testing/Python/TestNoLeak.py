@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Labels cannot be read off what no receiver shows: who knows range, azimuth, elevation and amplitude of a point learns nothing more about
-what it is from the place within its range unit, its place in the file, numbers that return in other scans, or the last digits of numbers.
+"""Labels cannot be read off what no receiver shows: who knows range, azimuth, elevation and amplitude of a point learns
+nothing more about what it is from the place within its range unit, its place in the file, numbers that return in other
+scans, or the last digits of numbers.
 
-Points of two kinds are paired so that range and amplitude are alike, as these alone tell most points apart and would hide a leak. Boosted
-trees are fitted to the four numbers, and to them and the cheat's; the gain is that of the area under the curve (AUC), of points that the
-trees have not seen. Each post and each bird of a scan counts once where places within the unit are compared, as its points share theirs.
-Skipped where scikit-learn is not installed."""
+Points of two kinds are paired so that range and amplitude are alike, as these alone tell most points apart and would
+hide a leak. Boosted trees are fitted to the four numbers, and to them and the cheat's; the gain is that of the area
+under the curve (AUC), of points that the trees have not seen. Each post and each bird of a scan counts once where
+places within the unit are compared, as its points share theirs. Skipped where scikit-learn is not installed."""
 import json
 import os
 import pathlib
@@ -51,7 +52,7 @@ def posts(file, draw, number, ranges, sizes):
     points = (middles[:, None] + corners * extents).reshape(-1, 3)
     faces = (SIDES + 8 * np.arange(number)[:, None, None] + 1).reshape(-1, 4)
     file.write_text("".join(f"v {x:.5f} {y:.5f} {z:.5f}\n" for x, y, z in points)
-                    + "".join(f"f {' '.join(map(str, face))}\n" for face in faces), encoding="utf-8")
+                    + "".join(f"f {' '.join(map(str, face))}\n" for face in faces), "utf-8")
     return middles
 
 
@@ -82,10 +83,11 @@ class Points:
             words = np.fromfile(folder / "sequences" / "00" / "labels" / f"{file.stem}.label", "<u4")
             x, y, z, _ = points.astype(float).T
             kind, nothing = words & 0xffff, np.arange(len(words)) + 10**6 * (number + 1)
-            # Of a bird its id and the scan, of a post its number, of all others the point.
+            # The key is the id and the scan for a bird, the number for a post, and the point for other echoes.
             owner = np.where(kind == 99, (words >> 16) + 10**5 * (number + 1),
                              np.where(kind == 80, cKDTree(middles).query(np.column_stack([-y, x, z]))[1], nothing))
-            columns.append((np.full(len(words), number + 100 * first), np.arange(len(words)), points, kind, owner + 10**9 * first))
+            columns.append((np.full(len(words), number + 100 * first), np.arange(len(words)), points, kind,
+                            owner + 10**9 * first))
         return tuple(np.concatenate(column) for column in zip(*columns))
 
     def known(self):
@@ -104,15 +106,14 @@ class Points:
         rank[sorted_place] = np.arange(len(distance))
         first = np.searchsorted(self.scan, self.scan)  # scans follow one another
         words = bits(self.points).reshape(-1, 4).T
-        return {
-            "range unit": np.column_stack([place, abs(place - 0.5)]),
-            "order": np.column_stack([rank - first - self.order, self.order % 2, self.order % 16]),
-            "repetition": np.column_stack([times(words[3]), times(*words[:3]), times(*words)]),
-            "bits": np.column_stack([words.T & 255, np.log2(np.maximum(1, words & -words)).T]),
-            "digits": np.column_stack([np.floor(value * 10**k) % 10 for value, range_of in ((amplitude, range(4, 9)), (distance, range(1, 5)))
-                                       for k in range_of]),
-            "direction": np.column_stack([azimuth * (COLUMNS / 360) - column, elevation * 1000 % 1]),
-        }
+        return {"range unit": np.column_stack([place, abs(place - 0.5)]),
+                "order": np.column_stack([rank - first - self.order, self.order % 2, self.order % 16]),
+                "repetition": np.column_stack([times(words[3]), times(*words[:3]), times(*words)]),
+                "bits": np.column_stack([words.T & 255, np.log2(np.maximum(1, words & -words)).T]),
+                "digits": np.column_stack([np.floor(value * 10**k) % 10
+                                           for value, range_of in ((amplitude, range(4, 9)), (distance, range(1, 5)))
+                                           for k in range_of]),
+                "direction": np.column_stack([azimuth * (COLUMNS / 360) - column, elevation * 1000 % 1])}
 
     def once(self, kind, draw):
         """Points of a kind, one of each owner."""
@@ -157,7 +158,8 @@ class NoLeak(unittest.TestCase):
         cls.draw = np.random.default_rng(1)
         cls.fair = Points([cls.make(f"fair{k}", 2500, (80, 800), (0.04, 0.8), 3, sensor=sensor, seed=k, birds=BIRDS)
                            for k, sensor in enumerate((STILL, MOVED) * 3)])
-        cls.rain = Points([cls.make("rain", 6000, (15, 95), (0.002, 0.015), 1, sensor=SHOWERS, scan={"rain_rate": 1.0})])
+        cls.rain = Points([cls.make("rain", 6000, (15, 95), (0.002, 0.015), 1, sensor=SHOWERS,
+                                    scan={"rain_rate": 1.0})])
 
     @classmethod
     def make(cls, name, number, ranges, sizes, scans, sensor, scan=None, **changes):
@@ -167,9 +169,10 @@ class NoLeak(unittest.TestCase):
         middles = posts(out / "posts.obj", cls.draw, number, ranges, sizes)
         scene = {"version": 1, "lidar": {"position": [0, 0, 0]},
                  "objects": [{"name": "Posts", "class": "mast", "file": "posts.obj", "material": "Wall"}]}
-        (out / "posts.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
+        (out / "posts.lidarscene.json").write_text(json.dumps(scene), "utf-8")
         scan = {"attenuation_coefficient": 8.9e-5, "number_of_reflections": 1, **(scan or {})}
-        al.Sequence({"scene": str(out / "posts.lidarscene.json"), "number_of_scans": scans, "sensor": sensor, "scan": scan, **changes}).write(out)
+        al.Sequence({"scene": str(out / "posts.lidarscene.json"), "number_of_scans": scans, "sensor": sensor,
+                     "scan": scan, **changes}).write(out)
         return out, middles
 
     def check(self, points, one, other):

@@ -31,14 +31,15 @@ class Notebook(unittest.TestCase):
 
     def test_what_it_says(self):
         self.assertGreater(int(re.match(r"(\d+) echoes", self.said["scan"])[1]), 1400)
-        haze = [(int(echoes), int(rays)) for echoes, rays in re.findall(r"(\d+) echoes, (\d+) rays traced", self.said["haze"])]
+        haze = [(int(echoes), int(rays))
+                for echoes, rays in re.findall(r"(\d+) echoes, (\d+) rays traced", self.said["haze"])]
         # A fresh scan traces thousands; lit again, few paths that were left out before are.
         self.assertTrue(all(rays < 1000 for _, rays in haze), haze)
         self.assertEqual(haze, sorted(haze, key=lambda one: one[0], reverse=True))
         self.assertFalse([name for name, text in self.said.items() if "Warning" in text])
 
     def test_page_and_pictures(self):
-        page = (OUT / "airport.html").read_text(encoding="utf-8")
+        page = (OUT / "airport.html").read_text("utf-8")
         for name in ("energy-image", "map", "range-image"):
             self.assertEqual((OUT / f"{name}.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(len(re.findall(r'<img [^>]*src="data:image/png;base64,', page)), 3)

@@ -49,10 +49,11 @@ class ObjectClasses(InFolder):
         return treed.GetOutput()
 
     def test_of_several_producers(self):
-        """Each producer begins to count at 0, so objects get new numbers; a leaf may have several. Where no block says its own, the scene's
-        are by object id."""
+        """Each producer begins to count at 0, so objects get new numbers; a leaf may have several. Where no block says
+        its own, the scene's are by object id."""
         hangar, cone, goose = thing("hangar", 0, ["hangar"]), thing("cone", 90), thing("goose", 180, ["bird"])
-        leaf, other = thing("faces", 0, ["runway", "", "fence"], (2, 2, 2, 0, 0, 1)), thing("more", 90, ["tree", "car"], (0, 0, 0, 1, 1, 1))
+        leaf = thing("faces", 0, ["runway", "", "fence"], (2, 2, 2, 0, 0, 1))
+        other = thing("more", 90, ["tree", "car"], (0, 0, 0, 1, 1, 1))
         unnamed = [thing("a", 0, None, [1] * 6), thing("b", 90, None, [0] * 6)]
         for part in unnamed:
             part.GetFieldData().RemoveArray("object_names")
@@ -63,10 +64,12 @@ class ObjectClasses(InFolder):
             collect.AddInputData(part)
         collect.Update()
         for surfaces, expected in ((group(hangar, cone, goose), {"hangar": "hangar", "cone": "", "goose": "bird"}),
-                                   (collect.GetOutput(), {"faces 0": "runway", "faces 1": "apron", "faces 2": "fence", "cone": "", "goose": "bird"}),
+                                   (collect.GetOutput(), {"faces 0": "runway", "faces 1": "apron", "faces 2": "fence",
+                                                          "cone": "", "goose": "bird"}),
                                    (leaf, {"faces 0": "runway", "faces 1": "", "faces 2": "fence"}),
                                    (unnamed, {"block 1": "tower", "block 0": "sign"}),
-                                   (group(leaf, other), {"faces 0": "runway", "faces 1": "", "faces 2": "fence", "more 0": "tree", "more 1": "car"})):
+                                   (group(leaf, other), {"faces 0": "runway", "faces 1": "", "faces 2": "fence",
+                                                         "more 0": "tree", "more 1": "car"})):
             self.check(surfaces, list(expected), list(expected.values()))
 
     def test_material_keeps_it(self):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The echo filter gives what closed forms give (Testing/Oracles), sampled and integrated. With --table it prints the numbers
-of Documentation/evidence/oracles.md instead. For another simulator, this is the file to write anew."""
+"""The echo filter gives what closed forms give (Testing/Oracles), sampled and integrated. With --table it prints the
+numbers of Documentation/evidence/oracles.md instead. For another simulator, this is the file to write anew."""
 import math
 import os
 import sys
@@ -45,8 +45,8 @@ def surfaces(case):
     """The scene with its coefficients."""
     if "sphere" in case["scene"]:
         sphere = case["scene"]["sphere"]
-        ball = given(vtkSphereSource(), Center=sphere["centre_m"], Radius=sphere["radius_m"], ThetaResolution=FACETS, PhiResolution=FACETS // 2,
-                     OutputPointsPrecision=vtkSphereSource.DOUBLE_PRECISION)
+        ball = given(vtkSphereSource(), Center=sphere["centre_m"], Radius=sphere["radius_m"], ThetaResolution=FACETS,
+                     PhiResolution=FACETS // 2, OutputPointsPrecision=vtkSphereSource.DOUBLE_PRECISION)
         ball.Update()
         data = ball.GetOutput()
     else:
@@ -62,8 +62,8 @@ def surfaces(case):
 def scan(case, sensor, rays=RAYS, integrate=False, **properties):
     """Echoes of the beam as {name: array}. Integrated, only paths with two reflections may trace any ray."""
     lidar = given(vtkAvianLidarEchoFilter(), RaysPerBeam=rays, AttenuationCoefficient=case["attenuation_per_m"],
-                  NumberOfReflections=case["reflections"], LightEnergyConstraint=False, BeamSamples=CELLS if integrate else RAYS_ALONE,
-                  SurfacesData=surfaces(case), **properties)
+                  NumberOfReflections=case["reflections"], LightEnergyConstraint=False,
+                  BeamSamples=CELLS if integrate else RAYS_ALONE, SurfacesData=surfaces(case), **properties)
     lidar.SetInputData(0, sensor)
     lidar.Update()
     assert not integrate or case["reflections"] > 1 or lidar.GetNumberOfTracedRays() == 0, case["name"]
@@ -108,8 +108,8 @@ def of_waveform(case, how="sampled", **more):
 
 
 def of_connections(case, how="sampled", seeds=20, rays=1000, **more):
-    """The mean over seeds of what came after two reflections. These paths are sampled in integrated beams, too: they start
-    from rays that are located on the visible polygons."""
+    """The mean over seeds of what came after two reflections. These paths are sampled in integrated beams, too: they
+    start from rays that are located on the visible polygons."""
     found = []
     for seed in range(seeds):
         echoes = scan(case, beam(case), rays, NumberOfConnections=rays - 1, Seed=seed, **more)

@@ -18,8 +18,8 @@ import numpy as np
 import avianlidar as al
 from avianlidar import _pipeline, _suffixes, _writers, vtkAvianLidar as wrapped
 from avianlidar._disk import only_run, replacing
-from avianlidar.apps import _maps
-from avianlidar.apps._pictures import draw
+from avianlidar.apps.coverage import _maps
+from avianlidar.apps.pages._drawing import draw
 from cloudtools import echoes
 from echotools import InFolder, Messages
 from faulttools import disk

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PCD files of every kind, made by hand, and every way in which they can be wrong; what is written is read by the Point Cloud
-Library's own programs, and what they write of it is the same."""
+"""PCD files of every kind, made by hand, and every way in which they can be wrong; what is written is read by the Point
+Cloud Library's own programs, and what they write of it is the same."""
 
 import os
 import pathlib
@@ -11,15 +11,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from avianlidar import vtkAvianLidar as al
-from cloudtools import (add_array, add_field, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read,
-                        read_error, unit, write)
+from cloudtools import (add_array, add_field, assert_extremes, assert_refused, cloud, echoes, extremes, field, names,
+                        points, read, read_error, unit, write)
 from echotools import InFolder, array, copy_of, given, scan, town
 
 FILE, OTHER, PLY = "TestPCD.pcd", "TestPCD-pcl.pcd", "TestPCD.ply"
-HEADER = {
-    "VERSION": "0.7", "FIELDS": "x y z", "SIZE": "4 4 4", "TYPE": "F F F", "COUNT": "1 1 1", "WIDTH": "2", "HEIGHT": "1",
-    "VIEWPOINT": "0 0 0 1 0 0 0", "POINTS": "2", "DATA": "ascii",
-}
+HEADER = {"VERSION": "0.7", "FIELDS": "x y z", "SIZE": "4 4 4", "TYPE": "F F F", "COUNT": "1 1 1", "WIDTH": "2",
+          "HEIGHT": "1", "VIEWPOINT": "0 0 0 1 0 0 0", "POINTS": "2", "DATA": "ascii"}
 LINES = b"1 2 3\n4 5 6\n"
 KINDS = {("F", "4"): "<f4", ("F", "8"): "<f8", ("I", "4"): "<i4", ("U", "4"): "<u4"}
 Writer = al.vtkAvianLidarPCDWriter
@@ -46,7 +44,8 @@ def shape(name=FILE):
 
 def through_pcl(kind):
     """PCL reads the file and writes it: 0 ASCII, 1 binary, 2 compressed. Returns what it says."""
-    run = subprocess.run(["pcl_convert_pcd_ascii_binary", FILE, OTHER, str(kind)], capture_output=True, text=True, check=True)
+    run = subprocess.run(["pcl_convert_pcd_ascii_binary", FILE, OTHER, str(kind)], capture_output=True, text=True,
+                         check=True)
     return run.stdout + run.stderr
 
 
@@ -75,11 +74,14 @@ def literal(data):
 
 class Reader(InFolder):
     def test_the_same_two_points(self):
-        """Other ends of lines, what a header may leave out, words in any case, COUNT 0 of old converters, plus signs."""
-        for changes in ({}, {"data": LINES.replace(b"\n", b"\r\n").replace(b" ", b"\t ") + b"\n\n"}, {"data": LINES[:-1]},
-                        *({key: None} for key in ("VERSION", "COUNT", "VIEWPOINT", "POINTS", "HEIGHT")), {"WIDTH": None, "HEIGHT": None},
-                        {"VERSION": "0.5\nCOLUMNS x y z", "FIELDS": None}, {"TYPE": "f F f"}, {"COUNT": "0 0 0"}, {"DATA": "ASCII"},
-                        {"data": LINES.replace(b"1", b"+1")}, {"VERSION": "0.7\nfields x y z\nSize 4 4 4", "FIELDS": None, "SIZE": None}):
+        """Other ends of lines, what a header may leave out, words in any case, COUNT 0 of old converters, plus
+        signs."""
+        for changes in ({}, {"data": LINES.replace(b"\n", b"\r\n").replace(b" ", b"\t ") + b"\n\n"},
+                        {"data": LINES[:-1]},
+                        *({key: None} for key in ("VERSION", "COUNT", "VIEWPOINT", "POINTS", "HEIGHT")),
+                        {"WIDTH": None, "HEIGHT": None}, {"VERSION": "0.5\nCOLUMNS x y z", "FIELDS": None},
+                        {"TYPE": "f F f"}, {"COUNT": "0 0 0"}, {"DATA": "ASCII"}, {"data": LINES.replace(b"1", b"+1")},
+                        {"VERSION": "0.7\nfields x y z\nSize 4 4 4", "FIELDS": None, "SIZE": None}):
             put(**changes)
             self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]], changes)
 
@@ -99,17 +101,20 @@ class Reader(InFolder):
         data = read(FILE)
         self.assertEqual((points(data).tolist(), array(data, "normal").tolist()), ([[1, 2, 3]], [[0.5, 0.25]]))
         self.assertNotIn("_", names(data))
-        one(b"0 1 0 5 6 7 8 1e3 2.5e3\n", "x y z intensity ring azimuth strange strange n", "F4 F4 F4 U1 U2 F4 F4 I8 U8")
+        one(b"0 1 0 5 6 7 8 1e3 2.5e3\n", "x y z intensity ring azimuth strange strange n",
+            "F4 F4 F4 U1 U2 F4 F4 I8 U8")
         data = read(FILE)
-        self.assertEqual(set(names(data)), {"intensity", "laser_id", "file_azimuth", "strange", "file_strange", "n", "azimuth", "distance_m",
-                                            "vertical_angle"})
+        self.assertEqual(set(names(data)), {"intensity", "laser_id", "file_azimuth", "strange", "file_strange", "n",
+                                            "azimuth", "distance_m", "vertical_angle"})
         self.assertEqual(unit(data, "intensity"), "1")
-        self.assertEqual([array(data, name)[0] for name in ("azimuth", "file_azimuth", "strange", "file_strange", "n")], [0, 7, 8, 1000, 2500])
+        self.assertEqual([array(data, name)[0] for name in ("azimuth", "file_azimuth", "strange", "file_strange", "n")],
+                         [0, 7, 8, 1000, 2500])
         one(b"0 1 0 5 6\n", "x y z channel ring", "F4 F4 F4 U1 U2")
         self.assertEqual(array(read(FILE), "laser_id")[0], 6)
 
     def test_empty_cells_are_left_out(self):
-        one(b"1 2 3 7\nnan nan nan -1\n4 5 6 8\n-nan 1 2 9\n1 nan 2 9\n1 2 inf 9\n", "x y z n", "F4 F4 F4 I4", WIDTH=2, HEIGHT=3, POINTS=6)
+        one(b"1 2 3 7\nnan nan nan -1\n4 5 6 8\n-nan 1 2 9\n1 nan 2 9\n1 2 inf 9\n", "x y z n", "F4 F4 F4 I4", WIDTH=2,
+            HEIGHT=3, POINTS=6)
         data = read(FILE, said=["3 points whose coordinates are not finite are left out"])
         self.assertEqual((points(data).tolist(), array(data, "n").tolist()), ([[1, 2, 3], [4, 5, 6]], [7, 8]))
         put(b"nan nan nan\n4 5 6\n")  # no grid, in which such cells are empty
@@ -118,7 +123,8 @@ class Reader(InFolder):
     def test_viewpoint(self):
         put(VIEWPOINT="1 2 -7 1 0 0 0")
         data = read(FILE)
-        self.assertEqual((field(data, "position"), array(data, "distance_m")[0], array(data, "vertical_angle")[0]), ([1, 2, -7], 10, 90))
+        self.assertEqual((field(data, "position"), array(data, "distance_m")[0], array(data, "vertical_angle")[0]),
+                         ([1, 2, -7], 10, 90))
         put(b"-1e-30 1 0\n1 1 0\n")
         self.assertEqual(array(read(FILE), "azimuth").tolist(), [0, 4500])  # not 360 degrees
 
@@ -126,8 +132,8 @@ class Reader(InFolder):
         put(comments=(".PCD v0.7 - Point Cloud Data file format", "by hand", "{not json"))
         self.assertEqual(field(read(FILE), "comment"), [" by hand", " {not json"])
         one(b"0 1 0 70\n", "x y z azimuth", "F4 F4 F4 F4", comments=[
-            '{"avian_lidar": {"units": {"azimuth": "0.01 deg", "x": 3}, "field_data": {"a": {"value": [1.5]}, "b": {"value": ["t", "u"]}, '
-            '"c": {"value": [1, "mixed"]}, "d": 7, "e": {"value": []}}}}'])
+                '{"avian_lidar": {"units": {"azimuth": "0.01 deg", "x": 3}, "field_data": {"a": {"value": [1.5]}, "b": '
+                '{"value": ["t", "u"]}, "c": {"value": [1, "mixed"]}, "d": 7, "e": {"value": []}}}}'])
         data = read(FILE)
         self.assertEqual((field(data, "a"), field(data, "b"), array(data, "azimuth")[0]), ([1.5], ["t", "u"], 70))
         self.assertFalse(any(data.GetFieldData().HasArray(name) for name in "cde"))
@@ -145,29 +151,24 @@ class Reader(InFolder):
 
     def test_errors(self):
         packed = {"DATA": "binary_compressed"}
-        for words, changes in (
-            ("no line DATA", {"DATA": None, "data": b""}),
-            ('has the line "1 2 3"', {"DATA": None}),
-            ("as many values", {"FIELDS": None}),
-            ("expected I or U", {"SIZE": "4 4 3"}),
-            ("COUNT 70000", {"COUNT": "1 1 70000"}),
-            ("WIDTH times HEIGHT", {"POINTS": "3"}),
-            ("above 4294967295", {"HEIGHT": "4294967296", "POINTS": None}),
-            ("no fields x, y and z", {"FIELDS": "x y y"}),
-            ("seven values", {"VIEWPOINT": "0 0 0"}),
-            ("not finite", {"VIEWPOINT": "0 0 nan 1 0 0 0"}),
-            ("cut short", {"WIDTH": "4000000000", "HEIGHT": "4000000000", "POINTS": None}),
-            ("too few values", {"data": b"1 2\n3 4 5\n     "}),
-            ("cut short", {"WIDTH": "3", "POINTS": "3", "data": LINES + b"           \n\n\n"}),
-            ("point 1 has too many values", {"data": b"1 2 3\n4 5 6 7\n"}),
-            ("expected a number", {"data": b"1 2 three\n4 5 6\n"}),
-            ("cut short", {"DATA": "binary", "data": b"\0" * 23}),
-            ("ends before", {**packed, "data": b"\0" * 7}),
-            ("have 25 bytes", {**packed, "data": struct.pack("<II", 26, 25) + b"\0" * 26}),
-            ("ends before", {**packed, "data": struct.pack("<II", 26, 24) + b"\x17" + b"\0" * 24}),
-            ("damaged", {**packed, "data": struct.pack("<II", 5, 24) + b"\xff" * 5}),
-            ("damaged", {**packed, "data": struct.pack("<II", 8, 4294967280) + b"\xff" * 8, "WIDTH": "357913940", "POINTS": None}),
-        ):
+        for words, changes in (("no line DATA", {"DATA": None, "data": b""}), ('has the line "1 2 3"', {"DATA": None}),
+                               ("as many values", {"FIELDS": None}), ("expected I or U", {"SIZE": "4 4 3"}),
+                               ("COUNT 70000", {"COUNT": "1 1 70000"}), ("WIDTH times HEIGHT", {"POINTS": "3"}),
+                               ("above 4294967295", {"HEIGHT": "4294967296", "POINTS": None}),
+                               ("no fields x, y and z", {"FIELDS": "x y y"}), ("seven values", {"VIEWPOINT": "0 0 0"}),
+                               ("not finite", {"VIEWPOINT": "0 0 nan 1 0 0 0"}),
+                               ("cut short", {"WIDTH": "4000000000", "HEIGHT": "4000000000", "POINTS": None}),
+                               ("too few values", {"data": b"1 2\n3 4 5\n     "}),
+                               ("cut short", {"WIDTH": "3", "POINTS": "3", "data": LINES + b"           \n\n\n"}),
+                               ("point 1 has too many values", {"data": b"1 2 3\n4 5 6 7\n"}),
+                               ("expected a number", {"data": b"1 2 three\n4 5 6\n"}),
+                               ("cut short", {"DATA": "binary", "data": b"\0" * 23}),
+                               ("ends before", {**packed, "data": b"\0" * 7}),
+                               ("have 25 bytes", {**packed, "data": struct.pack("<II", 26, 25) + b"\0" * 26}),
+                               ("ends before", {**packed, "data": struct.pack("<II", 26, 24) + b"\x17" + b"\0" * 24}),
+                               ("damaged", {**packed, "data": struct.pack("<II", 5, 24) + b"\xff" * 5}),
+                               ("damaged", {**packed, "data": struct.pack("<II", 8, 4294967280) + b"\xff" * 8,
+                                            "WIDTH": "357913940", "POINTS": None})):
             put(**changes)
             self.assertIn(words, read_error(FILE), changes)
         for data in (b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 10, b""):
@@ -249,7 +250,8 @@ class Written(InFolder):
         lidar.Update()
         self.write(lidar.GetOutput())
         self.assertEqual((shape(), np.isfinite(parse()[1]["x"]).all()), ((1, 45), np.False_))
-        self.assertEqual(read(FILE).GetNumberOfPoints(), lidar.GetOutput().GetNumberOfPoints())  # empty cells give no warning
+        # empty cells give no warning
+        self.assertEqual(read(FILE).GetNumberOfPoints(), lidar.GetOutput().GetNumberOfPoints())
 
     def test_several_returns_of_a_beam(self):
         self.assertGreater(array(self.data, "number_of_returns").max(), 1)
@@ -262,7 +264,7 @@ class Written(InFolder):
             strongest[beam] = max(energy, strongest.get(beam, 0))
         self.assertEqual(dict(zip(full["beam_id"].astype(int), full["energy_received"])), strongest)
 
-    def test_what_is_no_grid(self):
+    def test_clouds_without_a_grid(self):
         for change, words in (
                 (lambda data: data.GetFieldData().RemoveArray("azimuth_step"), "'azimuth_step'"),
                 (lambda data: data.GetPointData().RemoveArray("laser_id"), "'laser_id'"),
@@ -286,7 +288,8 @@ class Written(InFolder):
             viewpoint = [float(word) for word in parse()[0]["VIEWPOINT"]]
             self.assertEqual(viewpoint[:3], [10, 20, 3])
             self.assertAlmostEqual(np.linalg.norm(viewpoint[3:]), 1, 12)
-            turn, wanted = Rotation.from_quat(np.roll(viewpoint[3:], -1)), Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
+            turn = Rotation.from_quat(np.roll(viewpoint[3:], -1))
+            wanted = Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
             np.testing.assert_allclose(turn.as_matrix(), wanted.as_matrix(), rtol=0, atol=1e-12)
 
     def test_precision_follows_the_coordinates(self):
@@ -294,19 +297,23 @@ class Written(InFolder):
         far, beyond = cloud([[340000.123, 3450000.456, 3.0]]), cloud([[1, 2, 3], [1, 1e39, 3]])
         (words,) = self.write(far, Precision=Writer.PRECISION_SINGLE)
         loss = np.abs(np.float32(points(far)) - points(far)).max()
-        self.assertIn(f"single precision moves coordinates by up to {round(loss, 3):g} m: set Precision to Double", words)
+        self.assertIn(f"single precision moves coordinates by up to {round(loss, 3):g} m: set Precision to Double",
+                      words)
         os.remove(FILE)
         assert_refused(self, self.writer, beyond, FILE, "point 1 ")
         self.assertEqual(self.write(beyond, Precision=Writer.PRECISION_DOUBLE), [])
         np.testing.assert_array_equal(points(read(FILE)), points(beyond))
         degrees = cloud([[121.3363123, 31.1979456, 3.0]])
-        add_field(degrees, "crs_wkt", ['GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
-                                       'UNIT["degree",0.0174532925199433]]'])
+        add_field(degrees, "crs_wkt", [
+                      'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS '
+                      '84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]'])
         off = np.abs(np.float32(points(degrees)) - points(degrees)).max() * 111320  # m along the equator
         for kind, name in ((al.vtkAvianLidarPCDWriter, FILE), (al.vtkAvianLidarPLYWriter, PLY)):
             self.assertEqual(kind().GetPrecision(), Writer.PRECISION_SINGLE)
-            for data, said in ((far, "double precision, because single precision moves coordinates by up to 0.044 m"), (degrees, f"by up to {round(off, 3):g} m"),
-                               (beyond, "because single precision cannot hold all coordinates"), (cloud(np.float32(points(far)).astype(float)), ""),
+            for data, said in ((far, "double precision, because single precision moves coordinates by up to 0.044 m"),
+                               (degrees, f"by up to {round(off, 3):g} m"),
+                               (beyond, "because single precision cannot hold all coordinates"),
+                               (cloud(np.float32(points(far)).astype(float)), ""),
                                (cloud([[4000.123, 16000.456, 3.0]]), "")):
                 warned = write(kind(), data, name, Precision=2)
                 self.assertEqual([said in text for text in warned], [True] * bool(said))
@@ -324,7 +331,7 @@ class Written(InFolder):
         add_array(self.data, "rgb", rgb, "1")
         self.write()
         subprocess.run(["pcl_pcd2ply", "-format", "0", FILE, PLY], check=True, capture_output=True)
-        head, body = pathlib.Path(PLY).read_text(encoding="ascii").split("end_header\n")
+        head, body = pathlib.Path(PLY).read_text("ascii").split("end_header\n")
         place = [line.split()[-1] for line in head.splitlines() if line.startswith("property") and "list" not in line]
         rows = [line.split() for line in body.splitlines()[:n]]
         got = [[int(row[place.index(c)]) for c in ("red", "green", "blue")] for row in rows]
@@ -337,7 +344,8 @@ class Written(InFolder):
             add_array(data, name, np.array([4.0]))
         (warning,) = self.write(data)
         self.assertIn("'x', 'two_words'", warning)
-        self.assertEqual((parse()[0]["FIELDS"], points(read(FILE)).tolist()), (["x", "y", "z", "two_words"], [[1, 2, 3]]))
+        self.assertEqual((parse()[0]["FIELDS"], points(read(FILE)).tolist()),
+                         (["x", "y", "z", "two_words"], [[1, 2, 3]]))
 
     def test_several_components(self):
         velocity = np.random.default_rng(7).normal(size=(self.data.GetNumberOfPoints(), 3))

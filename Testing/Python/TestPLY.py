@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PLY files of every kind, made by hand, and every way in which they can be wrong; what is written is read by VTK, by the
-Point Cloud Library's programs and by NumPy."""
+"""PLY files of every kind, made by hand, and every way in which they can be wrong; what is written is read by VTK, by
+the Point Cloud Library's programs and by NumPy."""
 
 import json
 import os
@@ -14,11 +14,13 @@ from vtkmodules.vtkIOPLY import vtkPLYReader
 
 import avianlidar
 from avianlidar import vtkAvianLidar as al
-from cloudtools import add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read, read_error, write
+from cloudtools import (add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read,
+                        read_error, write)
 from echotools import InFolder, array
 
 FILE, OTHER = "TestPLY.ply", "TestPLY.pcd"
-TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8"}
+TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4",
+         "double": "f8"}
 VERTEX = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
 LINES = b"1 2 3\n4 5 6\n"
 
@@ -40,7 +42,8 @@ def parse(name):
 
 class Reader(InFolder):
     def test_every_type_in_every_form(self):
-        other = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
+        other = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
+                 "float32": "f4", "float64": "f8"}
         kinds = {f"v_{name}": (name, kind) for name, kind in {**TYPES, **other}.items()}
         elements = "element vertex 3\n" + "".join(f"property float {axis}\n" for axis in "xyz")
         elements += "".join(f"property {word} {name}\n" for name, (word, _) in kinds.items())
@@ -51,7 +54,8 @@ class Reader(InFolder):
             assert_extremes(read(FILE), rows, kinds)
 
     def test_other_elements_are_passed_over(self):
-        before = "element camera 2\nproperty float f\nproperty short s\nelement strip 2\nproperty list uchar int v\nproperty int w\n"
+        before = ("element camera 2\nproperty float f\nproperty short s\nelement strip 2\nproperty list uchar int v\n"
+                  "property int w\n")
         after = "element face 1\nproperty list uchar int vertex_indices\n"
         put(b"1.5 2\n2.5 3\n2 7 8 9\n0 1\n" + LINES + b"3 0 1 1\n", before + VERTEX + after)
         self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]])
@@ -67,8 +71,9 @@ class Reader(InFolder):
             self.assertEqual(read(FILE).GetNumberOfPoints(), 0)
 
     def test_names_colours_and_holes(self):
-        properties = "uchar red\nproperty uchar green\nproperty uchar blue\nproperty ushort ring\nproperty float azimuth\n"
-        put(b"0 1 0 9 8 7 6 5\nnan 0 0 1 1 1 1 1\n", f"comment by hand\nobj_info of nothing\n{VERTEX}property {properties}")
+        properties = "".join(f"property {name}\n" for name in (
+            "uchar red", "uchar green", "uchar blue", "ushort ring", "float azimuth"))
+        put(b"0 1 0 9 8 7 6 5\nnan 0 0 1 1 1 1 1\n", f"comment by hand\nobj_info of nothing\n{VERTEX}{properties}")
         data = read(FILE, said=["1 points whose coordinates are not finite are left out"])
         self.assertEqual(data.GetNumberOfPoints(), 1)
         self.assertEqual(set(names(data)), {"rgb", "laser_id", "file_azimuth"})
@@ -101,7 +106,8 @@ class Reader(InFolder):
             put(*arguments)
             with self.subTest(words):
                 self.assertIn(words, read_error(FILE))
-        for whole, words in ((b"", "does not begin with"), (b"plyx\n", "does not begin with"), (b"ply\nformat ascii 1.0\n", "no line end_header")):
+        for whole, words in ((b"", "does not begin with"), (b"plyx\n", "does not begin with"),
+                             (b"ply\nformat ascii 1.0\n", "no line end_header")):
             pathlib.Path(FILE).write_bytes(whole)
             self.assertIn(words, read_error(FILE))
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
@@ -114,7 +120,8 @@ class Written(InFolder):
         self.writer = al.vtkAvianLidarPLYWriter()
 
     def test_other_programs_read_it(self):
-        add_array(self.data, "rgb", np.random.default_rng(1).integers(0, 256, (self.data.GetNumberOfPoints(), 3)).astype("u1"))
+        add_array(self.data, "rgb",
+                  np.random.default_rng(1).integers(0, 256, (self.data.GetNumberOfPoints(), 3)).astype("u1"))
         self.assertEqual(write(self.writer, self.data, FILE), [])
         comments, got = parse(FILE)
         self.assertLess(max(map(len, comments)), 1000)  # RPly takes no longer ones

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Packets of a VLP-16 in pcap and pcapng files: points in closed form, those of a real revolution as another program decoded
-it, files of every kind, and every way in which they can be wrong."""
+"""Packets of a VLP-16 in pcap and pcapng files: points in closed form, those of a real revolution as another program
+decoded it, files of every kind, and every way in which they can be wrong."""
 import contextlib
 import io
 import os
@@ -29,15 +29,16 @@ def payload(azimuth, time=0, mode=STRONGEST, step=40, value=lambda block, shot: 
     blocks = b""
     for block in range(12):
         turned = (azimuth + step * (block // 2 if mode == DUAL else block)) % 36000
-        blocks += struct.pack("<HH", 0xEEFF, turned) + b"".join(struct.pack("<HB", *value(block, shot)) for shot in range(32))
+        blocks += struct.pack("<HH", 0xEEFF, turned) + b"".join(struct.pack("<HB", *value(block, shot))
+                                                                for shot in range(32))
     return blocks + struct.pack("<IBB", time, mode, product)
 
 
 def datagram(data, port=2368, options=b"", fragment=0, protocol=17, last=201):
     """IPv4 with UDP."""
     udp = struct.pack(">HHHH", 2368, port, 8 + len(data), 0) + data
-    head = struct.pack(">BBHHHBBH4s4s", 0x45 + len(options) // 4, 0, 20 + len(options) + len(udp), 0, fragment, 64, protocol, 0,
-                       bytes([192, 168, 1, last]), bytes([255] * 4))
+    head = struct.pack(">BBHHHBBH4s4s", 0x45 + len(options) // 4, 0, 20 + len(options) + len(udp), 0, fragment, 64,
+                       protocol, 0, bytes([192, 168, 1, last]), bytes([255] * 4))
     return head + options + udp
 
 
@@ -54,11 +55,14 @@ def pcapng(frames, order="<", simple=False, old=False):
     def block(kind, body):
         body += bytes(-len(body) % 4)
         return struct.pack(order + "II", kind, 12 + len(body)) + body + struct.pack(order + "I", 12 + len(body))
-    whole = block(0x0A0D0D0A, struct.pack(order + "IHHq", 0x1A2B3C4D, 1, 0, -1)) + block(1, struct.pack(order + "HHI", 1, 0, 0))
+    whole = block(0x0A0D0D0A,
+                  struct.pack(order + "IHHq", 0x1A2B3C4D, 1, 0, -1)) + block(1, struct.pack(order + "HHI", 1, 0, 0))
     whole += block(5, bytes(12))  # statistics, which are passed over
     for frame in frames:
-        head = struct.pack(order + "I", len(frame)) if simple else struct.pack(order + "IIIII", 0, 0, 0, len(frame), len(frame))
-        whole += block(3 if simple else 6, head + frame) if not old else block(2, struct.pack(order + "HHIIII", 0, 0, 0, 0, len(frame), len(frame)) + frame)
+        head = struct.pack(order + "I", len(frame)) if simple else struct.pack(
+            order + "IIIII", 0, 0, 0, len(frame), len(frame))
+        whole += block(3 if simple else 6, head + frame) if not old else block(
+            2, struct.pack(order + "HHIIII", 0, 0, 0, 0, len(frame), len(frame)) + frame)
     return whole
 
 
@@ -94,9 +98,10 @@ class TestPacketReader(InFolder):
         turned = 9000 + 40 * block + 40 * after / 110.592
         wanted = 0.002 * (1000 * block + shot)
         up = ELEVATIONS[shot % 16]
-        for name, values, unit_ in (("distance_m", wanted, "m"), ("azimuth", turned, "0.01 deg"), ("vertical_angle", up, "deg"),
-                                    ("timestamp", 1000 + 110.592 * block + after, "us"), ("intensity", block, "1"),
-                                    ("laser_id", (up + 15) // 2, None), ("return_number", 1, "1"), ("number_of_returns", 1, "1")):
+        for name, values, unit_ in (("distance_m", wanted, "m"), ("azimuth", turned, "0.01 deg"),
+                                    ("vertical_angle", up, "deg"), ("timestamp", 1000 + 110.592 * block + after, "us"),
+                                    ("intensity", block, "1"), ("laser_id", (up + 15) // 2, None),
+                                    ("return_number", 1, "1"), ("number_of_returns", 1, "1")):
             self.assertTrue(np.allclose(array(data, name), values, rtol=1e-15, atol=0), name)
             self.assertEqual(unit(data, name), unit_)
         a, e = np.radians(turned / 100), np.radians(up)
@@ -105,7 +110,8 @@ class TestPacketReader(InFolder):
         self.assertEqual((field(data, "revolution"), field(data, "number_of_revolutions")), ([0], [1]))
 
     def test_two_returns(self):
-        ranges = {0: (1000, 3000), 1: (2000, 2000), 2: (0, 700), 3: (3000, 1000), 4: (0, 0), 5: (600, 0)}  # last, strongest
+        # last, strongest
+        ranges = {0: (1000, 3000), 1: (2000, 2000), 2: (0, 700), 3: (3000, 1000), 4: (0, 0), 5: (600, 0)}
         write(pcap([ethernet(payload(100, mode=DUAL, value=lambda block, shot: (ranges[shot % 6][block % 2], block)))]))
         data = read(FILE)
         first = np.floor((array(data, "azimuth") - 100) / 40) == 0
@@ -186,29 +192,34 @@ class TestPacketReader(InFolder):
         self.assertLess(np.abs(turned - measured["file_azimuth"]).max(), 2e-5)
 
     def test_two_sensors(self):
-        """One is chosen by its address, or by the port where addresses are the same; without a choice an error lists them."""
+        """One is chosen by its address, or by the port where addresses are the same; without a choice an error lists
+        them."""
         near, far = (payload(500, value=lambda block, shot, d=d: (d, 100)) for d in (1000, 3000))
         later = payload(500, time=1327, value=lambda block, shot: (1000, 100))
         for address, port, exact in ((202, 2368, "192.168.1.202"), (201, 2369, "192.168.1.201:2369")):
             write(pcap([ethernet(near), ethernet(far, last=address, port=port), ethernet(later)]))
-            listed = f"(--sensor-address) of one of these: 192.168.1.201:2368 (2 packets), 192.168.1.{address}:{port} (1 packets)"
-            self.assertIn(listed, read_error(FILE))
+            self.assertIn("(--sensor-address) of one of these: 192.168.1.201:2368 (2 packets), "
+                          f"192.168.1.{address}:{port} (1 packets)", read_error(FILE))
             self.assertEqual(set(array(read(FILE, SensorAddress=exact), "distance_m")), {6.0})
             cloud = avianlidar.load_cloud(FILE, sensor_address="192.168.1.201:2368")
             self.assertEqual((cloud.number_of_points, set(cloud["distance_m"])), (768, {2.0}))
         with self.assertRaisesRegex(avianlidar.Error, "has no packets of the sensor 192.168.1.7, expected"):
             avianlidar.load_cloud(FILE, sensor_address="192.168.1.7")
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
-            for more, code, words in (([], 2, "(--sensor-address)"), (["--sensor-address", "192.168.1.201:2369", "--time", "0"], 0, "")):
+            for more, code, words in (([], 2, "(--sensor-address)"),
+                                      (["--sensor-address", "192.168.1.201:2369", "--time", "0"], 0, "")):
                 self.assertEqual(_command.main(["convert", FILE, "out.pcd", *more]), code)
                 self.assertIn(words, said.getvalue())
         self.assertEqual(avianlidar.load_cloud("out.pcd").number_of_points, 384)
 
     def test_two_sensors_of_one_address_are_an_error(self):
-        frames = [ethernet(payload((480 * number + turned) % 36000, 1327 * number + turned // 100)) for number in range(20) for turned in (0, 9000)]
+        frames = [ethernet(payload((480 * number + turned) % 36000, 1327 * number + turned // 100))
+                  for number in range(20) for turned in (0, 9000)]
         write(pcap(frames))
-        self.assertIn("more than one sensor with the same address: the azimuth goes back 19 times in 40 packets", read_error(FILE))
-        write(pcap([ethernet(payload(100 + number % 2, 1327 * number, step=0)) for number in range(20)]))  # a motor that stands still
+        self.assertIn("more than one sensor with the same address: the azimuth goes back 19 times in 40 packets",
+                      read_error(FILE))
+        # a motor that stands still
+        write(pcap([ethernet(payload(100 + number % 2, 1327 * number, step=0)) for number in range(20)]))
         self.assertEqual(read(FILE).GetNumberOfPoints(), 20 * 384)
 
     def places(self, content, **said):
@@ -218,26 +229,30 @@ class TestPacketReader(InFolder):
     def test_damaged_packets_are_left_out(self):
         """With one warning, whatever their number; a cut end, and what was recorded twice, too."""
         good = [ethernet(payload(480 * number, 1327 * number)) for number in range(20)]
-        twice = self.places(pcap([frame for frame in good for _ in range(2)]), said=["20 packets were recorded twice, and are taken once"])
+        twice = self.places(pcap([frame for frame in good for _ in range(2)]),
+                            said=["20 packets were recorded twice, and are taken once"])
         self.assertEqual(twice, self.places(pcap(good)))
         without = good[:4] + good[5:]
         wanted = self.places(pcap(without))
         bad = payload(1920, 5308)
-        for frame in (bad[:300] + b"\0\0" + bad[302:], bad[:302] + struct.pack("<H", 36000) + bad[304:], payload(1920, mode=0x40),
-                      payload(1920, product=0x21), payload(1920, 0xFFFFFFFF)):
+        for frame in (bad[:300] + b"\0\0" + bad[302:], bad[:302] + struct.pack("<H", 36000) + bad[304:],
+                      payload(1920, mode=0x40), payload(1920, product=0x21), payload(1920, 0xFFFFFFFF)):
             said = ["1 of 20 packets of the lidar are left out: packet 4 of the lidar "]
             self.assertEqual(self.places(pcap(good[:4] + [ethernet(frame)] + good[5:]), said=said), wanted)
         for frame in (good[4][:700], ethernet(bad, fragment=0x2000)):  # recorded with a limit; a fragment
             for form in (pcap, pcapng):
-                self.assertEqual(self.places(form(good[:4] + [frame] + good[5:]), said=["1 of 20 packets of the lidar are left out"]), wanted)
+                self.assertEqual(self.places(form(good[:4] + [frame] + good[5:]),
+                                             said=["1 of 20 packets of the lidar are left out"]), wanted)
         cut = pcap(without + [ethernet(payload(480 * 20, 1327 * 20))])[:-400]
-        self.assertEqual(self.places(cut, said=["is cut short: a packet that begins at byte ", ", and the last 864 bytes are left out"]), wanted)
+        self.assertEqual(self.places(cut, said=["is cut short: a packet that begins at byte ",
+                                                ", and the last 864 bytes are left out"]), wanted)
         self.assertEqual(self.places(pcapng(without)[:-7], said=["is cut short"]), self.places(pcap(without[:-1])))
 
     def test_packets_that_come_late(self):
         """They are sorted by the sensor's clock, at the full hour, too: points and revolutions are the same."""
         for start in (0, 3_599_990_000):
-            good = [ethernet(payload(35000 + 480 * number, int(start + 1327.104 * number) % 3_600_000_000)) for number in range(30)]
+            good = [ethernet(payload(35000 + 480 * number, int(start + 1327.104 * number) % 3_600_000_000))
+                    for number in range(30)]
             late = [good[0], *(good[at + turn] for at in range(1, 29, 2) for turn in (1, 0)), good[29]]
             found = []
             for frames in (good, late):
@@ -253,11 +268,13 @@ class TestPacketReader(InFolder):
                 (pcap([]), "has no packet of a VLP-16: UDP with 1206 bytes"),
                 (pcap([ethernet(good)])[:-1], "is cut short: a packet that begins at byte 24 goes beyond its end"),
                 (pcap([ethernet(good)[:900]]), "packet 0 of the lidar has 858 of its 1206 bytes"),
-                (pcap([ethernet(broken), ethernet(broken)]), "packet 0 of the lidar has no azimuth below 360 deg in block 1"),
+                (pcap([ethernet(broken), ethernet(broken)]),
+                 "packet 0 of the lidar has no azimuth below 360 deg in block 1"),
                 (pcap([ethernet(payload(0, product=0x21))]), "is of the product 33, expected 34, a VLP-16"),
-                (pcap([ethernet(payload(0, mode=0x40))]), "has the return mode 64, expected 55 (strongest), 56 (last) or 57 (dual)"),
-                (ng[:-4], "is cut short"), (ng[:32] + struct.pack("<I", 6) + ng[36:], "the block at byte 28 has the length 6, expected at least 16"),
-                (b"", "is not a pcap or pcapng file")):
+                (pcap([ethernet(payload(0, mode=0x40))]),
+                 "has the return mode 64, expected 55 (strongest), 56 (last) or 57 (dual)"), (ng[:-4], "is cut short"),
+                (ng[:32] + struct.pack("<I", 6) + ng[36:],
+                 "the block at byte 28 has the length 6, expected at least 16"), (b"", "is not a pcap or pcapng file")):
             with self.subTest(words):
                 write(content)
                 self.assertIn(words, read_error(FILE))

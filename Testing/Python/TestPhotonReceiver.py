@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The photon receiver through the filters: presets are files, files that are wrong say where, echoes have electrons, and a
-changed receiver traces nothing. False alarms of empty sky are the kernel's."""
+"""The photon receiver through the filters: presets are files, files that are wrong say where, echoes have electrons,
+and a changed receiver traces nothing. False alarms of empty sky are the kernel's."""
 import json
 import os
 import pathlib
@@ -32,10 +32,10 @@ def text_of(sensor):
 class Files(InFolder):
     def setUp(self):
         super().setUp()
-        self.good = json.loads((SENSORS / "Search905.lidarsensor.json").read_text(encoding="utf-8"))
+        self.good = json.loads((SENSORS / "Search905.lidarsensor.json").read_text("utf-8"))
 
     def load(self, content):
-        (self.folder / "own.lidarsensor.json").write_text(json.dumps(content), encoding="utf-8")
+        (self.folder / "own.lidarsensor.json").write_text(json.dumps(content), "utf-8")
         return Sensor("own.lidarsensor.json")
 
     def test_presets_are_the_files(self):
@@ -47,13 +47,14 @@ class Files(InFolder):
             self.assertEqual(preset.beams.fields.get("assumed"), loaded.beams.fields.get("assumed"))
 
     def test_every_number_has_a_unit_and_a_source(self):
-        schema = json.loads((SENSORS / "lidarsensor.schema.json").read_text(encoding="utf-8"))
+        schema = json.loads((SENSORS / "lidarsensor.schema.json").read_text("utf-8"))
         jsonschema.Draft202012Validator.check_schema(schema)
         with self.assertRaises(jsonschema.ValidationError):
-            jsonschema.validate({**self.good, "values": {"pulse_energy": {"value": 1, "unit": "mJ", "source": "x"}}}, schema)
+            jsonschema.validate({**self.good, "values": {"pulse_energy": {"value": 1, "unit": "mJ", "source": "x"}}},
+                                schema)
         for file in FILES:
-            jsonschema.validate(json.loads(file.read_text(encoding="utf-8")), schema)
-            values = json.loads(file.read_text(encoding="utf-8"))["values"]
+            jsonschema.validate(json.loads(file.read_text("utf-8")), schema)
+            values = json.loads(file.read_text("utf-8"))["values"]
             fields = Sensor(file).beams
             for name, entry in values.items():
                 self.assertEqual(set(entry), {"value", "unit", "source"})
@@ -73,7 +74,8 @@ class Files(InFolder):
         self.assertLessEqual({"channel_elevations", "beam_profile"}, set(sensor.beams.fields["assumed"]))
         sensor.set(channel_elevations=(1, 3), beam_profile="Uniform")
         self.assertFalse({"channel_elevations", "beam_profile"} & set(sensor.beams.fields["assumed"]))
-        self.assertIn("receiver_efficiency", Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01).beams.fields["assumed"])
+        self.assertIn("receiver_efficiency",
+                      Sensor("Airport16", receiver_model="Photons", receiver_aperture=0.01).beams.fields["assumed"])
 
     def test_channels_and_sectors_of_ones_own(self):
         self.good["values"].update({
@@ -137,13 +139,14 @@ class Receiver(unittest.TestCase):
         electrons = echoes["photoelectrons"]
         self.assertGreater(len(electrons), 1000)
         np.testing.assert_allclose(electrons, per_joule * echoes["energy_received"], rtol=1e-12)
-        np.testing.assert_allclose(echoes["signal_to_noise"], electrons / np.sqrt(119.062**2 + 3 * electrons), rtol=1e-5)
+        np.testing.assert_allclose(echoes["signal_to_noise"], electrons / np.sqrt(119.062**2 + 3 * electrons),
+                                   rtol=1e-5)
         self.assertGreater(electrons.min(), 664.069 * (1 - 1e-4))
         self.assertNotIn("photoelectrons", Scan(wall(), Sensor("Airport16")).echoes)
 
     def test_a_changed_receiver_traces_nothing_and_gives_what_a_fresh_one_does(self):
-        changes = {"receiver_efficiency": 0.3, "background_radiance": 0.0, "wavelength": 1064.0, "receiver_aperture": 0.005,
-                   "sampling_interval": 4e-9, "receiver_model": "EnergyLimits"}
+        changes = {"receiver_efficiency": 0.3, "background_radiance": 0.0, "wavelength": 1064.0,
+                   "receiver_aperture": 0.005, "sampling_interval": 4e-9, "receiver_model": "EnergyLimits"}
         settings = {"beam_samples": "rays", "rays_per_beam": 40}
         scene, sensor = wall(), Sensor("Search905", azimuth_step=1.5)
         known = Scan(scene, sensor, **settings)
@@ -162,12 +165,15 @@ class Receiver(unittest.TestCase):
                 self.assertEqual(repr(dict(fresh.echoes.fields)), repr(dict(known.echoes.fields)))
 
     def test_few_electrons_are_warned_of_once(self):
-        # 3.5 electrons of background: by SciPy a Poisson number exceeds the threshold 1,525 times as often as was asked for.
-        few = Sensor("Search905", amplifier_noise=0.0, excess_noise_factor=1.0, background_radiance=0.05 * 3.5 / 3525.22)
+        # 3.5 electrons of background: by SciPy a Poisson number exceeds the threshold 1,525 times as often as was asked
+        # for.
+        few = Sensor("Search905", amplifier_noise=0.0, excess_noise_factor=1.0,
+                     background_radiance=0.05 * 3.5 / 3525.22)
         with self.assertWarnsRegex(RuntimeWarning, r"some 1\d\d\d times the FalseAlarmsPerScan") as caught:
             few.beams.number_of_points
         self.assertEqual(len(caught.warnings), 1)
-        for sensor, words in ((Sensor("Search1550"), "RangeGate is 4000 m, but the next pulse leaves after 15 us, that is 2248 m"),
+        for sensor, words in ((Sensor("Search1550"),
+                               "RangeGate is 4000 m, but the next pulse leaves after 15 us, that is 2248 m"),
                               (Sensor("Automotive16"), "RangeGate is 300 m.*1.3 us")):
             with self.assertWarnsRegex(RuntimeWarning, words):
                 sensor.beams.number_of_points

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Labels of the map on a report's first page: none covers another or leaves the axes, and runways are named by their ends."""
+"""Labels of the map on a report's first page: none covers another or leaves the axes, and runways are named by their
+ends."""
 import itertools
 import math
 import types
@@ -11,8 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
 
 from avianlidar import siting
-from avianlidar.apps import _pictures
-from avianlidar.apps._placing import Label, place_labels
+from avianlidar.apps.coverage import _pictures
+from avianlidar.apps.pages import _drawing
+from avianlidar.apps.pages._placing import Label, place_labels
 
 
 def runway(name, x, y, degrees, length=3000.0):
@@ -33,15 +35,17 @@ LAYOUTS = {
 def plan(runways, kinds):
     """Regions of some kinds, and a lidar at the first runway's end."""
     names = siting.region_names(runways)
-    return types.SimpleNamespace(
-        runways=runways, ends={name: [] for kind in kinds for name in names[kind]}, name="Search905", extent=(-1, 1, -1, 1),
-        sensor=types.SimpleNamespace(position=(runways[0].end[0] + 150.0, runways[0].end[1] + 200.0, 10.0)))
+    return types.SimpleNamespace(runways=runways, ends={name: [] for kind in kinds for name in names[kind]},
+                                 name="Search905", extent=(-1, 1, -1, 1),
+                                 sensor=types.SimpleNamespace(
+                                     position=(runways[0].end[0] + 150.0, runways[0].end[1] + 200.0, 10.0)))
 
 
 class Labels(unittest.TestCase):
     def written(self, extent, labels, marks=(), lines=()):
-        """Labels on a map of an extent. @return axes, labels that are left out, and the boxes of the others in pixels"""
-        figure = Figure(_pictures.map_size(extent, 5.9, 0.0, 0.5), dpi=_pictures.PIXELS, layout="constrained")
+        """Labels on a map of an extent. @return axes, labels that are left out, and the boxes of the others in
+        pixels"""
+        figure = Figure(_drawing.map_size(extent, 5.9, 0.0, 0.5), dpi=_drawing.PIXELS, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots()
         axes.set(xlim=extent[:2], ylim=extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
@@ -54,14 +58,16 @@ class Labels(unittest.TestCase):
         a = np.linspace(0.0, 2.0 * np.pi, 400)
         for radius in (150.0, 400.0, 900.0):
             ring = radius * np.column_stack([np.cos(a), np.sin(a)])
-            axes, left_out, boxes = self.written((-1000, 1000, -1000, 1000), [Label("a lidar", (0.0, 0.0)), Label("on the ring", ring[7])], [], ring)
+            axes, left_out, boxes = self.written(
+                (-1000, 1000, -1000, 1000), [Label("a lidar", (0.0, 0.0)), Label("on the ring", ring[7])], [], ring)
             self.assertEqual(left_out, [])
             pixels = axes.transData.transform(ring)
             for words, box in boxes.items():
                 self.assertFalse(((pixels > box.min) & (pixels < box.max)).all(axis=1).any(), (radius, words))
 
-    def test_none_covers_another_or_leaves_the_map(self):
-        for (name, runways), kinds in itertools.product(LAYOUTS.items(), (["strips"], ["approaches"], ["strips", "approaches"])):
+    def test_labels_neither_overlap_nor_leave_the_map(self):
+        for (name, runways), kinds in itertools.product(LAYOUTS.items(),
+                                                        (["strips"], ["approaches"], ["strips", "approaches"])):
             with self.subTest(name, kinds=kinds):
                 wanted = plan(runways, kinds)
                 extent = _pictures.answer_extent(wanted, 700.0)
@@ -70,7 +76,8 @@ class Labels(unittest.TestCase):
                 axes, left_out, boxes = self.written(extent, _pictures.labels_of(wanted, shares), [place])
                 self.assertEqual(left_out, [])
                 ends = {end for pair in siting.end_names(runways) for end in pair}
-                self.assertEqual(set(boxes), {"Search905", *ends, *(f"{region}\n11.3 ± 0.3 %" for region in wanted.ends)})
+                self.assertEqual(set(boxes),
+                                 {"Search905", *ends, *(f"{region}\n11.3 ± 0.3 %" for region in wanted.ends)})
                 inside = axes.get_window_extent()
                 mark = axes.transData.transform(place)
                 for words, box in boxes.items():
@@ -89,8 +96,8 @@ class Labels(unittest.TestCase):
             wanted.ends = {siting.region_names(runways)["approaches"][0]: []}
             x0, x1, y0, y1 = _pictures.answer_extent(wanted, 700.0)
             x, y, _ = wanted.sensor.position
-            places = [*(end for one in runways for end in (one.start, one.end)), (x - 700, y), (x + 700, y), (x, y - 700), (x, y + 700),
-                      *siting.region_outlines(runways)[next(iter(wanted.ends))]]
+            places = [*(end for one in runways for end in (one.start, one.end)), (x - 700, y), (x + 700, y),
+                      (x, y - 700), (x, y + 700), *siting.region_outlines(runways)[next(iter(wanted.ends))]]
             for at in places:
                 self.assertTrue(x0 < at[0] < x1 and y0 < at[1] < y1, (name, at))
 

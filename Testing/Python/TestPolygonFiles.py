@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Polygons of every shape keep their area on every path to the collision tree: keyholes, outlines that touch themselves, concave and
-degenerate polygons, in any plane. Expected areas: sums of the trapezoids of the rings from which a polygon is made."""
+"""Polygons of every shape keep their area on every path to the collision tree: keyholes, outlines that touch
+themselves, concave and degenerate polygons, in any plane. Expected areas: sums of the trapezoids of the rings from
+which a polygon is made."""
 import math
 import pathlib
 import time
@@ -15,7 +16,8 @@ from avianlidar import vtkAvianLidar as al
 from echotools import InFolder, Messages, painted
 
 COUNT = 150
-WALL = [(-20, 0), (20, 0), (20, 30), (-20, 30), (-20, 0), (-8, 5), (-8, 12), (8, 12), (8, 5), (-8, 5)]  # with a window: 1088 m2
+# with a window: 1088 m2
+WALL = [(-20, 0), (20, 0), (20, 30), (-20, 30), (-20, 0), (-8, 5), (-8, 12), (8, 12), (8, 5), (-8, 5)]
 PINCH = [(-20, 0), (20, 0), (20, 30), (0, 0), (-20, 30)]  # a corner on the first edge: 600 m2
 BOW = [(0, 0), (4, 4), (4, 0), (0, 4)]  # crosses itself: two triangles of 4 m2
 
@@ -80,8 +82,8 @@ def poly_data(rings, share=True, single=False):
     data, cells, places = vtk.vtkPolyData(), vtk.vtkCellArray(), vtk.vtkPoints()
     places.SetData(numpy_to_vtk(points.astype(np.float32 if single else float), deep=True))
     offsets = np.cumsum([0, *map(len, rings)])
-    cells.SetData(*(vtk.util.numpy_support.numpy_to_vtkIdTypeArray(np.ascontiguousarray(numbers, dtype=np.int64), deep=True)
-                    for numbers in (offsets, ids.ravel())))
+    cells.SetData(*(vtk.util.numpy_support.numpy_to_vtkIdTypeArray(np.ascontiguousarray(numbers, dtype=np.int64),
+                                                                   deep=True) for numbers in (offsets, ids.ravel())))
     data.SetPoints(places)
     data.SetPolys(cells)
     numbers = numpy_to_vtk(np.arange(len(rings), dtype=np.int32), deep=True)
@@ -107,16 +109,19 @@ def areas_of(surfaces, count):
 class PolygonFiles(InFolder):
     def test_areas_in_any_plane(self):
         for make in (keyhole, pinched, concave):
-            for share, single, warp, tolerance in ((True, False, 0, 1e-7), (False, False, 0, 1e-7), (True, False, 1e-3, 1e-3), (False, True, 0, 2e-3)):
+            for share, single, warp, tolerance in ((True, False, 0, 1e-7), (False, False, 0, 1e-7),
+                                                   (True, False, 1e-3, 1e-3), (False, True, 0, 2e-3)):
                 with self.subTest(make=make.__name__, share=share, single=single, warp=warp):
                     random = np.random.default_rng(5)
                     rings, expected = zip(*(make(random) for _ in range(COUNT)))
-                    found, said = areas_of(poly_data([placed(random, ring, warp) for ring in rings], share, single), COUNT)
+                    found, said = areas_of(poly_data([placed(random, ring, warp) for ring in rings], share, single),
+                                           COUNT)
                     np.testing.assert_allclose(found, expected, rtol=tolerance)
                     self.assertEqual(said, [])
 
     def test_triangles_lie_inside(self):
-        """Centres of triangles are inside by the parity of the edges beyond them, and the normal is that of the polygon."""
+        """Centres of triangles are inside by the parity of the edges beyond them, and the normal is that of the
+        polygon."""
         random = np.random.default_rng(6)
         for ring, _ in (make(random) for make in (keyhole, pinched, concave) for _ in range(COUNT)):
             triangles = st.corners(tree_of(poly_data([np.column_stack([ring, 0 * ring])[:, :3]]))[0])
@@ -132,20 +137,24 @@ class PolygonFiles(InFolder):
         arrow = np.array([(0, 0, 0), (4, 1, 0), (1, 1, 0), (1, 4, 0)], dtype=float)
         flat = np.array([(0, 0, 0), (6, 1, 0), (10, 0, 0), (4, -1, 0)], dtype=float)
         for turn in range(4):
-            found, said = areas_of(poly_data([np.roll(arrow, turn, axis=0), np.roll(flat, turn, axis=0) + [20, 0, 0]]), 2)
+            found, said = areas_of(poly_data([np.roll(arrow, turn, axis=0), np.roll(flat, turn, axis=0) + [20, 0, 0]]),
+                                   2)
             np.testing.assert_allclose(found, [3, 10], rtol=1e-12)
             triangles = st.corners(tree_of(poly_data([np.roll(flat, turn, axis=0)]))[0])
-            self.assertEqual([len(np.unique(triangles[..., 0])), sum(4 in t[:, 0] and 6 in t[:, 0] for t in triangles), said], [4, 2, []])
+            self.assertEqual([len(np.unique(triangles[..., 0])), sum(4 in t[:, 0] and 6 in t[:, 0] for t in triangles),
+                              said], [4, 2, []])
 
     def test_degenerate_polygons(self):
         """Repeated points change nothing; polygons without area give nothing; what crosses itself is named."""
-        flat = [np.column_stack([ring, np.zeros(len(ring))]).astype(float) for ring in (
-            [(0, 0)] * 6, [(0, 0), (1, 1), (2, 2), (3, 3), (1, 1)], [(0, 0), (4, 0), (4, 0), (4, 3), (0, 3), (0, 0)], [(0, 0), (4, 0), (4, 3), (4, 3)],
-            [(0, 0), (4, 0), (9, 0), (4, 0), (4, 3), (0, 3)], BOW, [*PINCH[:4], (30, 10)])]
+        flat = [np.column_stack([ring, np.zeros(len(ring))]).astype(float)
+                for ring in ([(0, 0)] * 6, [(0, 0), (1, 1), (2, 2), (3, 3), (1, 1)],
+                             [(0, 0), (4, 0), (4, 0), (4, 3), (0, 3), (0, 0)], [(0, 0), (4, 0), (4, 3), (4, 3)],
+                             [(0, 0), (4, 0), (9, 0), (4, 0), (4, 3), (0, 3)], BOW, [*PINCH[:4], (30, 10)])]
         found, said = areas_of(poly_data(flat), len(flat))
         np.testing.assert_allclose(found[:6], [0, 0, 12, 6, 12, 8], atol=1e-12)
         self.assertEqual(len(said), 1)
-        self.assertIn("2 polygons (cells 5, 6) cross or overlap themselves: the areas of the outline and of the triangles of the first polygon differ by 100 % of the larger area. What", said[0])
+        self.assertIn("2 polygons (cells 5, 6) cross or overlap themselves: the areas of the outline and of the "
+                      "triangles of the first polygon differ by 100 % of the larger area. What", said[0])
         broken = np.vstack([flat[2][:-1], [np.nan, 0, 0]])
         self.assertIn("has a coordinate that is not finite", tree_of(poly_data([broken]))[1][0])
 
@@ -168,8 +177,8 @@ class PolygonFiles(InFolder):
 
     def test_files(self):
         """The same wall, outline and crossing polygon through each kind of file."""
-        rings = [np.column_stack([[x for x, _ in ring], [50] * len(ring), [z for _, z in ring]]).astype(float) + [100 * i, 0, 0]
-                 for i, ring in enumerate((WALL, PINCH, BOW))]
+        rings = [np.column_stack([[x for x, _ in ring], [50] * len(ring), [z for _, z in ring]]).astype(float)
+                 + [100 * i, 0, 0] for i, ring in enumerate((WALL, PINCH, BOW))]
         data = poly_data(rings)
         grid = vtk.vtkUnstructuredGrid()
         grid.Allocate(4)
@@ -179,8 +188,9 @@ class PolygonFiles(InFolder):
             ids = vtk.vtkIdList()
             data.GetCellPoints(i, ids)
             grid.InsertNextCell(vtk.VTK_POLYGON, ids)
-        for writer, name, given in ((vtk.vtkXMLPolyDataWriter(), "a.vtp", data), (vtk.vtkPolyDataWriter(), "a.vtk", data),
-                                    (vtk.vtkXMLUnstructuredGridWriter(), "a.vtu", grid), (vtk.vtkPLYWriter(), "a.ply", data)):
+        for writer, name, given in (
+                (vtk.vtkXMLPolyDataWriter(), "a.vtp", data), (vtk.vtkPolyDataWriter(), "a.vtk", data),
+                (vtk.vtkXMLUnstructuredGridWriter(), "a.vtu", grid), (vtk.vtkPLYWriter(), "a.ply", data)):
             writer.SetFileName(name)
             writer.SetInputData(given)
             if name in ("a.vtp", "a.vtu"):
@@ -188,15 +198,20 @@ class PolygonFiles(InFolder):
             writer.Write()
         text = "".join(f"v {x} {y} {z}\n" for ring in rings for x, y, z in ring)
         number = iter(range(1, 100))
-        pathlib.Path("a.obj").write_text(text + "".join("f " + " ".join(str(next(number)) for _ in ring) + "\n" for ring in rings), encoding="utf-8")
-        for name, what in (("a.vtp", "cell 2"), ("a.vtk", "cell 2"), ("a.vtu", "cell 3"), ("a.ply", "face 2"), ("a.obj", "face 2")):
+        pathlib.Path("a.obj").write_text(
+            text + "".join("f " + " ".join(str(next(number)) for _ in ring) + "\n" for ring in rings), "utf-8")
+        for name, what in (("a.vtp", "cell 2"), ("a.vtk", "cell 2"), ("a.vtu", "cell 3"), ("a.ply", "face 2"),
+                           ("a.obj", "face 2")):
             with self.subTest(file=name):
-                scene = st.Read(st.write_scene(".", "scene", {"version": 1, "objects": [{"file": name, "material": "Wall"}]}))
+                scene = st.Read(st.write_scene(".", "scene",
+                                               {"version": 1, "objects": [{"file": name, "material": "Wall"}]}))
                 triangles = st.corners(scene.blocks[0])
                 number = ((triangles[..., 0].mean(axis=1) + 50) // 100).astype(int)
                 np.testing.assert_allclose(np.bincount(number, st.areas(triangles)), [1088, 600, 8], rtol=1e-6)
                 self.assertEqual((len(scene.warnings), scene.errors), (1, []))
-                self.assertIn(f"polygon ({what}) crosses or overlaps itself: the areas of the outline and of the triangles of the first polygon differ by 100 % of the larger area. What", scene.warnings[0])
+                self.assertIn(f"polygon ({what}) crosses or overlaps itself: the areas of the outline and of the "
+                              "triangles of the first polygon differ by 100 % of the larger area. What",
+                              scene.warnings[0])
 
     def test_movers_and_media(self):
         """A mover with a bow is named; a medium whose closed surface has keyholes is filled."""
@@ -215,8 +230,10 @@ class PolygonFiles(InFolder):
 
         outer, inner = [(0, 0), (6, 0), (6, 6), (0, 6)], [(2, 2), (2, 4), (4, 4), (4, 2)]
         frame = [*outer, outer[0], *inner, inner[0]]
-        walls = [[(*a, 0), (*b, 0), (*b, 1), (*a, 1)] for ring in (outer, inner) for a, b in zip(ring, ring[1:] + ring[:1])]
-        rings = [np.array(ring, dtype=float) for ring in ([(x, y, 1) for x, y in frame], [(x, y, 0) for x, y in frame[::-1]], *walls)]
+        walls = [[(*a, 0), (*b, 0), (*b, 1), (*a, 1)] for ring in (outer, inner)
+                 for a, b in zip(ring, ring[1:] + ring[:1])]
+        rings = [np.array(ring, dtype=float)
+                 for ring in ([(x, y, 1) for x, y in frame], [(x, y, 0) for x, y in frame[::-1]], *walls)]
         medium = al.vtkAvianLidarMedium()
         heard = Messages(medium)
         medium.SetInputDataObject(poly_data(rings))
@@ -224,7 +241,8 @@ class PolygonFiles(InFolder):
         medium.Update()
         out = medium.GetOutput()
         self.assertEqual(heard.all(), [])
-        triangles = vtk_to_numpy(out.GetPoints().GetData())[vtk_to_numpy(out.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
+        triangles = vtk_to_numpy(out.GetPoints().GetData())[vtk_to_numpy(
+                                                                out.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
         self.assertAlmostEqual(st.volume(triangles.astype(float)), 32.0, places=9)
 
     def test_many_corners_take_seconds(self):

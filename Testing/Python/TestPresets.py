@@ -8,13 +8,15 @@ from avianlidar import vtkAvianLidar as al
 from echotools import RAYS, Messages, assert_same_bits, given, scan, town
 
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
-EXPECTED = {"Draft": (25, 1, 3, 0), "Standard": (200, 1, 3, 2), "Reference": (3200, 1, 3, 8), "Preview": (100, 1, 1, 0), "Paper": (100, 0, 2, 2)}
-# The paper: N rays (Sec. 2.1), batch detection (Sec. 3.2), both constraints, light compared with Qlow (Sec. 3.4), its reflectance
+EXPECTED = {"Draft": (25, 1, 3, 0), "Standard": (200, 1, 3, 2), "Reference": (3200, 1, 3, 8), "Preview": (100, 1, 1, 0),
+            "Paper": (100, 0, 2, 2)}
+# The paper: N rays (Sec. 2.1), batch detection (Sec. 3.2), both constraints, light compared with Qlow (Sec. 3.4), its
+# reflectance
 # (Eq. 8), a point for each range unit (Eq. 12).
-METHOD = {"BeamSamples": 1, "BatchCollisionDetection": 2, "BeamConstraint": 1, "LightEnergyConstraint": 1, "LightEnergyThreshold": 1,
-          "ReflectanceModel": 0, "ReturnMode": 4}
-OTHERWISE = {"BeamSamples": 0, "BatchCollisionDetection": 0, "BeamConstraint": 0, "LightEnergyConstraint": 0, "LightEnergyThreshold": 0,
-             "ReflectanceModel": 1, "ReturnMode": 1}
+METHOD = {"BeamSamples": 1, "BatchCollisionDetection": 2, "BeamConstraint": 1, "LightEnergyConstraint": 1,
+          "LightEnergyThreshold": 1, "ReflectanceModel": 0, "ReturnMode": 4}
+OTHERWISE = {"BeamSamples": 0, "BatchCollisionDetection": 0, "BeamConstraint": 0, "LightEnergyConstraint": 0,
+             "LightEnergyThreshold": 0, "ReflectanceModel": 1, "ReturnMode": 1}
 # Values that no preset has, and one that no preset may touch.
 # BeamSamples, which no preset has either, is Rays: presets differ in rays, and integrated beams have none.
 OWN = {"RaysPerBeam": 11, "Sampling": 0, "NumberOfReflections": 1, "NumberOfConnections": 3, "Seed": 5,
@@ -66,7 +68,8 @@ for tree in (default, paper):
     tree.SetInputData(surfaces)
     tree.Update()
 triangles = paper.GetOutput().GetNumberOfCells()
-assert (paper.GetNumberOfLeaves(), paper.GetNumberOfNodes(), paper.GetDepth()) == (triangles, 2 * triangles - 1, math.ceil(math.log2(triangles)))
+assert (paper.GetNumberOfLeaves(), paper.GetNumberOfNodes(), paper.GetDepth()) == (
+    triangles, 2 * triangles - 1, math.ceil(math.log2(triangles)))
 assert default.GetNumberOfLeaves() < triangles
 echoes = []
 for tree in (default, paper):

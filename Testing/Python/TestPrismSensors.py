@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sensors with rotating prisms: scans are windows of time, fields of view are the makers'; echoes, coverage and sequences
-with beams that differ from scan to scan; and what is said where a file is wrong."""
+"""Sensors with rotating prisms: scans are windows of time, fields of view are the makers'; echoes, coverage and
+sequences with beams that differ from scan to scan; and what is said where a file is wrong."""
 import json
 import os
 import pathlib
@@ -27,7 +27,8 @@ def window(sensor, number):
 
 def angles_of(directions):
     """Directions with azimuths and elevations, deg."""
-    return directions, np.degrees(np.arctan2(directions[:, 0], directions[:, 1])), np.degrees(np.arcsin(directions[:, 2]))
+    return directions, np.degrees(np.arctan2(directions[:, 0],
+                                             directions[:, 1])), np.degrees(np.arcsin(directions[:, 2]))
 
 
 class Windows(unittest.TestCase):
@@ -37,7 +38,8 @@ class Windows(unittest.TestCase):
                 sensor = al.Sensor(name)
                 first, second, again = (window(sensor, number) for number in (0, 1, 0))
                 self.assertEqual(first.number_of_points, count)
-                self.assertEqual(count * sensor.rotation_rate, sensor.description["data_sheet"]["points_per_second"]["value"])
+                self.assertEqual(count * sensor.rotation_rate,
+                                 sensor.description["data_sheet"]["points_per_second"]["value"])
                 np.testing.assert_array_equal(first["direction"], again["direction"])
                 self.assertGreater(np.abs(first["direction"] - second["direction"]).max(axis=1).mean(), 0.05)
                 np.testing.assert_allclose(second["timestamp"], first["timestamp"] + 1e5, atol=1e-6)
@@ -117,7 +119,8 @@ class Use(unittest.TestCase):
         self.assertEqual(echoes.number_of_points, 10_000)
         np.testing.assert_allclose(echoes.points[:, 1], y, atol=0.02)
         beams = window(al.Sensor("Mid40"), 4)
-        np.testing.assert_array_equal(echoes["timestamp"], beams["timestamp"][np.searchsorted(beams["beam_id"], echoes["beam_id"])])
+        np.testing.assert_array_equal(echoes["timestamp"],
+                                      beams["timestamp"][np.searchsorted(beams["beam_id"], echoes["beam_id"])])
 
     def test_a_range_image_has_a_row_for_each_laser(self):
         scan = al.Scan(al.Scene(WALL), al.Sensor("Avia"), noise=False, rays_per_beam=16)
@@ -138,7 +141,8 @@ class Use(unittest.TestCase):
         held = np.sum((squares <= 1) & (ahead > 0), axis=1)
         cover = al.Coverage(al.Scene(WALL), sensor, places=5.0 * lines)
         cover.set(clutter=False)
-        with self.assertWarnsRegex(RuntimeWarning, "track_probability assumes that all NumberOfScans have the beams of this scan"):
+        with self.assertWarnsRegex(RuntimeWarning,
+                                   "track_probability assumes that all NumberOfScans have the beams of this scan"):
             cover["track_probability"]
         cover.set(number_of_scans=1, required_detections=1)
         np.testing.assert_array_equal(cover["track_probability"], cover["detection_probability"])
@@ -149,12 +153,15 @@ class Use(unittest.TestCase):
     def test_a_sequence_has_the_clutter_of_each_scan(self):
         with tempfile.TemporaryDirectory() as folder:
             place = pathlib.Path(folder)
-            (place / "flat.lidarscene.json").write_text(json.dumps({
-                "version": 1, "lidar": {"position": [0, 0, 3]},
-                "objects": [{"name": "Ground", "class": "ground", "ground": {"size": 400, "height": 0}, "material": "Wall"}]}))
-            (place / "flat.scenario.json").write_text(json.dumps({
-                "scene": "flat.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 1, "sensor": {"preset": "Mid40"},
-                "birds": [{"pattern": "Circles", "species": "crow", "number_of_birds": 3, "radius": 40, "heights": [5, 9]}]}))
+            (place / "flat.lidarscene.json").write_text(
+                json.dumps({"version": 1, "lidar": {"position": [0, 0, 3]},
+                            "objects": [{"name": "Ground", "class": "ground", "ground": {"size": 400, "height": 0},
+                                         "material": "Wall"}]}))
+            (place / "flat.scenario.json").write_text(
+                json.dumps({"scene": "flat.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 1,
+                            "sensor": {"preset": "Mid40"}, "birds": [
+                                {"pattern": "Circles", "species": "crow", "number_of_birds": 3, "radius": 40,
+                                 "heights": [5, 9]}]}))
             sequence = al.Sequence(place / "flat.scenario.json", threads=1)
             for k, _, species in sequence.frames(0):
                 self.assertEqual(len(sequence.truth(k, species)), 3)
@@ -168,8 +175,9 @@ class Use(unittest.TestCase):
 
 class BadFiles(unittest.TestCase):
     def test_values_are_named(self):
-        """Values of their own are those of the kernel, tested in TestPrisms.cxx: the file, the unit, and what does not go with prisms."""
-        good = json.loads((FILES / "Mid40.lidarsensor.json").read_text(encoding="utf-8"))
+        """Values of their own are those of the kernel, tested in TestPrisms.cxx: the file, the unit, and what does not
+        go with prisms."""
+        good = json.loads((FILES / "Mid40.lidarsensor.json").read_text("utf-8"))
         for name, value, unit, words in (
                 ("prism_wedge_angles", [18, -70], "deg", "PrismWedgeAngles is -70"),
                 ("prism_rotation_rates", [1, 2, 3], "Hz", "PrismRotationRates has 3 values"),
@@ -183,6 +191,6 @@ class BadFiles(unittest.TestCase):
                 values[name] = {"value": value, "unit": unit, "source": "test"}
             with self.subTest(words), tempfile.TemporaryDirectory() as folder:
                 file = pathlib.Path(folder) / "bad.lidarsensor.json"
-                file.write_text(json.dumps({**good, "values": values}), encoding="utf-8")
+                file.write_text(json.dumps({**good, "values": values}), "utf-8")
                 with self.assertRaisesRegex(al.Error, "bad.lidarsensor.json(.|\n)*" + re.escape(words)):
                     al.Sensor(file).beams

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Noise of ranges against an independent Monte Carlo of the sampled waveform (pulse, noise in each range unit, threshold,
-centroid of the strongest unit and its larger neighbour). Places of false alarms are TestReceiver's (kernel)."""
+"""Noise of ranges against an independent Monte Carlo of the sampled waveform (pulse, noise in each range unit,
+threshold, centroid of the strongest unit and its larger neighbour). Places of false alarms are TestReceiver's
+(kernel)."""
 import unittest
 
 import numpy as np
@@ -32,7 +33,8 @@ def waveform(electrons, threshold, count, seed):
 
 
 def scan(places, electrons, **settings):
-    """Echoes of a wall that gives so many electrons to beams which begin at these places, m before and behind the middle."""
+    """Echoes of a wall that gives so many electrons to beams which begin at these places, m before and behind the
+    middle."""
     corners = [(WALL, -0.5, -50), (WALL, 0.5, -50), (WALL, 0.5, 50), (WALL, -0.5, 50)]
     wall = al.Scene(corners, [(0, 1, 2), (0, 2, 3)], material=(0.3, 0, 1))
     bright = PER_JOULE * 3.6e-4 * 0.3 * 0.0078539816 / (np.pi * WALL**2)  # electrons
@@ -46,7 +48,7 @@ def scan(places, electrons, **settings):
 class RangeNoise(unittest.TestCase):
     def test_against_the_waveform(self):
         places = np.random.default_rng(5).uniform(-0.5 * UNIT, 0.5 * UNIT, 10000)
-        # Of the whole pulse, n/sqrt(sigma0^2 + F n); at 8 two in five are not perceived, and noise chose the others.
+        # The ratio of the whole pulse is n/sqrt(sigma0^2 + F n). At 8, noise decides which three in five are perceived.
         for ratio, most in ((8, 0.25), (25, 0.14), (300, 0.1)):
             with self.subTest(ratio=ratio):
                 electrons = 0.5 * (EXCESS * ratio**2 + np.sqrt(EXCESS**2 * ratio**4 + 4 * ratio**2 * DARK**2))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ranges of boards, spheres, drones, people, walls, ground, flocks and birds of one's own table: against closed forms of the
-radar equation, and against scans of still surfaces or flown flocks by the echo filter."""
+"""Ranges of boards, spheres, drones, people, walls, ground, flocks and birds of one's own table: against closed forms
+of the radar equation, and against scans of still surfaces or flown flocks by the echo filter."""
 import math
 import os
 import pathlib
@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 import avianlidar as al
 from avianlidar import _sheet, reach
-from avianlidar.apps import _targets
+from avianlidar.apps.coverage import _targets
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
 import helpertools
 
@@ -38,13 +38,16 @@ def in_band(sensor, distance, count, seed):
 
 
 def share_seen(sensor, mesh, kd, distance, squarely, count=400, seed=2):
-    """The share of still surfaces at random places with a point, and the mean number of their points, in one scan with noise."""
+    """The share of still surfaces at random places with a point, and the mean number of their points, in one scan with
+    noise."""
     points, faces = mesh
     scene, random = al.Scene(), np.random.default_rng(1000 + seed)
     for number, place in enumerate(in_band(sensor, distance, count, seed)):
-        place *= 1.0 + random.uniform(-0.25, 0.25) * 299792458.0 * sensor.sampling_interval / distance  # within one range unit
+        # within one range unit
+        place *= 1.0 + random.uniform(-0.25, 0.25) * 299792458.0 * sensor.sampling_interval / distance
         turn = math.atan2(place[0], place[1]) if squarely else random.uniform(0.0, 2.0 * np.pi)
-        right, ahead, up = (math.cos(turn), -math.sin(turn), 0.0), np.array([math.sin(turn), math.cos(turn), 0.0]), np.array([0.0, 0.0, 1.0])
+        right, ahead = (math.cos(turn), -math.sin(turn), 0.0), np.array([math.sin(turn), math.cos(turn), 0.0])
+        up = np.array([0.0, 0.0, 1.0])
         if squarely:
             ahead = place / np.linalg.norm(place)
             up = np.cross(right, ahead)
@@ -56,7 +59,8 @@ def share_seen(sensor, mesh, kd, distance, squarely, count=400, seed=2):
 
 class Targets(unittest.TestCase):
     def test_walls_are_seen_as_far_as_the_radar_equation_says(self):
-        """Photons: by the formulas of the fit to data sheets. EnergyLimits: a wall's light falls as the square of the range and in the air."""
+        """Photons: by the formulas of the fit to data sheets. EnergyLimits: a wall's light falls as the square of the
+        range and in the air."""
         for reflectance in (0.1, 0.8):
             wall = reach.target("wall", reflectance)
             sensor = al.Sensor("OS1_64", background_radiance=0.0, sunlight=0.0)
@@ -75,7 +79,8 @@ class Targets(unittest.TestCase):
 
     def test_ground_is_a_wall_of_less_reflectance(self):
         """By the cosine of incidence, for thin beams whose light on the ground is shorter than a range unit."""
-        sensor = al.Sensor("Search905", half_beamwidth=1e-5, minimum_elevation=-40.0, elevation_step=2.5, background_radiance=0.0, pulse_width=1e-11)
+        sensor = al.Sensor("Search905", half_beamwidth=1e-5, minimum_elevation=-40.0, elevation_step=2.5,
+                           background_radiance=0.0, pulse_width=1e-11)
         sensor.pulse_energy *= 0.008
         ground = reach.target("ground", 0.1, height=300.0)
         found = reach.within_beams(sensor, ground).to(0.5)
@@ -93,34 +98,40 @@ class Targets(unittest.TestCase):
         density = 1.0 / (math.radians(2.0) * math.radians(sensor.azimuth_step)) / 30.0 ** 2
         self.assertAlmostEqual(reach.points(sensor, reach.target("wall", 0.5), 30.0) / density, 1.0, delta=0.05)
         ground = reach.target("ground", 0.5, height=5.0)
-        self.assertAlmostEqual(reach.points(sensor, ground, 25.0) / (density * 30.0 ** 2 / 25.0 ** 2 * 5.0 / 25.0), 1.0, delta=0.3)  # rings
+        self.assertAlmostEqual(reach.points(sensor, ground, 25.0) / (density * 30.0 ** 2 / 25.0 ** 2 * 5.0 / 25.0), 1.0,
+                               delta=0.3)  # rings
         self.assertEqual(reach.points(sensor, ground, 6.0), 0.0)  # below the beams
         seen = reach.Reach(np.array([10.0, 20.0]), np.array([1.0, 0.5]), np.zeros(2), np.zeros(2))
-        self.assertTrue(reach.sentence("VLP16", ground, seen, None, 0.0).endswith(" to 20 m. At half of this range, no beam meets the ground."))
+        self.assertTrue(reach.sentence("VLP16", ground, seen, None, 0.0).endswith(
+                            " to 20 m. At half of this range, no beam meets the ground."))
 
     def test_half_of_still_targets_have_a_point_at_the_printed_range(self):
         """Within four standard errors of 400 surfaces; points at half of the range within a tenth."""
-        for name, form, reflectance in (("Search905", "board:0.5", 0.1), ("Search905", "drone", None), ("VLP16", "person", None),
-                                        ("OS1_64", "sphere:0.3", 0.5)):
+        for name, form, reflectance in (("Search905", "board:0.5", 0.1), ("Search905", "drone", None),
+                                        ("VLP16", "person", None), ("OS1_64", "sphere:0.3", 0.5)):
             with self.subTest(f"{name} {form}"):
                 sensor, target = al.Sensor(name), reach.target(form, reflectance)
                 half = reach.within_beams(sensor, target).to(0.5)
                 seen, _ = share_seen(sensor, target.mesh, target.reflectance, half, form.startswith("board"))
                 self.assertAlmostEqual(seen, 0.5, delta=0.1 if name != "VLP16" else 0.12)
-                _, points = share_seen(sensor, target.mesh, target.reflectance, 0.5 * half, form.startswith("board"), 100)
+                _, points = share_seen(sensor, target.mesh, target.reflectance, 0.5 * half, form.startswith("board"),
+                                       100)
                 self.assertAlmostEqual(reach.points(sensor, target, 0.5 * half) / points, 1.0, delta=0.15)
 
     def test_sphere_has_the_surface_of_a_sphere(self):
         points, faces = _targets.sphere(0.5)
         a, b, c = (points[faces[:, k]] for k in range(3))
-        self.assertAlmostEqual(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum(), math.pi * 0.5 ** 2, delta=1e-9)
-        self.assertAlmostEqual(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0 / (math.pi * 0.5 ** 3 / 6.0), 1.0, delta=0.05)  # closed
+        self.assertAlmostEqual(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum(), math.pi * 0.5 ** 2,
+                               delta=1e-9)
+        self.assertAlmostEqual(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0 / (math.pi * 0.5 ** 3 / 6.0), 1.0,
+                               delta=0.05)  # closed
 
     def test_a_flock_is_seen_if_one_of_its_birds_is(self):
         """Flocks of vtkAvianLidarTracks at random places, scanned with noise."""
         sensor, few = al.Sensor("Search905"), {"birds": 64}
         alone = reach.within_beams(sensor, "starling", **few)
-        np.testing.assert_array_equal(reach.within_beams(sensor, reach.flock("starling", 1), **few).one_scan, alone.one_scan)
+        np.testing.assert_array_equal(reach.within_beams(sensor, reach.flock("starling", 1), **few).one_scan,
+                                      alone.one_scan)
         flock = reach.flock("starling", 20)
         half = reach.within_beams(sensor, flock).to(0.5)
         self.assertGreater(half, 1.1 * alone.to(0.5))
@@ -143,7 +154,8 @@ class Targets(unittest.TestCase):
                 for name in ("pose_time", "flap_hinge", "flap_axis", "flap_amplitude", "flap_frequency", "flap_phase"):
                     still.GetFieldData().RemoveArray(name)
                 blocks.SetBlock(20 * number + k, still)
-        echoes = al.Scan(al.Scene(), sensor, movers=blocks, visibility=reach.CLEAR, number_of_reflections=1, seed=8).echoes
+        echoes = al.Scan(al.Scene(), sensor, movers=blocks, visibility=reach.CLEAR, number_of_reflections=1,
+                         seed=8).echoes
         seen = np.unique(echoes["object_id"][echoes["object_id"] >= 1000] // 1000)
         self.assertAlmostEqual(len(seen) / flocks, 0.5, delta=4.0 * 0.5 / math.sqrt(flocks))
 
@@ -166,29 +178,36 @@ class Verb(unittest.TestCase):
     def setUpClass(cls):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         cls.table = OUTPUT / "my.csv"
-        cls.table.write_text(TABLE, encoding="utf-8")
+        cls.table.write_text(TABLE, "utf-8")
 
     def test_targets_of_the_command(self):
         with unittest.mock.patch.object(reach, "TARGETS", 8):
             code, lines, _ = run("--sensor", "VLP16", "--target", "person", "--target", "wall", "--reflectance", 0.4)
-            person, wall = (reach.within_beams(al.Sensor("VLP16"), reach.target(form, 0.4), **reach.air_of(al.Sensor("VLP16"))) for form in ("person", "wall"))
+            person, wall = (reach.within_beams(al.Sensor("VLP16"), reach.target(form, 0.4),
+                                               **reach.air_of(al.Sensor("VLP16"))) for form in ("person", "wall"))
         self.assertEqual(code, 0)
         self.assertEqual(re.split("  +", lines[1])[1], "person of 0.5 x 0.3 x 1.75 m (assumed), reflectance 0.4")
         for line, found in zip(lines[1:3], (person, wall)):
             cells = re.split("  +", line)[2:5]
-            self.assertEqual([cell.split(" ")[0] for cell in cells], [reach.metres(found.to(share)).split(" ")[0] for share in reach.SHARES])
+            self.assertEqual([cell.split(" ")[0] for cell in cells],
+                             [reach.metres(found.to(share)).split(" ")[0] for share in reach.SHARES])
             self.assertTrue(all(re.search(r" m \([0-9.]+ to [0-9.]+ m\)$", cell) for cell in cells), line)
-        self.assertRegex(lines[4], r"^VLP16 sees a wall, reflectance 0\.4, with half of the beams that meet it, to \d+ m \(\d+ to \d+ m\)\. "
-                                   r"At half of this range, one scan has [0-9.]+ points in a square metre\.$")
+        self.assertRegex(lines[4],
+                         r"^VLP16 sees a wall, reflectance 0\.4, with half of the beams that meet it, to \d+ m \(\d+ "
+                         r"to \d+ m\)\. At half of this range, one scan has [0-9.]+ points in a square metre\.$")
 
     def test_birds_of_a_table_and_their_flocks(self):
         code, lines, _ = run("--sensor", "Search905", "--birds", self.table)
         self.assertEqual(code, 0)
         for line, species in zip(lines[2:4], ("buzzard", "bunting")):
-            found = reach.within_beams(al.Sensor("Search905"), species, species_file_name=str(self.table), visibility=reach.CLEAR)
-            self.assertEqual(re.split("  +", line)[:4], ["Search905", species, reach.metres(found.to(0.9)), reach.metres(found.to(0.5))])
+            found = reach.within_beams(al.Sensor("Search905"), species, species_file_name=str(self.table),
+                                       visibility=reach.CLEAR)
+            self.assertEqual(re.split("  +", line)[:4],
+                             ["Search905", species, reach.metres(found.to(0.9)), reach.metres(found.to(0.5))])
         code, lines, _ = run("--sensor", "Search905", "--birds", self.table, "--species", "bunting", "--flock", 5)
-        self.assertRegex(lines[-2], r"^Search905 sees half of the flocks of 5 buntings in its beams to \d+ m\. At half of this range, one scan has [0-9.]+ points on a flock\.$")
+        self.assertRegex(lines[-2],
+                         r"^Search905 sees half of the flocks of 5 buntings in its beams to \d+ m\. At half of this "
+                         r"range, one scan has [0-9.]+ points on a flock\.$")
 
     def test_options_that_are_wrong(self):
         for words, arguments in (

@@ -50,12 +50,12 @@ def run_readme(tree):
     (tree / "build" / "paraview").symlink_to(build)
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["PATH"] = f"{build / 'bin'}:{environment['PATH']}"
-    text = (tree / "README.md").read_text(encoding="utf-8")
+    text = (tree / "README.md").read_text("utf-8")
     inline = re.search(r"`(PYTHONPATH=\$\(cat [^`]*) example.py`", text)[1]
     done, left = [], set(INSTALL_OR_TEST)
     for language, block in re.findall(r"```(\w+)\n(.*?)```", text, re.S):
         if language == "python":
-            (tree / "example.py").write_text(block, encoding="utf-8")
+            (tree / "example.py").write_text(block, "utf-8")
             commands = [f"{inline} example.py"]
         else:
             assert language == "sh", language

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `avianlidar report`: the page in Chromium without a network; its numbers against its tables, and these against coverage of
-places drawn here. Plans that ask for less, or for what is wrong, are TestReportPlans'."""
+"""The command `avianlidar report`: the page in Chromium without a network; its numbers against its tables, and these
+against coverage of places drawn here. Plans that ask for less, or for what is wrong, are TestReportPlans'."""
 import json
 import pathlib
 import re
@@ -12,10 +12,10 @@ import numpy as np
 import avianlidar as al
 import exampletools  # noqa: F401  (finds the examples)
 from avianlidar import siting
-from avianlidar.apps._answer import share_of
-from avianlidar.apps._crossing import crossing
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._plan import Plan
+from avianlidar.apps.coverage._answer import share_of
+from avianlidar.apps.coverage._crossing import crossing
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.inputs._read import read_plan
 from browser import Browser
 from reporttools import HERE, ON_SALE, PLAN, STEP, TARGET, plan, report, rows_of, same_numbers
 
@@ -27,16 +27,17 @@ class Page(unittest.TestCase):
     def setUpClass(cls):
         exampletools.emptied("TestReport")
         where = pathlib.Path(plan()["scene"])
-        scene = {**json.loads(where.read_text(encoding="utf-8")), "comment": {"by": "<me>"}}
+        scene = {**json.loads(where.read_text("utf-8")), "comment": {"by": "<me>"}}
         for item in scene["objects"]:
             if "footprints" in item:
                 item["footprints"] = str(where.parent / item["footprints"])
-        (HERE / "page.lidarscene.json").write_text(json.dumps(scene), encoding="utf-8")
-        cls.asked = plan(scene="page.lidarscene.json", description="<script>throw 1</script> & gulls?", heights=[50, 100], regions={"strips": 1},
-                         coverage={**TARGET, "clutter": True, "visibility": 10e3},
-                         siting={"bounds": [-1200, 800, 500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
+        (HERE / "page.lidarscene.json").write_text(json.dumps(scene), "utf-8")
+        cls.asked = plan(
+            scene="page.lidarscene.json", description="<script>throw 1</script> & gulls?", heights=[50, 100],
+            regions={"strips": 1}, coverage={**TARGET, "clutter": True, "visibility": 10e3},
+            siting={"bounds": [-1200, 800, 500, 1500], "spacing": 1000, "masts": [5, 10], "draws": 0, "sensors": 2})
         page = report("report", cls.asked, pictures=True)
-        cls.text = page.read_text(encoding="utf-8")
+        cls.text = page.read_text("utf-8")
         (HERE / "alone").mkdir()  # without the folder beside it
         shutil.copyfile(page, HERE / "alone" / "report.html")
         cls.browser = Browser()
@@ -50,34 +51,45 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.run("return document.querySelector('h1').textContent"), self.asked["description"])
         self.assertIn("{&#34;by&#34;: &#34;&lt;me&gt;&#34;}", self.text)
         self.assertNotIn(str(PLAN.parent), self.text)
-        self.assertEqual(self.browser.run("return [...document.querySelectorAll('#first a')].filter(a => !document.querySelector(a.hash)).length"), 0)
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('#first a')].filter(a => "
+                                          "!document.querySelector(a.hash)).length"), 0)
         self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-        self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector('#first')).breakAfter"), "page")
+        self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector('#first')).breakAfter"),
+                         "page")
         self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
-        marked = self.browser.run("return [...document.querySelectorAll('#receivers tr')].filter(r => r.querySelector('.assumed')).length")
-        self.assertEqual(marked, len(al.Sensor("Search905").beams.fields["assumed"]) + 1)  # and the azimuth step, which is changed
+        marked = self.browser.run(
+            "return [...document.querySelectorAll('#receivers tr')].filter(r => r.querySelector('.assumed')).length")
+        # and the azimuth step, which is changed
+        self.assertEqual(marked, len(al.Sensor("Search905").beams.fields["assumed"]) + 1)
 
     def test_pictures_and_captions_say_what_was_asked(self):
         pictures = self.browser.run("return [...document.images].map(i => [i.complete, i.naturalWidth, i.alt])")
-        # Here and at the best site: maps, reasons, sections, clutter. Candidates, gain, the curve of ranges, the answer, fog and rain.
+        # Here and at the best site: maps, reasons, sections, clutter. Candidates, gain, the curve of ranges, the
+        # answer, fog and rain.
         self.assertEqual(len(pictures), 2 * (2 + 2 + 2 + 1) + 2 + 1 + 1 + 2)
         for complete, width, words in pictures:
             self.assertTrue(complete and width > 300, words)
             self.assertRegex(words, r"\d")
         self.assertEqual(len({words for _, _, words in pictures}), len(pictures))
-        captions = self.browser.run("return [...document.querySelectorAll('figcaption, caption')].map(c => c.textContent)")
-        self.assertEqual(len(captions), self.browser.run("return document.querySelectorAll('table').length + document.images.length"))
+        captions = self.browser.run(
+            "return [...document.querySelectorAll('figcaption, caption')].map(c => c.textContent)")
+        self.assertEqual(len(captions),
+                         self.browser.run("return document.querySelectorAll('table').length + document.images.length"))
         for words in captions:
             self.assertRegex(words, "Search905")
             self.assertNotIn("question", words)  # which the page says once
         self.assertEqual(self.text.count("The question: target in strips, 50 to 100 m high."), 1)
 
-    def test_the_first_page_says_what_nobody_sells_and_what_makers_sell(self):
+    def test_the_first_page_distinguishes_ideas_from_lidars_on_sale(self):
         """In the first paragraph and in a table, whose numbers are those of coverage at the best site."""
         first = self.browser.run("return document.querySelector('#answer p').textContent")
-        self.assertRegex(first, "^In short: Search905, at its best site, detects [a-z ]+ of the crossing targets at least twice. Search905 is an idea: nobody sells this lidar. At the same place, each of 2 lidars on sale detects under "
-                         "[0-9.]+.% of the same birds by one scan, and under [0-9.]+.% at least twice while they cross.$")
-        shown = self.browser.run("return [...document.querySelectorAll('#offers tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        self.assertRegex(first,
+                         "^In short: Search905, at its best site, detects [a-z ]+ of the crossing targets at least "
+                         "twice. Search905 is an idea: nobody sells this lidar. At the same place, each of 2 lidars on "
+                         "sale detects under [0-9.]+.% of the same birds by one scan, and under [0-9.]+.% at least "
+                         "twice while they cross.$")
+        shown = self.browser.run(
+            "return [...document.querySelectorAll('#offers tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
         self.assertEqual([row[1] for row in shown], ["nobody", *2 * ["Ouster (formerly Velodyne)"]])
         self.assertEqual([row[2] for row in shown], ["2\u00a0s", "0.1\u00a0s", "0.1\u00a0s"])
         self.assertEqual({row[0] for row in shown[1:]}, set(ON_SALE))
@@ -91,8 +103,10 @@ class Page(unittest.TestCase):
             if name != "Search905":
                 there = there.with_lidar(name)
                 row, = rows_of("report_files/on-sale.csv", receiver=name)
-                self.assertAlmostEqual(float(row["detection_probability"]), there.overall["detection_probability"], delta=1e-6)
-            self.assertEqual(share, self.browser.run("return document.querySelector('#answer b').textContent") if name == "Search905" else share_of(there.overall))
+                self.assertAlmostEqual(float(row["detection_probability"]), there.overall["detection_probability"],
+                                       delta=1e-6)
+            self.assertEqual(share, self.browser.run("return document.querySelector('#answer b').textContent") if name
+                             == "Search905" else share_of(there.overall))
         steps = self.browser.run("return document.querySelector('#next').textContent")
         self.assertIn("Do not plan to buy Search905.", steps)
         self.assertNotIn("Ask the maker", steps)
@@ -100,10 +114,14 @@ class Page(unittest.TestCase):
     def test_the_first_page_says_what_the_share_means(self):
         said = self.browser.run("return document.querySelector('#answer').textContent")
         self.assertIn("one of 9 sites that are equally good within the error, of 9 candidates", said)
-        self.assertIn("on a mast of 5 m, 200 m west and 500 m north from the scene's origin", said.replace("\u00a0", " "))
-        self.assertIn("one scan, which takes 2\u00a0s, as a mean over the whole length of each strip, near and far.", said)
+        self.assertIn("on a mast of 5 m, 200 m west and 500 m north from the scene's origin",
+                      said.replace("\u00a0", " "))
+        self.assertIn("one scan, which takes 2\u00a0s, as a mean over the whole length of each strip, near and far.",
+                      said)
         twice = crossing(Plan(read_plan(HERE / "report.coverage.json")).at(self.position(), "there", 1 << 40))
-        self.assertRegex(said, "at 15\u00a0m/s \\(on average for 20\u00a0s, or (9.[0-9]|10) scans\\), [^,]* of them are detected at least twice")
+        self.assertRegex(said,
+                         "at 15\u00a0m/s \\(on average for 20\u00a0s, or (9.[0-9]|10) scans\\), [^,]* of them are "
+                         "detected at least twice")
         shown = self.browser.run("return document.querySelector('#offers tbody tr').cells[4].textContent")
         share = 0.01 * float(re.match("[0-9.]+", shown.removeprefix("under "))[0])
         self.assertAlmostEqual(share, twice.share, delta=4.0 * twice.error + 0.006)
@@ -112,15 +130,19 @@ class Page(unittest.TestCase):
 
     def position(self):
         """The best site."""
-        return [float(text) for text in self.browser.run("return [...document.querySelectorAll('#best tbody tr')[0].cells].map(c => c.textContent)")[1:4]]
+        return [float(text)
+                for text in self.browser.run(
+                    "return [...document.querySelectorAll('#best tbody tr')[0].cells].map(c => c.textContent)")[1:4]]
 
     def test_is_read_on_a_phone(self):
         shown = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
         self.browser.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", shown)
-        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Emulation.setDeviceMetricsOverride", {**shown, "width": 1150, "mobile": False})
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Emulation.setDeviceMetricsOverride",
+                        {**shown, "width": 1150, "mobile": False})
         self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), 390)
         # Labels of pictures have 9 points of 1/72 inch at 150 pixels an inch.
-        scales = self.browser.run("return [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth)")
+        scales = self.browser.run(
+            "return [...document.images].map(i => i.getBoundingClientRect().width / i.naturalWidth)")
         self.assertGreaterEqual(min(scales) * 9 * 150 / 72, 7.5)
 
     def test_numbers_are_those_of_the_tables(self):
@@ -128,17 +150,21 @@ class Page(unittest.TestCase):
         self.assertGreater(len(cells), 10)
         self.assertEqual({of["receiver"] for of, _ in cells}, {"Search905", "Search905 at its best site"})
         table = np.genfromtxt(HERE / "report_files" / "sites.csv", delimiter=",", names=True, encoding="utf-8")
-        shown = self.browser.run("return [...document.querySelectorAll('#best tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        shown = self.browser.run(
+            "return [...document.querySelectorAll('#best tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
         for row, known in zip(shown, table):
             np.testing.assert_allclose([float(text) for text in row[1:4]], [known[i] for i in range(3)], atol=0.051)
         gain = [float(row["value"]) for row in rows_of("report_files/gain.csv")]
         texts = self.browser.run("return [...document.querySelectorAll('[data-sensors]')].map(c => c.textContent)")
         np.testing.assert_allclose([0.01 * float(text.partition(" ")[0]) for text in texts], gain, atol=0.0051)
         # The best site has one number: of one scan from there, wherever the page has it.
-        best = next(row for row in rows_of("report_files/shares.csv", receiver="Search905 at its best site") if row["height_from [m]"] == "-inf")
+        best = next(row for row in rows_of("report_files/shares.csv", receiver="Search905 at its best site")
+                    if row["height_from [m]"] == "-inf")
         self.assertAlmostEqual(gain[0], float(best["detection_probability"]), delta=1e-6)
-        self.assertEqual([shown[0][4], texts[0]], 2 * [self.browser.run("return document.querySelector('#answer b').textContent")])
-        ends = {row["region"]: float(row["detection_probability"]) for row in rows_of("report_files/ends.csv", receiver="Search905 at its best site")}
+        self.assertEqual([shown[0][4], texts[0]],
+                         2 * [self.browser.run("return document.querySelector('#answer b').textContent")])
+        ends = {row["region"]: float(row["detection_probability"])
+                for row in rows_of("report_files/ends.csv", receiver="Search905 at its best site")}
         self.assertEqual(set(ends), {"strip 18L/36R", "strip 18R/36L"})
         self.assertAlmostEqual(np.mean(list(ends.values())), gain[0], delta=2e-4)  # as many places each
 
@@ -169,16 +195,20 @@ class Page(unittest.TestCase):
         table = np.genfromtxt(HERE / "report_files" / "sites.csv", delimiter=",", names=True, encoding="utf-8")
         positions = np.column_stack([table[name] for name in table.dtype.names[:3]])
         values = np.array([shares(position, False).mean() for position in positions])
-        np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values, atol=1e-6)
+        np.testing.assert_allclose(table[next(name for name in table.dtype.names if name.startswith("value"))], values,
+                                   atol=1e-6)
         self.assertGreater(len(values), 5)
         self.assertEqual(np.argmax(values), 0)
-        cover.places = drawn(1 << 40)  # the page states sites at other places than those by which they are ranked, with clutter
+        # the page states sites at other places than those by which they are ranked, with clutter
+        cover.places = drawn(1 << 40)
         for row in rows_of("report_files/gain.csv"):
-            missed = np.prod([1.0 - shares([float(c) for c in place.split()], True) for place in row["sites"].split(";")], axis=0)
+            missed = np.prod([1.0 - shares([float(c) for c in place.split()], True)
+                              for place in row["sites"].split(";")], axis=0)
             self.assertAlmostEqual(float(row["value"]), (1.0 - missed).mean(), delta=1e-6)
         x, y, z = positions[0]
-        for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m {'north' if y > 0 else 'south'}, {z:g}\u00a0m up",
-                      "of a lattice of 1000 m", "<td>strips</td><td class=\"left line\">50 to 100 m</td>",
+        for words in (f"{abs(x):g}\u00a0m {'east' if x > 0 else 'west'} and {abs(y):g}\u00a0m "
+                      f"{'north' if y > 0 else 'south'}, {z:g}\u00a0m up", "of a lattice of 1000 m",
+                      "<td>strips</td><td class=\"left line\">50 to 100 m</td>",
                       "How sure the winner is was not computed"):
             self.assertIn(words, self.text)
         for mast, share in re.findall(r"([0-9]+) m: ([0-9.]+) ± [0-9.]+.% at", self.text):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reports of plans that ask for less than TestReport's, sites by mix and strikes, reach of receivers, and plans that are wrong."""
+"""Reports of plans that ask for less than TestReport's, sites by mix and strikes, reach of receivers, and plans that
+are wrong."""
 import csv
 import html
 import math
@@ -17,14 +18,14 @@ import exampletools  # noqa: F401  (finds the examples)
 import flown
 from avianlidar import Coverage, reach, siting
 from avianlidar._command import main, parser
-from avianlidar.apps import _answer
-from avianlidar.apps._json import packaged
-from avianlidar.apps._on_sale import on_sale
-from avianlidar.apps._plan import Plan
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._report import Report
-from avianlidar.apps._sites import Sites
-from avianlidar.apps._words import plural
+from avianlidar.apps.coverage import _answer
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.coverage._report import Report
+from avianlidar.apps.coverage._sites import Sites
+from avianlidar.apps.inputs._json import packaged
+from avianlidar.apps.inputs._on_sale import on_sale
+from avianlidar.apps.inputs._read import read_plan
+from avianlidar.apps.pages._words import plural
 from browser import Browser
 from reporttools import HERE, SENSOR, STEP, TARGET, plan, report, rows_of, same_numbers, written
 
@@ -35,43 +36,54 @@ SPECIES = ("starling", "kestrel", "pigeon", "crow", "herring gull", "Canada goos
 
 class Less(unittest.TestCase):
     def test_a_plan_of_a_map_alone(self):
-        """Of two receivers, one of which is changed, and without sites and runways; the mean of the map within four standard errors."""
+        """Two receivers, one of them changed, without sites and runways. The mean of the map is within four standard
+        errors."""
         twice = {**SENSOR, "name": "twice the pulse", "pulse_energy": 7.2e-4}
         page = report("map", plan(runways=None, siting=None, compare_with=[twice], heights=[20], coverage=TARGET))
         with Browser() as browser:
             browser.open(page)
-            self.assertEqual(browser.run("return document.images.length"), 2 * (3 + 1) + 1 + 2)  # map, reasons, clutter; the curve; the answer; fog and rain
+            # map, reasons, clutter; the curve; the answer; fog and rain
+            self.assertEqual(browser.run("return document.images.length"), 2 * (3 + 1) + 1 + 2)
             self.assertIsNone(browser.run("return document.querySelector('#section, #sites')"))
             _, rows = same_numbers(self, browser, "map_files/shares.csv")
-            known = browser.run("return [...document.querySelectorAll('#receivers tr')].map(r => [...r.cells].map(c => c.textContent.trim()))")
+            known = browser.run("return [...document.querySelectorAll('#receivers tr')].map(r => [...r.cells].map(c => "
+                                "c.textContent.trim()))")
         self.assertEqual(known[0], ["receiver", "Search905", "twice the pulse"])
         self.assertIn(["energy of a pulse (mJ)", "0.36", "0.72 assumed"], known)
         shares = []
         for name, changes in (("Search905", {}), ("twice the pulse", {"pulse_energy": 7.2e-4})):
             row = next(row for key, row in rows.items() if key[0] == name and key[3] == -np.inf)
-            cover = al.Coverage(plan()["scene"], al.Sensor("Search905", azimuth_step=STEP, position=(0, 0, 3), **changes), **TARGET, visibility=23e3,
-                                bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
+            cover = al.Coverage(plan()["scene"],
+                                al.Sensor("Search905", azimuth_step=STEP, position=(0, 0, 3), **changes), **TARGET,
+                                visibility=23e3, bounds=(-600, 600, -600, 600, 20, 20), spacing=(40, 40, 1))
             shares.append(cover["detection_probability"].mean())
-            self.assertAlmostEqual(float(row["detection_probability"]), shares[-1], delta=4 * float(row["detection_std_error"]), msg=name)
+            self.assertAlmostEqual(float(row["detection_probability"]), shares[-1],
+                                   delta=4 * float(row["detection_std_error"]), msg=name)
         self.assertGreater(shares[1], 1.1 * shares[0])
 
     def test_one_end_and_every_option(self):
         """Regions by runway end; commands that say every option that the report was made with."""
-        wanted = plan(heights=[20], places=100, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}}, spread="area", coverage=TARGET,
+        wanted = plan(heights=[20], places=100, spacing=400, regions={"approaches": {"18L": 3, "36R": 1}},
+                      spread="area", coverage=TARGET,
                       siting={"bounds": [-1200, 0, -1500, -300], "spacing": 1200, "draws": 0, "sensors": 1})
         HERE.mkdir(parents=True, exist_ok=True)
-        (HERE / "hours.txt").write_text("ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", encoding="utf-8")
-        words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200", "--sensor-set", "azimuth_range=0,360",
-                 "--coverage-set", "effective_area=0.04", "--siting-set", "surfaces=off"]
-        text = html.unescape(report("one end", wanted, *words).read_text(encoding="utf-8"))
+        (HERE / "hours.txt").write_text(
+            "ZSSS 010000Z 00000KT 9999 15/10 Q1020\nZSSS 010100Z 00000KT 0500 FG 15/14 Q1020\n", "utf-8")
+        words = ["--weather", "fog:1500", "--metar", str(HERE / "hours.txt"), "--sensor-set", "range_gate=1200",
+                 "--sensor-set", "azimuth_range=0,360", "--coverage-set", "effective_area=0.04", "--siting-set",
+                 "surfaces=off"]
+        text = html.unescape(report("one end", wanted, *words).read_text("utf-8"))
         commands = [shlex.split(found) for found in re.findall("<code>(avianlidar [^<]*)</code>", text)]
-        self.assertTrue({tuple(command[:3]) for command in commands} <= {("avianlidar", verb, "one end.coverage.json") for verb in ("coverage", "report")})
-        made, asked = parser().parse_args(commands[-1][1:]), parser().parse_args(["report", "x.json", "-o", "x.html", *words])
+        self.assertTrue({tuple(command[:3]) for command in commands} <= {
+                            ("avianlidar", verb, "one end.coverage.json") for verb in ("coverage", "report")})
+        made = parser().parse_args(commands[-1][1:])
+        asked = parser().parse_args(["report", "x.json", "-o", "x.html", *words])
         self.assertEqual((made.weather, made.metar), (asked.weather, asked.metar))
         for name in ("sensor_set", "coverage_set", "siting_set"):
             self.assertEqual(getattr(made, name)[:len(getattr(asked, name))], getattr(asked, name))
         self.assertEqual(dict(made.coverage_set)["reflectance"], 0.15)
-        self.assertEqual([(row["region"], row["places"]) for row in rows_of("one end_files/ends.csv")][:2], [("approach 18L", "75"), ("approach 36R", "25")])
+        self.assertEqual([(row["region"], row["places"]) for row in rows_of("one end_files/ends.csv")][:2],
+                         [("approach 18L", "75"), ("approach 36R", "25")])
 
     def test_a_winner_at_the_edge_of_the_lattice(self):
         for bounds, there in (([800, 1600, -400, 400], True), ([-1600, 1600, -2400, 2400], False)):
@@ -81,16 +93,20 @@ class Less(unittest.TestCase):
     def test_strikes_weight_sites_as_the_table(self):
         HERE.mkdir(parents=True, exist_ok=True)
         (HERE / "origin.csv").write_text("x,y\n800,0\n")
-        whole = Report(read_plan(written("strikes", plan(sensor={**SENSOR, "position": [800, 0, 3]}, coverage={**TARGET, "strike_height_weights": True},
-                                                         siting={"points": str(HERE / "origin.csv"), "masts": [3], "draws": 0, "sensors": 1}))))
-        self.assertAlmostEqual(whole.sites[0].look().values[0], whole.plans[0].overall["detection_probability"], delta=1e-6)
+        whole = Report(read_plan(written("strikes", plan(
+            sensor={**SENSOR, "position": [800, 0, 3]}, coverage={**TARGET, "strike_height_weights": True},
+            siting={"points": str(HERE / "origin.csv"), "masts": [3], "draws": 0, "sensors": 1}))))
+        self.assertAlmostEqual(whole.sites[0].look().values[0], whole.plans[0].overall["detection_probability"],
+                               delta=1e-6)
         heights = {(row["region"], row["heights"]) for row in whole._tables(whole.plans)["heights"]}
-        self.assertTrue({("strips", "0.5 to 15 m"), ("strips", "30 to 60 m"), ("approaches", "150 to 202 m")} <= heights, heights)
+        self.assertTrue(
+            {("strips", "0.5 to 15 m"), ("strips", "30 to 60 m"), ("approaches", "150 to 202 m")} <= heights, heights)
 
     def test_sites_are_ranked_by_the_mix(self):
         HERE.mkdir(parents=True, exist_ok=True)
         (HERE / "one.csv").write_text("x,y\n800,0\n")
-        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=16, coverage={"clutter": False, "all_species": False},
+        wanted = self.small(mix={"starling": 1, "herring gull": 3}, heights=[20, 40], places=16,
+                            coverage={"clutter": False, "all_species": False},
                             siting={"points": str(HERE / "one.csv"), "masts": [5], "draws": 0, "sensors": 1})
         sites = Sites(wanted)
         found, weights, _ = sites._look(sites.positions, sites.airs)  # the first of its looks
@@ -129,71 +145,91 @@ class Less(unittest.TestCase):
         self.assertEqual((far["needed"], far["ways"]), (None, []))
 
     def test_how_far_a_gull_is_seen(self):
-        """The curve against birds of random heading, wing phase and place in the band that are flown through one scan."""
+        """The curve against birds of random heading, wing phase and place in the band that are flown through one
+        scan."""
         distance, birds = 550.0, 150
         curve = reach.within_beams(al.Sensor("Search905"), "herring gull", np.array([distance]), visibility=23e3)
         self.assertLess(curve.error.max(), 0.02)
         random = np.random.default_rng(5)
-        air = Coverage(al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)]).data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
+        cover = Coverage(al.Scene(), al.Sensor("Search905"), visibility=23e3, places=[(0, 9, 9)])
+        air = cover.data.GetFieldData().GetArray("attenuation_coefficient").GetValue(0)
         about, up = random.uniform(0, 2 * np.pi, birds), np.radians(random.uniform(0.0, 5.625, birds))
         lines = np.column_stack([np.sin(about) * np.cos(up), np.cos(about) * np.cos(up), np.sin(up)])
-        seen, _ = flown.fly(al.Scene(), al.Sensor("Search905"), distance * lines, 1, "herring gull", air, 2000, int(distance))
+        seen, _ = flown.fly(al.Scene(), al.Sensor("Search905"), distance * lines, 1, "herring gull", air, 2000,
+                            int(distance))
         share = curve.one_scan[0]
         self.assertAlmostEqual(seen.mean(), share, delta=4 * math.sqrt(share * (1.0 - share) / birds))
-        straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3), np.array([1.0, 1.0, 0.0]))
+        straight = reach.Reach(np.array([10.0, 20.0, 30.0]), np.array([1.0, 0.6, 0.2]), np.zeros(3),
+                               np.array([1.0, 1.0, 0.0]))
         self.assertEqual([straight.to(share) for share in (1.0, 0.5, 0.1)], [10.0, 22.5, 30.0])
         self.assertEqual((straight.to(0.5, several=True), straight.to(1.1)), (25.0, 0.0))
 
     def test_ranges_of_the_package_are_those_of_the_table(self):
         """For all sensors and species; one of them is computed again."""
-        ranges = packaged("ranges.json")["ranges"]
+        ranges = packaged("inputs/ranges.json")["ranges"]
         with open(SOURCE / "Documentation" / "evidence" / "tables" / "coverage-ranges.csv", encoding="utf-8") as file:
             table = list(csv.DictReader(file))
-        self.assertEqual({(row["receiver"], row["bird"]) for row in table}, {(name, bird) for name in al.Sensor.presets() for bird in SPECIES})
+        self.assertEqual({(row["receiver"], row["bird"]) for row in table},
+                         {(name, bird) for name in al.Sensor.presets() for bird in SPECIES})
         for row in table:
-            shown = [float(row[head].partition(" ")[0].replace("–", "0")) for head in ("9 of 10, to", "half, to", "a tenth, to")]
+            shown = [float(row[head].partition(" ")[0].replace("–", "0"))
+                     for head in ("9 of 10, to", "half, to", "a tenth, to")]
             np.testing.assert_allclose(shown, ranges[row["receiver"]][row["bird"]], rtol=0.051, atol=0.06)  # two digits
         found = reach.within_beams(al.Sensor("Search905"), "crow", visibility=reach.CLEAR)
         np.testing.assert_allclose(ranges["Search905"]["crow"], [found.to(share) for share in reach.SHARES], atol=0.06)
 
-    def test_what_nobody_sells(self):
+    def test_ideas_are_marked(self):
         self.assertEqual({name for name in al.Sensor.presets() if name not in on_sale()},
                          {"Airport16", "Airport32", "Automotive16", "CorridorC16", "Search905", "Search1550"})
         for sensor, words in (({"preset": "OS2_128"}, ""), ({"preset": "OS2_128", "rotation_rate": 20}, ""),
-                              ({"preset": "OS2_128", "pulse_energy": 1.0}, "OS2_128 changed is an idea: its pulse_energy differs from that of the lidar on sale."),
+                              ({"preset": "OS2_128", "pulse_energy": 1.0},
+                               "OS2_128 changed is an idea: its pulse_energy differs from that of the lidar on sale."),
                               ({"preset": "OS2_128", "RangeGate": 90, "pulse_energy": 1.0, "Position": [0, 0, 3]},
-                               "OS2_128 changed is an idea: its range_gate and pulse_energy differ from those of the lidar on sale."),
+                               "OS2_128 changed is an idea: its range_gate and pulse_energy differ from those of the "
+                               "lidar on sale."),
                               ({"preset": "Search1550"}, "Search1550 is an idea: nobody sells this lidar."),
                               ({"preset": "Airport16"}, "Airport16 is an idea: nobody sells this lidar.")):
             self.assertEqual(self.small(sensor=sensor).idea, words)
 
     def test_in_short(self):
-        for share, words in ((0.0, "hardly any"), (0.09, "fewer than one in ten"), (0.3, "fewer than half"), (0.5, "more than half"), (1.0, "more than nine in ten")):
-            view = types.SimpleNamespace(name="Lidar", overall={"detection_probability": share}, mix=[1], bird="herring gull")
-            self.assertEqual(_answer.in_short(view, None, None), f"In short: Lidar detects {words} of the herring gulls by one scan.")
+        for share, words in ((0.0, "hardly any"), (0.09, "fewer than one in ten"), (0.3, "fewer than half"),
+                             (0.5, "more than half"), (1.0, "more than nine in ten")):
+            view = types.SimpleNamespace(name="Lidar", overall={"detection_probability": share}, mix=[1],
+                                         bird="herring gull")
+            self.assertEqual(_answer.in_short(view, None, None),
+                             f"In short: Lidar detects {words} of the herring gulls by one scan.")
             self.assertEqual(_answer.in_short(view, {"detects": True}, types.SimpleNamespace(share=share)),
-                             f"In short: Lidar, at its best site, detects {words} of the crossing herring gulls at least twice.")
+                             f"In short: Lidar, at its best site, detects {words} of the crossing herring gulls at "
+                             "least twice.")
 
     def test_lidars_on_sale_are_ordered_by_shares_that_are_numbers(self):
         def offer(twice, once, half):
-            return {"crossing": types.SimpleNamespace(share=twice), "row": {"detection_probability": once}, "half": half}
-        best_first = [offer(0.02, 0.001, 5.0), offer(0.01, 0.009, 90.0), offer(1e-9, 1e-8, 60.0), offer(1e-4, 1e-7, 50.0), offer(0.0, 0.0, math.nan)]
+            return {"crossing": types.SimpleNamespace(share=twice), "row": {"detection_probability": once},
+                    "half": half}
+        best_first = [offer(0.02, 0.001, 5.0), offer(0.01, 0.009, 90.0), offer(1e-9, 1e-8, 60.0),
+                      offer(1e-4, 1e-7, 50.0), offer(0.0, 0.0, math.nan)]
         self.assertEqual(sorted(best_first[::-1], key=_answer.merit, reverse=True), best_first)
 
     def test_a_lidar_on_sale_is_advised_as_one(self):
         """No table of other lidars; the maker is asked. Without a winner, the page says where its numbers hold."""
-        text = html.unescape(report("sold", plan(sensor={"preset": "OS2_128", "azimuth_step": STEP}, coverage=TARGET, places=60, siting={
-            "bounds": [-1200, 0, 500, 1500], "spacing": 1200, "draws": 0, "sensors": 1})).read_text(encoding="utf-8"))
+        page = report("sold", plan(
+            sensor={"preset": "OS2_128", "azimuth_step": STEP}, coverage=TARGET, places=60,
+            siting={"bounds": [-1200, 0, 500, 1500], "spacing": 1200, "draws": 0, "sensors": 1}))
+        text = html.unescape(page.read_text("utf-8"))
         self.assertIn("Nowhere: from none of", text)
-        self.assertIn("The other numbers of this page are for the sensor's place in the plan or its scene (at the origin, 3\u00a0m up).", text)
+        self.assertIn("The other numbers of this page are for the sensor's place in the plan or its scene (at the "
+                      "origin, 3\u00a0m up).", text)
         self.assertIn("Ask the maker of", text)
         for words in ("is an idea", 'id="offers"', "Do not plan to buy"):
             self.assertNotIn(words, text)
 
     def test_the_highest_mast_may_be_too_low(self):
-        for masts, words in (([5, 10], "the highest mast of the plan (10 m)"), ([10], "the only mast of the plan (10 m)"), ([5, 10, 400], None)):
-            sites = Sites(self.small(heights=[20], siting={"bounds": [800, 1600, -400, 400], "spacing": 400, "draws": 0, "sensors": 1, "masts": masts})).look()
-            mast = max(sites.best_by_mast(), key=lambda row: sites.values[np.argmin(np.abs(sites.positions - row["position"]).sum(axis=1))])["mast"]
+        for masts, words in (([5, 10], "the highest mast of the plan (10 m)"),
+                             ([10], "the only mast of the plan (10 m)"), ([5, 10, 400], None)):
+            sites = Sites(self.small(heights=[20], siting={
+                "bounds": [800, 1600, -400, 400], "spacing": 400, "draws": 0, "sensors": 1, "masts": masts})).look()
+            away = {row["mast"]: np.abs(sites.positions - row["position"]).sum(axis=1) for row in sites.best_by_mast()}
+            mast = max(away, key=lambda mast: sites.values[np.argmin(away[mast])])
             said = sites.higher_mast
             self.assertEqual(bool(said), mast == max(masts), (said, mast))
             if words and said:
@@ -201,50 +237,60 @@ class Less(unittest.TestCase):
 
     def test_other_draws_in_words(self):
         def site(*rows):
-            return {"robustness": [{"sensors": 1, "draws": 10, "change": change, "another winner": count, "gain at most": gain}
-                                   for change, count, gain in rows]}
+            return {"robustness": [{"sensors": 1, "draws": 10, "change": change, "another winner": count,
+                                    "gain at most": gain} for change, count, gain in rows]}
         said = _answer._other_draws
         self.assertEqual(said(site()), [])
-        self.assertEqual(said(site(("other places", 0, 0.0))), ["The choice is sharp: with other random places this site wins in all 10 draws."])
+        self.assertEqual(said(site(("other places", 0, 0.0))),
+                         ["The choice is sharp: with other random places this site wins in all 10 draws."])
         self.assertEqual(said(site(("effective area ±20 %", 0, 0.0), ("other places", 3, 0.042))),
-                         ["The choice is not sharp: with other random places another site wins in 3 of 10 draws. The other site then detects "
-                          "at most 4\u00a0% more birds than this site."])
+                         ["The choice is not sharp: with other random places another site wins in 3 of 10 draws. The "
+                          "other site then detects at most 4\u00a0% more birds than this site."])
         self.assertEqual(said(site(("building heights ±2 m", 1, 0.002), ("effective area ±20 %", 2, 0.001))),
-                         ["The choice is not sharp: with building heights changed by up to 2 m another site wins in 1 of 10 draws and with "
-                          "effective areas of birds changed by up to 20 % another site wins in 2 of 10 draws. The other site then detects less than "
-                          "1\u00a0% more birds than this site."])
+                         ["The choice is not sharp: with building heights changed by up to 2 m another site wins in 1 "
+                          "of 10 draws and with effective areas of birds changed by up to 20 % another site wins in 2 "
+                          "of 10 draws. The other site then detects less than 1\u00a0% more birds than this site."])
 
     def test_why_a_height_is_never_detected(self):
         """The cause is named only where it holds."""
         def said(half, heights, **sensor):
             view = self.small(heights=heights, sensor={**SENSOR, "position": [0, 0, 10], **sensor})
             ranges = np.array([1.0, 2.0 * half + 2.0])  # a straight curve from 1 to 0
-            return _answer._how_far(view, {"of": {"Canada goose": reach.Reach(ranges, np.array([1.0, 0.0]) if half else np.zeros(2), np.zeros(2), np.zeros(2))}})
+            return _answer._how_far(view, {"of": {"Canada goose": reach.Reach(
+                                                      ranges, np.array([1.0, 0.0]) if half else np.zeros(2),
+                                                      np.zeros(2), np.zeros(2))}})
         never = "it nowhere detects half of the birds"
-        self.assertIn(f"At 5\u00a0m {never}, because no beam gets there.", said(560.0, [5]))  # beams from 0 to 5.6 degrees
-        self.assertIn(f"At 100 and 150\u00a0m {never}, because the beams get there only where the range is already too long.", said(560.0, [100, 150]))
+        # beams from 0 to 5.6 degrees
+        self.assertIn(f"At 5\u00a0m {never}, because no beam gets there.", said(560.0, [5]))
+        self.assertIn(f"At 100 and 150\u00a0m {never}, because the beams get there only where the range is already too "
+                      "long.", said(560.0, [100, 150]))
         self.assertIn(f"At 900\u00a0m {never}, because all of these birds are too far away.", said(560.0, [900]))
-        self.assertTrue(said(0.0, [5, 100, 900]).endswith("one scan detects less than a tenth of Canada geese at any range."))
+        self.assertTrue(said(0.0, [5, 100, 900]).endswith(
+                            "one scan detects less than a tenth of Canada geese at any range."))
         # Beams from 5 to 10.6 degrees lose a height of 30 m above them at 30 m / tan 5 degrees.
-        self.assertIn("at a height of 40\u00a0m between 160\u00a0m and 340\u00a0m from the lidar", said(560.0, [40], minimum_elevation=5.0))
+        self.assertIn("at a height of 40\u00a0m between 160\u00a0m and 340\u00a0m from the lidar",
+                      said(560.0, [40], minimum_elevation=5.0))
         self.assertIn(f"At 10\u00a0m {never}, because no beam gets there.", said(560.0, [10], minimum_elevation=5.0))
 
     def test_plurals(self):
-        for one, several in (("herring gull", "herring gulls"), ("Canada goose", "Canada geese"), ("", "targets"), ("goldfinch", "goldfinches"),
-                             ("albatross", "albatrosses"), ("canary", "canaries"), ("jay", "jays"), ("osprey", "ospreys"), ("grouse", "grouse")):
+        for one, several in (("herring gull", "herring gulls"), ("Canada goose", "Canada geese"), ("", "targets"),
+                             ("goldfinch", "goldfinches"), ("albatross", "albatrosses"), ("canary", "canaries"),
+                             ("jay", "jays"), ("osprey", "ospreys"), ("grouse", "grouse")):
             self.assertEqual(plural(one), several)
 
     def test_a_step_keeps_one_position(self):
         """The next steps replace a position that the options give by its name in C++."""
-        read = read_plan(written("position", plan(heights=[20], siting=None, coverage=TARGET)), sensor={"Position": (5, 6, 7), "RangeGate": 900})
+        read = read_plan(written("position", plan(heights=[20], siting=None, coverage=TARGET)),
+                         sensor={"Position": (5, 6, 7), "RangeGate": 900})
         self.assertTrue(_answer.command(Plan(read), "coverage", "maps", **{"sensor.position": "1,2,3"}).endswith(
             "-o maps --sensor-set RangeGate=900 --sensor-set position=1,2,3"))
 
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_plans_are_named(self):
         for change, words in (({"compare_with": ["Airport17"]}, "Airport17"),
                               ({"sensor": {"preset": "Search905"}, "compare_with": ["Search905"]}, "twice")):
             with self.assertRaisesRegex((al.Error, ValueError), words):
-                Report(read_plan(written("bad", plan(heights=[20], siting=None, coverage=TARGET, **change)))).write(HERE / "bad.html")
+                Report(read_plan(written("bad", plan(heights=[20], siting=None, coverage=TARGET,
+                                                     **change)))).write(HERE / "bad.html")
             self.assertFalse((HERE / "bad.html").exists())
         good = written("good", plan())
         with self.assertRaisesRegex(al.Error, "siting.masts"):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scores of tracks: OSPA in closed form and by all permutations, crossings made by hand, errors against the spread of many draws."""
+"""Scores of tracks: OSPA in closed form and by all permutations, crossings made by hand, errors against the spread of
+many draws."""
 import itertools
 import math
 import unittest
@@ -7,7 +8,7 @@ import unittest
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from avianlidar.apps import _scores as scores
+from avianlidar.apps.sequences import _scores as scores
 
 
 def brute(distance, cutoff, order):
@@ -52,7 +53,8 @@ class Assignment(unittest.TestCase):
 
     @staticmethod
     def crossing(swap):
-        """Two birds that pass one another 1 m apart; tracks follow them, or swap where they meet. Tracks by bird and scan."""
+        """Two birds that pass one another 1 m apart; tracks follow them, or swap where they meet. Tracks by bird and
+        scan."""
         history, before = {"a": [], "b": []}, {}
         for k in range(11):
             truth = np.array([[k - 5.0, 0.5, 0.0], [5.0 - k, -0.5, 0.0]]) * (4.0, 1.0, 1.0)
@@ -83,19 +85,21 @@ class Assignment(unittest.TestCase):
 class Volumes(unittest.TestCase):
     def test_strip(self):
         points = [[0, 0, 1], [100, 10, 60], [100, 10, 60.1], [100, 151, 1], [-1, 0, 1], [201, 0, 1], [200, -150, 0]]
-        self.assertEqual(scores.in_wedge(points, (0, 0), (1.0, 0.0), 200.0, (150.0, 0.0), (60.0, 0.0)).tolist(), [True, True, False, False, False, False, True])
+        self.assertEqual(scores.in_wedge(points, (0, 0), (1.0, 0.0), 200.0, (150.0, 0.0), (60.0, 0.0)).tolist(),
+                         [True, True, False, False, False, False, True])
 
     def test_wedge_rises_by_three_degrees(self):
         slope = math.tan(math.radians(3.0))
         on = np.array([[-1000.0, 0.0, 15.0 + 1000.0 * slope]])
-        for move, inside in (((0, 0, -0.1), True), ((0, 0, 0.1), False), ((0, 224.9, -1), True), ((0, 225.1, -1), False), ((1001, 0, -60), False),
-                             ((-2001, 0, 0), False)):
+        for move, inside in (((0, 0, -0.1), True), ((0, 0, 0.1), False), ((0, 224.9, -1), True),
+                             ((0, 225.1, -1), False), ((1001, 0, -60), False), ((-2001, 0, 0), False)):
             found = scores.in_wedge(on + move, (0, 0), (-1.0, 0.0), 3000.0, (75.0, 0.15), (15.0, slope))
             self.assertEqual(bool(found[0]), inside, move)
 
     def test_entered(self):
-        for inside, first in (([[0, 0, 1, 1]], 2), ([[0, 0, 0, 1]], 3), ([[0, 1, 0, 1]], 1), ([[0, 0, 0, 1], [0, 1, 0, 0]], 1),
-                              ([[1, 1, 0, 0], [0, 0, 1, 1]], 2), ([[1, 0, 1, 0], [0, 0, 0, 1]], 3)):  # from one volume into the other
+        for inside, first in (([[0, 0, 1, 1]], 2), ([[0, 0, 0, 1]], 3), ([[0, 1, 0, 1]], 1),
+                              ([[0, 0, 0, 1], [0, 1, 0, 0]], 1), ([[1, 1, 0, 0], [0, 0, 1, 1]], 2),
+                              ([[1, 0, 1, 0], [0, 0, 0, 1]], 3)):  # from one volume into the other
             self.assertEqual(np.flatnonzero(scores.entered(np.array(inside, bool)))[0], first)
         for inside in ([[0, 0, 0, 0]], [[1, 1, 1, 0]], [[1, 0, 0, 1]], [[1, 1, 0, 0], [1, 1, 1, 1]], np.zeros((0, 4))):
             self.assertFalse(scores.entered(np.array(inside, bool)).any())
@@ -120,11 +124,12 @@ class Errors(unittest.TestCase):
             self.assertAlmostEqual(values.mean() / wanted, 1.0, delta=0.02)
             self.assertAlmostEqual(errors.mean() / values.std(), 1.0, delta=0.06)
 
-    def test_none_and_all_have_an_error(self):
+    def test_shares_of_0_and_1_have_an_error(self):
         for count in (0, 10):
             self.assertEqual(scores.share(count, 10).value, count / 10)
             self.assertAlmostEqual(scores.share(count, 10).error, math.sqrt(11 / 12 * 1 / 12 / 13))
         self.assertEqual(scores.rate(0, 2.0), (0.0, 0.5, 0))
-        for nothing in (scores.share(0, 0), scores.mean([]), scores.ratio([], []), scores.ratio([0.0], [0.0]), scores.rate(0, 0.0)):
+        for nothing in (scores.share(0, 0), scores.mean([]), scores.ratio([], []), scores.ratio([0.0], [0.0]),
+                        scores.rate(0, 0.0)):
             self.assertTrue(math.isnan(nothing.value) and math.isnan(nothing.error))
         self.assertTrue(math.isnan(scores.mean([1.0]).error))

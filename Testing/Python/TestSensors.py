@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lidars that can be bought: their patterns against real frames, their limits against their data sheets, what of them is
-assumed; and beams of one's own."""
+"""Lidars that can be bought: their patterns against real frames, their limits against their data sheets, what of them
+is assumed; and beams of one's own."""
 import copy
 import csv
 import json
@@ -24,8 +24,9 @@ from helpertools import same
 
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
+# and the points a second of one return
 REAL = {"VLP-16": 300_000, "VLP-32C": 600_000, "HDL-32E": 700_000, "Pandar40P": 720_000, "PandarXT-32": 640_000,
-        "OS0-128": 1_310_720, "OS1-64": 655_360, "OS2-128": 1_310_720, "Helios-16P": 576_000}  # and the points a second of one return
+        "OS0-128": 1_310_720, "OS1-64": 655_360, "OS2-128": 1_310_720, "Helios-16P": 576_000}
 
 
 def frame(name):
@@ -78,15 +79,16 @@ class Manuals(unittest.TestCase):
                 if name == "PandarXT-32":
                     sensor = al.Sensor(name, directions=[(0, 1, 0)])
                     for y, seen in ((0.995, 1), (1.005, 0)):
-                        board = al.Scene(wall(y * sheet["detection_range"], 9), material=(sheet["detection_reflectance"], 0, 0))
+                        board = al.Scene(wall(y * sheet["detection_range"], 9),
+                                         material=(sheet["detection_reflectance"], 0, 0))
                         scan = al.Scan(board, sensor, noise=False, visibility=23e3)
                         self.assertEqual(scan.echoes.number_of_points, seen)
 
     def test_clear_air_is_not_seen(self):
         """No sensor sees the air of a visibility of 23 km, so that the strongest return of a beam is a wall at 20 m."""
         def ranges(sensor, y, **settings):
-            scan = al.Scan(al.Scene(wall(y), material=(0.3, 0, 1)), sensor, visibility=23e3, air_backscatter=sensor.receiver_aperture > 0,
-                           noise=False, **settings)
+            scan = al.Scan(al.Scene(wall(y), material=(0.3, 0, 1)), sensor, visibility=23e3,
+                           air_backscatter=sensor.receiver_aperture > 0, noise=False, **settings)
             return scan.echoes["distance_m"], scan.echoes["energy_received"]
 
         for name in al.Sensor.presets():
@@ -106,8 +108,8 @@ class Manuals(unittest.TestCase):
                     np.testing.assert_allclose(energy / ranges(sensor, far, return_mode="Last")[1], 1, atol=0.01)
 
     def test_fitted_receivers_are_those_of_their_sheets(self):
-        """What a file says of its fit is what the fit gives again, and no fit is better than its bar. One of each maker;
-        TestSheets.py has what the others see."""
+        """What a file says of its fit is what the fit gives again, and no fit is better than its bar. One of each
+        maker; TestSheets.py has what the others see."""
         for name in ("OS1_64", "Mid40"):
             with self.subTest(name):
                 sensor = al.Sensor(name)
@@ -119,20 +121,24 @@ class Manuals(unittest.TestCase):
 
     @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
     def test_intervals_hold_what_strangers_measured(self):
-        """Bins of distance with the least reflectance (%, whole numbers) in frames of others. For OS0 and OS1 the table has
-        the prediction. With EnergyLimits a surface's least reflectance grows with the square of the range and the air."""
+        """Bins of distance with the least reflectance (%, whole numbers) in frames of others. For OS0 and OS1 the table
+        has the prediction. With EnergyLimits a surface's least reflectance grows with the square of the range and the
+        air."""
         with open(pathlib.Path(DATA) / "lidars_measured" / "least_reflectance.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        with open(FILES.parents[1] / "Documentation" / "evidence" / "tables" / "measured-least.csv", encoding="utf-8") as file:
+        with open(FILES.parents[1] / "Documentation" / "evidence" / "tables" / "measured-least.csv",
+                  encoding="utf-8") as file:
             ours = [(row["frame"], row["measured over predicted"]) for row in csv.DictReader(file)]
-        for kind, other, name in (("OS0-128", "OS0-32", "OS0_128"), ("OS1-128", "OS1-32", "OS1_64"), ("HDL-32E", "", "HDL32E")):
+        for kind, other, name in (("OS0-128", "OS0-32", "OS0_128"), ("OS1-128", "OS1-32", "OS1_64"),
+                                  ("HDL-32E", "", "HDL32E")):
             with self.subTest(name):
                 sensor = al.Sensor(name)
                 low, high = sensor.description["range_interval"]["value"]
                 factors = [float(ratio)**-0.5 for frame, ratio in ours if frame == other and ratio != "-"]
                 inside, air = [], sensor.algorithm.GetClearAirAttenuation()
                 for row in (row for row in rows if row["lidar"] == kind):
-                    at, least, predicted = (float(row[key]) for key in ("at_m", "least_reflectance_percent", "predicted_percent"))
+                    at, least, predicted = (float(row[key])
+                                            for key in ("at_m", "least_reflectance_percent", "predicted_percent"))
                     if name == "HDL32E":
                         predicted = 100 * 0.35 * (at / 100)**2 * np.exp(2 * air * (at - 100))
                     if predicted / low**2 >= 1:  # else below what a scale of whole percents shows
@@ -154,25 +160,28 @@ class Manuals(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for bad, words in (([1.2, 2.0], "at most 1"), ([0.5], "at most 1"), ([0, 2], "at most 1")):
                 file = pathlib.Path(folder) / "bad.lidarsensor.json"
-                file.write_text(json.dumps({**sensor.description, "range_interval": {"value": bad, "unit": "1", "source": "x"}}))
+                file.write_text(json.dumps({**sensor.description,
+                                            "range_interval": {"value": bad, "unit": "1", "source": "x"}}))
                 with self.assertRaisesRegex(al.Error, words):
                     al.Sensor(file)
 
-    def test_what_a_file_does_not_give_is_marked(self):
+    def test_numbers_that_a_file_lacks_are_marked(self):
         """The guide's example gives neither pattern nor pulse."""
-        guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text(encoding="utf-8")
+        guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text("utf-8")
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "mine.lidarsensor.json"
-            file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], encoding="utf-8")
+            file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], "utf-8")
             rows = _display.sensor_rows(al.Sensor(file))
             for key in ("beams", "elevations", "pulse energy", "rate", "range gate"):
                 self.assertIn("not given", str(rows[key]), key)
             self.assertNotIn("not given", rows["wavelength"])
             self.assertIn("500 m at 10 %", rows["point 1 of the sheet"])
-            run = subprocess.run([sys.executable, "-m", "avianlidar", "reach", "--sensor", str(file)], capture_output=True, text=True)
+            run = subprocess.run([sys.executable, "-m", "avianlidar", "reach", "--sensor", str(file)],
+                                 capture_output=True, text=True)
             self.assertIn("does not give azimuth_step, elevation_step", run.stderr)
             self.assertNotEqual(run.returncode, 0)
-            shown = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "Mid360"], capture_output=True, text=True).stdout
+            shown = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "Mid360"], capture_output=True,
+                                   text=True).stdout
             self.assertLessEqual(max(map(len, shown.splitlines())), 120)
             self.assertIn("61 %", shown)
         for name in al.Sensor.presets():
@@ -180,7 +189,8 @@ class Manuals(unittest.TestCase):
 
     @unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is empty")
     def test_patterns_are_those_of_real_frames(self):
-        # Hesai's manuals have the angles of the design, the frames those of a unit; the tolerances are what these differ by.
+        # Hesai's manuals have the angles of the design, the frames those of a unit; the tolerances are what these
+        # differ by.
         for name, file, up, across in (("VLP-16", "lidar_vlp16_mrpt/vlp16.pcd", 1e-4, 0.005),
                                        ("Pandar40P", "lidar_room/pandar40p.pcd", 0.21, 0.011),
                                        ("PandarXT-32", "lidar_room/xt32.pcd", 0.09, 0.02),
@@ -209,7 +219,8 @@ class Manuals(unittest.TestCase):
                 self.assertAlmostEqual(np.median(steps[steps > 0.05]), sensor.azimuth_step, delta=0.002)
 
     def test_minimum_ranges_are_those_of_the_makers(self):
-        least = {file.name.split(".")[0]: al.Sensor(file.name.split(".")[0]).minimum_range for file in FILES.glob("*.lidarsensor.json")}
+        least = {file.name.split(".")[0]: al.Sensor(file.name.split(".")[0]).minimum_range
+                 for file in FILES.glob("*.lidarsensor.json")}
         self.assertEqual({name: m for name, m in least.items() if m},
                          {"HDL32E": 0.05, "Helios16P": 0.2, "Mid360": 0.1, "Mid40": 2.0, "OS0_128": 0.3, "OS1_64": 0.8,
                           "OS2_128": 1.0, "Pandar40P": 0.3, "PandarXT32": 0.05})
@@ -234,7 +245,8 @@ class Own(unittest.TestCase):
         self.assertEqual(beams.fields["wavelength"], 1064.0)
         self.assertFalse({"number_of_channels", "azimuth_step", "minimum_elevation"} & set(beams.fields))
         sensor.orientation = (90, 0, 0)  # a quarter turn clockwise: north becomes east
-        np.testing.assert_allclose(sensor.beams["direction"], np.column_stack([unit[:, 1], -unit[:, 0], unit[:, 2]]), atol=1e-15)
+        np.testing.assert_allclose(sensor.beams["direction"], np.column_stack([unit[:, 1], -unit[:, 0], unit[:, 2]]),
+                                   atol=1e-15)
         # Times that a scan has no room for make it longer, unless it is told how long it is.
         self.assertEqual(al.Sensor(directions=[(0, 1, 0)], times=[4.0]).rotation_rate, 0.25)
         with self.assertRaisesRegex(al.Error, "the time of beam 0 is 4, expected 0 to the 2 s of a scan"):
@@ -252,7 +264,8 @@ class Own(unittest.TestCase):
             np.testing.assert_allclose(other[name], one[name], rtol=1e-12, err_msg=name)
         with tempfile.TemporaryDirectory() as folder:  # no rows and columns
             other.save(os.path.join(folder, "list.pcd"))
-            self.assertEqual(al.load_cloud(os.path.join(folder, "list.pcd")).number_of_points, other.echoes.number_of_points)
+            self.assertEqual(al.load_cloud(os.path.join(folder, "list.pcd")).number_of_points,
+                             other.echoes.number_of_points)
         with self.assertRaisesRegex(al.Error, "set Columns and Rows"):
             other.range_image()
 
@@ -268,7 +281,7 @@ class Own(unittest.TestCase):
         with self.assertRaisesRegex(al.Error, "LoadSensorText: the text"):
             al.Sensor.__new__(al.Sensor).__setstate__({"text": "{}"})
 
-    def test_what_is_no_table_of_beams(self):
+    def test_wrong_tables_of_beams_are_errors(self):
         for words, arguments in (
                 (r"directions have the shape \(3,\)", {"directions": (0, 1, 0)}),
                 (r"times have the shape \(1,\)", {"directions": np.ones((2, 3)), "times": [0]}),
@@ -277,7 +290,7 @@ class Own(unittest.TestCase):
                 ("times and positions", {"times": [0]})):
             with self.subTest(words), self.assertRaisesRegex((ValueError, TypeError, al.Error), words):
                 al.Sensor(**arguments).beams  # noqa: B018
-        # Text is no array that is missing; what was refused changes nothing.
+        # Text does not count as a missing array; refused values change nothing.
         source = al.Sensor().algorithm
         beams, text = vtkPolyData(), text_array(2)
         beams.ShallowCopy(al.Sensor(directions=[(0, 1, 0), (1, 0, 0)], times=[0, 1e-3]).beams.data)
@@ -301,8 +314,8 @@ class Reader(unittest.TestCase):
         self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (1, 0))
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, "own.lidarsensor.json")
-            good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text(encoding="utf-8"))
-            file.write_text(json.dumps(good), encoding="utf-8")
+            good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text("utf-8"))
+            file.write_text(json.dumps(good), "utf-8")
             reader.SetFileName(str(file))
             reader.Update()
             expected = al.Sensor(file, position=(1, 2, 3)).beams
@@ -312,7 +325,7 @@ class Reader(unittest.TestCase):
             self.assertEqual(repr(beams.fields), repr(expected.fields))
             # A change of the file counts when it is asked for, and a bad one is an error until the next good one.
             del good["values"]["wavelength"]["source"]
-            file.write_text(json.dumps(good), encoding="utf-8")
+            file.write_text(json.dumps(good), "utf-8")
             reader.Update()
             self.assertEqual(len(heard), 1)
             reader.Reload()

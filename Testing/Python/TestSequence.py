@@ -17,8 +17,8 @@ import yaml
 
 import avianlidar as al
 from avianlidar import _command, _pipeline
-from avianlidar.apps import _labels
-from avianlidar.apps._simulation import STATUSES, SUBSETS, TRUTH, Clutter
+from avianlidar.apps.sequences import _labels
+from avianlidar.apps.sequences._simulation import Clutter, STATUSES, SUBSETS, TRUTH
 from boxfiles import CORNERS, LOW, TRIANGLES, stl
 from echotools import bird as bird_of
 from exampletools import emptied
@@ -30,22 +30,22 @@ BOX = {"name": "box", "material": "Wall", "class": "car", "boxes": [[-1, 1, -2, 
 SCENE = {"version": 1, "lidar": {"position": [5, -8, 3]}, "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
     {"name": "House", "class": "building", "file": "house.stl", "material": "Wall"}]}
-SCENARIO = {
-    "scene": "small.lidarscene.json", "number_of_scans": 12, "scans_per_sequence": 3, "seed": 5,
-    "sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0], "azimuth_step": 0.75, "sway_amplitude": 0.02, "encoder_jitter": 0.01},
-    "scan": {"attenuation_coefficient": 8.9e-5, "number_of_reflections": 1, "rays_per_beam": 50},
-    "birds": [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": 20, "radius": 450, "heights": [5, 40]},
-              {"pattern": "Circles", "species": "crow", "number_of_birds": 10, "radius": 700, "heights": [8, 50]}],
-    "objects": [BOX]}
+SCENARIO = {"scene": "small.lidarscene.json", "number_of_scans": 12, "scans_per_sequence": 3, "seed": 5,
+            "sensor": {"preset": "Search905", "orientation": [30.0, 0.0, 0.0], "azimuth_step": 0.75,
+                       "sway_amplitude": 0.02, "encoder_jitter": 0.01},
+            "scan": {"attenuation_coefficient": 8.9e-5, "number_of_reflections": 1, "rays_per_beam": 50},
+            "birds": [{"pattern": "Crossings", "species": "herring gull", "number_of_birds": 20, "radius": 450,
+                       "heights": [5, 40]}, {"pattern": "Circles", "species": "crow", "number_of_birds": 10,
+                                             "radius": 700, "heights": [8, 50]}], "objects": [BOX]}
 
 
 def scenario_file(where, around=SCENE, **changes):
     """A scenario with a scene of its own."""
-    (where / "small.lidarscene.json").write_text(json.dumps(around), encoding="utf-8")
+    (where / "small.lidarscene.json").write_text(json.dumps(around), "utf-8")
     house = np.where(CORNERS == LOW, (-40.0, 300.0, 0.0), (40.0, 310.0, 12.0))
-    (where / "house.stl").write_text(stl(house, TRIANGLES), encoding="utf-8")
+    (where / "house.stl").write_text(stl(house, TRIANGLES), "utf-8")
     path = where / "small.scenario.json"
-    path.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
+    path.write_text(json.dumps({**SCENARIO, **changes}), "utf-8")
     return path
 
 
@@ -54,18 +54,21 @@ def truth_of(out):
 
 
 def check_files(test, out, bird):
-    """Scans, labels and configuration by the rules of semantic-kitti-api: labels are mapped by a table and predictions scored. @return instances"""
+    """Scans, labels and configuration by the rules of semantic-kitti-api: labels are mapped by a table and predictions
+    scored. @return instances"""
     rules = yaml.safe_load((out / "semantic-kitti.yaml").read_text())
     labels, learned, back = rules["labels"], rules["learning_map"], rules["learning_map_inv"]
     for table in (learned, rules["color_map"], rules["content"]):
         test.assertEqual(set(labels), set(table))
-    test.assertTrue(all(len(color) == 3 and all(type(c) is int and 0 <= c < 256 for c in color) for color in rules["color_map"].values()))
+    test.assertTrue(all(len(color) == 3 and all(type(c) is int and 0 <= c < 256 for c in color)
+                        for color in rules["color_map"].values()))
     test.assertEqual((sorted(back), set(learned.values())), (list(range(len(back))), set(back)))
     test.assertEqual(rules["learning_ignore"], {k: k == 0 for k in back})
     test.assertTrue(all(learned[label] == number for number, label in back.items()))
     test.assertTrue(all(learned[label] for label in labels if label))  # nothing else is left out
     parts = [number for name in ("train", "valid", "test") for number in rules["split"][name]]
-    test.assertEqual([f"{number:02d}" for number in sorted(parts)], sorted(path.name for path in (out / "sequences").iterdir()))
+    test.assertEqual([f"{number:02d}" for number in sorted(parts)],
+                     sorted(path.name for path in (out / "sequences").iterdir()))
     table = np.zeros(max(learned) + 100, np.int32)
     table[list(learned)] = list(learned.values())
     confusion, counts, found = np.zeros((2, len(back), len(back)), int), dict.fromkeys(labels, 0), {}
@@ -81,10 +84,12 @@ def check_files(test, out, bird):
             classes, objects = (words & 0xFFFF).astype(int), (words >> 16).astype(int) - 1
             for label, count in zip(*np.unique(classes, return_counts=True)):
                 counts[int(label)] += int(count)  # a label that it does not know is a KeyError
-            for label, here in ((bird, objects >= 10000), (252, (objects >= 1000) & (objects < 10000))):  # the scenario's box is a car
+            # the scenario's box is a car
+            for label, here in ((bird, objects >= 10000), (252, (objects >= 1000) & (objects < 10000))):
                 test.assertTrue((classes[here] == label).all())
                 found.setdefault(label, set()).update(objects[here])
-            for k, guess in enumerate((classes, np.where(classes == bird, 50, classes))):  # the second is of a network that sees no bird
+            # the second is of a network that sees no bird
+            for k, guess in enumerate((classes, np.where(classes == bird, 50, classes))):
                 np.add.at(confusion[k], (table[guess], table[classes]), 1)
     for label, share in rules["content"].items():
         test.assertAlmostEqual(share, counts[label] / sum(counts.values()), delta=1e-9)
@@ -116,11 +121,13 @@ class Files(unittest.TestCase):
         self.assertGreater(len(instances[252]), 0)
         for number in range(4):
             sequence = self.out / "sequences" / f"{number:02d}"
-            self.assertEqual([p.name for p in sorted((sequence / "velodyne").iterdir())], [f"{k:06d}.bin" for k in range(3)])
+            self.assertEqual([p.name for p in sorted((sequence / "velodyne").iterdir())],
+                             [f"{k:06d}.bin" for k in range(3)])
             poses = np.loadtxt(sequence / "poses.txt").reshape(3, 3, 4)
             # Yaw 30 degrees, clockwise: forward is (sin 30, cos 30, 0).
             forward, right = np.array((0.5, np.sqrt(0.75), 0)), np.array((np.sqrt(0.75), -0.5, 0))
-            np.testing.assert_allclose(poses, np.tile(np.column_stack([forward, -right, (0, 0, 1), (5, -8, 3)]), (3, 1, 1)), atol=1e-8)
+            np.testing.assert_allclose(
+                poses, np.tile(np.column_stack([forward, -right, (0, 0, 1), (5, -8, 3)]), (3, 1, 1)), atol=1e-8)
             np.testing.assert_allclose(np.loadtxt(sequence / "times.txt"), 2.0 * np.arange(3) + 6.0 * number, atol=1e-6)
             self.assertRegex((sequence / "calib.txt").read_text(), r"(?m)^Tr: 1 0 0 0 0 1 0 0 0 0 1 0$")
 
@@ -141,12 +148,13 @@ class Files(unittest.TestCase):
                 times = [float(r[name]) for name in ("first_time_s", "time_s", "last_time_s")]
                 self.assertEqual(times, sorted(times))
                 self.assertLess(times[2] - times[0], 2.0)
-        # The points of a bird are those of its instance, and lie where it is: within the beam, a range unit, and the bird's way between
-        # beams, which are at one place, or at both ends of a whole revolution.
+        # The points of a bird are those of its instance, and lie where it is: within the beam, a range unit, and the
+        # bird's way between beams, which are at one place, or at both ends of a whole revolution.
         pose, counts = np.loadtxt(self.out / "sequences" / "00" / "poses.txt")[0].reshape(3, 4), dict.fromkeys(by, 0)
         for label in self.out.glob("sequences/*/labels/*.label"):
             scan = 3 * int(label.parts[-3]) + int(label.stem)
-            words, points = np.fromfile(label, np.uint32), np.fromfile(label.parent.parent / "velodyne" / f"{label.stem}.bin", np.float32)
+            words = np.fromfile(label, np.uint32)
+            points = np.fromfile(label.parent.parent / "velodyne" / f"{label.stem}.bin", np.float32)
             points = points.reshape(-1, 4)[:, :3] @ pose[:, :3].T + pose[:, 3]
             for point, word in zip(points[words & 0xFFFF == 99], words[words & 0xFFFF == 99]):
                 key = scan, int(word >> 16) - 1
@@ -157,7 +165,8 @@ class Files(unittest.TestCase):
         self.assertGreater(sum(counts.values()), 50)
 
     def test_the_configuration_has_fixed_numbers(self):
-        """Trained networks keep their meaning: what is looked for comes first, then the classes of Documentation/guide/sequences.md."""
+        """Trained networks keep their meaning: what is looked for comes first, then the classes of
+        Documentation/guide/sequences.md."""
         made = yaml.safe_load(_labels.configuration(99, {99: 1, 252: 3}, range(10)))
         self.assertEqual([made["content"][k] for k in (99, 252, 0)], [0.25, 0.75, 0])
         order = [0, 99, 252, 258, 259, 10, 18, 20, 40, 44, 49, 50, 51, 52, 70, 72, 80, 81, 1]
@@ -197,7 +206,8 @@ class Files(unittest.TestCase):
         self.assertEqual(al.Sequence(self.out / "manifest.json", threads=2).write(out)["sequences"], wanted)
         self.assertEqual({path: path.stat().st_mtime_ns for path in whole}, whole)
         self.assertEqual(list(out.glob("sequences/.*")), [])
-        files = [{p.relative_to(home): p.read_bytes() for p in home.glob("sequences/*/*/*")} for home in (self.out, out)]
+        files = [{p.relative_to(home): p.read_bytes() for p in home.glob("sequences/*/*/*")}
+                 for home in (self.out, out)]
         self.assertEqual(len(files[0]), 4 * 3 * 4)
         self.assertEqual(*files)
 
@@ -231,7 +241,8 @@ class Labels(unittest.TestCase):
             gulls = []
             for k in range(6):
                 gull = bird_of(ObjectId=50 + k, Reflectance=0.3 if k in light else 0.0, Heading=40.0 * k)
-                gulls.append(al.mover(gull, [(-15 + 6 * k, 199.4 - 0.1 * k, 3 + 2 * k)]))  # owners compete: within a range unit of the wall
+                # owners compete: within a range unit of the wall
+                gulls.append(al.mover(gull, [(-15 + 6 * k, 199.4 - 0.1 * k, 3 + 2 * k)]))
             echoes = al.Scan(scene, sensor, noise=False, number_of_reflections=1, return_mode="RangeUnits",
                              attenuation_coefficient=0, movers=gulls).echoes
             unit = np.floor(np.array(echoes["distance_m"]) / 0.75 + 1e-9).astype(int)
@@ -255,8 +266,8 @@ class Labels(unittest.TestCase):
 
     def test_subsets_are_what_they_are_said_to_be(self):
         class Still:
-            echoes = {"beam_id": np.array([7, 3, 3, 9]), "distance_m": np.array([50.0, 200.0, 100.0, 10.0]), "energy_received": np.ones(4),
-                      "object_id": np.array([0, 5, -1, -2])}  # the last is of the air
+            echoes = {"beam_id": np.array([7, 3, 3, 9]), "distance_m": np.array([50.0, 200.0, 100.0, 10.0]),
+                      "energy_received": np.ones(4), "object_id": np.array([0, 5, -1, -2])}  # the last is of the air
         distance, subset = Clutter(Still, 15.0).look([3, 3, 3, 3, 7, 9], [90.0, 120.0, 80.0, 190.0, 50.0, 10.0])
         np.testing.assert_array_equal(distance, [10, 20, 20, 10, 0, np.inf])
         self.assertEqual([SUBSETS[k] for k in subset],
@@ -269,7 +280,8 @@ class Shipped(unittest.TestCase):
         sys.path.insert(0, str(EXAMPLE))
 
     def test_clutter_is_neither_too_easy_nor_hopeless(self):
-        """The clutter filter that knows the whole sequence, on six scans of the shipped scenario: a cell met once is not clutter."""
+        """The clutter filter that knows the whole sequence, on six scans of the shipped scenario: a cell met once is
+        not clutter."""
         import clutter
         out = emptied("sequence", "shipped")
         al.Sequence(EXAMPLE / "hongqiao.scenario.json", number_of_scans=6, scans_per_sequence=6).write(out)
@@ -318,12 +330,14 @@ class Command(unittest.TestCase):
     def test_settings_of_a_sequence_are_those_of_a_changed_scenario(self):
         home = emptied("sequence", "settings")
         file = scenario_file(home, number_of_scans=1, scans_per_sequence=1, objects=[])
-        code = _command.main(["sequence", str(file), "-o", str(home / "told"), "--sensor-set", "sway_amplitude=0", "--sensor-set",
-                              "encoder_jitter=0", "--sensor-set", "number_of_channels=3", "--sensor-set", "position=1,2,3",
-                              "--scan-set", "rays_per_beam=40", "--scan-set", "noise=false"])
+        code = _command.main(["sequence", str(file), "-o", str(home / "told"), "--sensor-set", "sway_amplitude=0",
+                              "--sensor-set", "encoder_jitter=0", "--sensor-set", "number_of_channels=3",
+                              "--sensor-set", "position=1,2,3", "--scan-set", "rays_per_beam=40", "--scan-set",
+                              "noise=false"])
         self.assertIn(code, (None, 0))
         whole = json.loads((home / "told" / "manifest.json").read_text())["scenario"]
-        self.assertEqual([whole["sensor"][name] for name in ("sway_amplitude", "encoder_jitter", "number_of_channels", "position")],
+        self.assertEqual([whole["sensor"][name]
+                          for name in ("sway_amplitude", "encoder_jitter", "number_of_channels", "position")],
                          [0, 0, 3, [1, 2, 3]])
         self.assertEqual(whole["scan"], {**SCENARIO["scan"], "rays_per_beam": 40, "noise": False})
 

@@ -15,7 +15,8 @@ from echotools import InFolder, Messages
 
 TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # a quarter to the left
 SHIFT = np.array([100.0, 200.0, 3.0])
-SCANS = [np.array([[10, 1, 0.5, 0.2], [20, -2, 1, 0.4]], "<f4"), np.array([[30, 3, 2, 0.6]], "<f4"), np.zeros((0, 4), "<f4")]
+SCANS = [np.array([[10, 1, 0.5, 0.2], [20, -2, 1, 0.4]], "<f4"), np.array([[30, 3, 2, 0.6]], "<f4"),
+         np.zeros((0, 4), "<f4")]
 TIMES = (0.0, 0.5, 2.0)
 
 
@@ -30,11 +31,12 @@ class Sequence(InFolder):
         self.write("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
         for number, points in enumerate(SCANS):
             points.tofile(os.path.join(self.folder, "velodyne", f"{number:06d}.bin"))
-            np.full(len(points), (7 << 16) + 99, "<u4").tofile(os.path.join(self.folder, "labels", f"{number:06d}.label"))
+            np.full(len(points), (7 << 16) + 99, "<u4").tofile(
+                os.path.join(self.folder, "labels", f"{number:06d}.label"))
         self.write("boxes/000001.txt", "bird 0.00 0.00 30 3 2 2.0 1.0 0.5 0.5 10000 1\n")
 
     def write(self, name, text):
-        pathlib.Path(os.path.join(self.folder, name)).write_text(text, encoding="utf-8")
+        pathlib.Path(os.path.join(self.folder, name)).write_text(text, "utf-8")
 
     def reader(self):
         reader = vtkAvianLidarSequenceReader()
@@ -49,7 +51,8 @@ class Sequence(InFolder):
         reader = self.reader()
         reader.UpdateInformation()
         for port in (0, 1):
-            self.assertEqual(reader.GetOutputInformation(port).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()), TIMES)
+            self.assertEqual(reader.GetOutputInformation(port).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()),
+                             TIMES)
         for time, scan in ((0.0, 0), (0.4, 0), (0.5, 1), (1.9, 1), (2.0, 2), (9.0, 2), (-1.0, 0)):
             points, _ = self.at(reader, time)
             self.assertEqual(points.GetNumberOfPoints(), len(SCANS[scan]), time)
@@ -58,7 +61,8 @@ class Sequence(InFolder):
                 np.testing.assert_allclose(vtk_to_numpy(points.GetPoints().GetData()), expected, atol=1e-9)
                 data = points.GetPointData()
                 self.assertEqual(data.GetScalars().GetName(), "semantic_label")
-                self.assertEqual({data.GetArray("semantic_label").GetTuple1(0), data.GetArray("instance_id").GetTuple1(0)}, {99, 7})
+                self.assertEqual({data.GetArray("semantic_label").GetTuple1(0),
+                                  data.GetArray("instance_id").GetTuple1(0)}, {99, 7})
 
     def test_a_calibration_turns_the_poses(self):
         """KITTI's poses are of the camera: Tr carries points to it, and back."""
@@ -67,7 +71,8 @@ class Sequence(InFolder):
         points, _ = self.at(self.reader(), 0.0)
         camera = SCANS[0][:, :3].astype(float) @ tr[:, :3].T + tr[:, 3]
         moved = camera @ TURN.T + SHIFT
-        np.testing.assert_allclose(vtk_to_numpy(points.GetPoints().GetData()), (moved - tr[:, 3]) @ tr[:, :3], atol=1e-9)
+        np.testing.assert_allclose(vtk_to_numpy(points.GetPoints().GetData()), (moved - tr[:, 3]) @ tr[:, :3],
+                                   atol=1e-9)
 
     def test_boxes(self):
         reader = self.reader()
@@ -75,12 +80,16 @@ class Sequence(InFolder):
         points, boxes = self.at(reader, 0.5)
         self.assertEqual((boxes.GetNumberOfCells(), boxes.GetNumberOfPoints()), (6, 8))
         c, s = np.cos(0.5), np.sin(0.5)
-        corners = [(30 + x * c - y * s, 3 + x * s + y * c, 2 + z) for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.25, 0.25)]
+        corners = [(30 + x * c - y * s, 3 + x * s + y * c, 2 + z) for x in (-1, 1) for y in (-0.5, 0.5)
+                   for z in (-0.25, 0.25)]
         found = vtk_to_numpy(boxes.GetPoints().GetData())
-        np.testing.assert_allclose(np.sort(found, axis=0), np.sort(np.array(corners) @ TURN.T + SHIFT, axis=0), atol=1e-9)
-        self.assertEqual([data.GetInformation().Get(vtkDataObject.DATA_TIME_STEP()) for data in (points, boxes)], [0.5, 0.5])
+        np.testing.assert_allclose(np.sort(found, axis=0), np.sort(np.array(corners) @ TURN.T + SHIFT, axis=0),
+                                   atol=1e-9)
+        self.assertEqual([data.GetInformation().Get(vtkDataObject.DATA_TIME_STEP()) for data in (points, boxes)],
+                         [0.5, 0.5])
         data = boxes.GetCellData()
-        self.assertEqual((data.GetAbstractArray("object").GetValue(0), data.GetArray("object_id").GetValue(5)), ("bird", 10000))
+        self.assertEqual((data.GetAbstractArray("object").GetValue(0), data.GetArray("object_id").GetValue(5)),
+                         ("bird", 10000))
 
     def test_lines_of_white_space_alone(self):
         self.write("times.txt", "0\n\f\n0.5\n\v\n2\n \t\r\n")
@@ -88,14 +97,17 @@ class Sequence(InFolder):
         points, _ = self.at(self.reader(), 0.5)
         np.testing.assert_allclose(points.GetPoint(0), SCANS[1][0, :3].astype(float) @ TURN.T + SHIFT, atol=1e-9)
 
-    def test_what_is_refused(self):
-        for name, text, said in (("times.txt", "0\n0\n", "the time in line 2 of times.txt is not above the one before"), ("times.txt", "\n", "no time in it"),
-                                 ("times.txt", "zero\n", 'has "zero", expected a number'), ("times.txt", "0\n1\n2\n3\n", "000003.bin"),
-                                 ("poses.txt", "1 2 3\n", "line 1 of poses.txt has 3 numbers"), 
-                                 ("poses.txt", "\nnan 0 0 0 0 1 0 0 0 0 1 0\n", 'line 2 of poses.txt has "nan", expected a finite number'),
-                                 ("calib.txt", "\v\nTr: inf 0 0 0 0 1 0 0 0 0 1 0\n", 'line 2 of calib.txt has "inf"'),
-                                 ("boxes/000000.txt", "bird 1\n", "line 1 of 000000.txt has 2 words, expected the 12 of a box"),
-                                 ("boxes/000000.txt", "bird 0 0 1 2 3 1 1 1 0 1e300 1\n", "expected a whole number of 32 bits")):
+    def test_wrong_sequences_are_refused(self):
+        for name, text, said in (
+                ("times.txt", "0\n0\n", "the time in line 2 of times.txt is not above the one before"),
+                ("times.txt", "\n", "no time in it"), ("times.txt", "zero\n", 'has "zero", expected a number'),
+                ("times.txt", "0\n1\n2\n3\n", "000003.bin"),
+                ("poses.txt", "1 2 3\n", "line 1 of poses.txt has 3 numbers"),
+                ("poses.txt", "\nnan 0 0 0 0 1 0 0 0 0 1 0\n",
+                 'line 2 of poses.txt has "nan", expected a finite number'),
+                ("calib.txt", "\v\nTr: inf 0 0 0 0 1 0 0 0 0 1 0\n", 'line 2 of calib.txt has "inf"'),
+                ("boxes/000000.txt", "bird 1\n", "line 1 of 000000.txt has 2 words, expected the 12 of a box"),
+                ("boxes/000000.txt", "bird 0 0 1 2 3 1 1 1 0 1e300 1\n", "expected a whole number of 32 bits")):
             with self.subTest(said):
                 self.setUp()
                 self.write(name, text)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The shipped airport: counts, places, areas, volumes and kinds of materials (what they reflect is TestMaterial's), against its GeoJSON by other ways."""
+"""The shipped airport: counts, places, areas, volumes and kinds of materials (what they reflect is TestMaterial's),
+against its GeoJSON by other ways."""
 import json
 import pathlib
 import unittest
@@ -20,7 +21,7 @@ def enu(longitude, latitude):
 
 
 def plans():
-    features = json.loads(pathlib.Path(st.SHIPPED).with_name("hongqiao.geojson").read_text(encoding="utf-8"))["features"]
+    features = json.loads(pathlib.Path(st.SHIPPED).with_name("hongqiao.geojson").read_text("utf-8"))["features"]
     result = {}
     for feature in features:
         geometry = feature["geometry"]
@@ -54,7 +55,8 @@ class ShippedScene(unittest.TestCase):
         self.assertEqual((self.scene.errors, self.scene.warnings), ([], []))
         self.assertEqual(sorted(self.scene.names), sorted(["Ground", *self.plans]))
         classes = self.scene.strings("object_classes")
-        self.assertEqual({c: classes.count(c) for c in classes}, {"ground": 1, "apron": 4, "runway": 2, "terminal": 4, "hangar": 4, "building": 7})
+        self.assertEqual({c: classes.count(c) for c in classes},
+                         {"ground": 1, "apron": 4, "runway": 2, "terminal": 4, "hangar": 4, "building": 7})
         for i, block in enumerate(self.scene.blocks):
             name = self.scene.output.GetMetaData(i).Get(self.scene.output.NAME())
             self.assertEqual(set(st.cells(block, "object_id")), {i})
@@ -65,12 +67,14 @@ class ShippedScene(unittest.TestCase):
         np.testing.assert_array_equal(vtk_to_numpy(fields.GetArray("lidar_position")), [[0, 0, 3]])
         self.assertIn("OpenStreetMap contributors, ODbL", " ".join(self.scene.strings("attribution")))
         self.assertIn("lidar: 0 surfaces above, 2 below", self.scene.strings("scene_report"))
-        self.assertEqual(self.scene.strings("material_names"), ["Wall", "Glass", "Metal", "Wood", "Grass", "Asphalt", "Concrete"])
+        self.assertEqual(self.scene.strings("material_names"),
+                         ["Wall", "Glass", "Metal", "Wood", "Grass", "Asphalt", "Concrete"])
 
     def test_buildings_stand_where_the_map_says(self):
         """Closed solids on their outlines, whose facades have their share of glass."""
         for name, properties, rings, block in self.buildings():
-            points, triangles, material = vtk_to_numpy(block.GetPoints().GetData()), st.corners(block), st.cells(block, "material_id")
+            points, triangles = vtk_to_numpy(block.GetPoints().GetData()), st.corners(block)
+            material = st.cells(block, "material_id")
             for p in rings[0]:
                 below = points[np.hypot(*(points[:, :2] - p).T) < 1e-6]
                 self.assertEqual(sorted(set(below[:, 2])), [0, properties["height"]], msg=name)
@@ -79,9 +83,10 @@ class ShippedScene(unittest.TestCase):
             self.assertTrue(st.is_closed(triangles) and (area > 0).all(), msg=name)
             self.assertAlmostEqual(area[up > 1e-9].sum() / ground, 1, delta=1e-9, msg=name)
             self.assertAlmostEqual(st.volume(triangles) / ground / properties["height"], 1, delta=1e-9, msg=name)
-            self.assertAlmostEqual(area[facade].sum() / ring_length(rings[0]) / properties["height"], 1, delta=1e-9, msg=name)
-            self.assertAlmostEqual(area[material == GLASS].sum() / area[facade].sum(), 0.4 if properties["kind"] == "terminal" else 0, delta=1e-9,
+            self.assertAlmostEqual(area[facade].sum() / ring_length(rings[0]) / properties["height"], 1, delta=1e-9,
                                    msg=name)
+            self.assertAlmostEqual(area[material == GLASS].sum() / area[facade].sum(),
+                                   0.4 if properties["kind"] == "terminal" else 0, delta=1e-9, msg=name)
             self.assertTrue(facade[material == GLASS].all(), msg=name)
             self.assertEqual(set(material) - {GLASS}, {METAL} if properties["kind"] == "hangar" else {WALL})
         for name, area in (("Terminal 1", 54459), ("Terminal 2", 139673)):  # as the author of the extract measured them
@@ -98,7 +103,8 @@ class ShippedScene(unittest.TestCase):
         for name, (height, material, area) in expected.items():
             block = self.scene.block(name)
             triangles = st.corners(block)
-            self.assertEqual((set(triangles[:, :, 2].ravel()), set(st.cells(block, "material_id"))), ({height}, {material}), msg=name)
+            self.assertEqual((set(triangles[:, :, 2].ravel()), set(st.cells(block, "material_id"))),
+                             ({height}, {material}), msg=name)
             self.assertTrue((st.normals(triangles)[:, 2] > 0).all(), msg=name)
             self.assertAlmostEqual(st.areas(triangles).sum() / area, 1, delta=1e-9, msg=name)
 

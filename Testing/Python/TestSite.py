@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The documentation as a site: it is made without a warning, and Chromium shows its menu from the disk, without a network. Links are
-TestDocumentation's."""
+"""The documentation as a site: it is made without a warning, and Chromium shows its menu from the disk, without a
+network. Links are TestDocumentation's."""
 import os
 import pathlib
 import shutil

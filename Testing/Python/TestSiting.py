@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files, plans
-that are wrong."""
+"""Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files,
+plans that are wrong."""
 import gzip
 import itertools
 import json
@@ -20,14 +20,15 @@ import avianlidar as al
 import exampletools
 import TestCoverage
 from avianlidar import siting
-from avianlidar.apps import _pictures, _sites, _sites_page
-from avianlidar.apps._features import properties_of
-from avianlidar.apps._json import load_json, packaged
-from avianlidar.apps._osm import read_extract
-from avianlidar.apps._plan import Plan
-from avianlidar.apps._inputs import read_plan
-from avianlidar.apps._sites import Sites
-from avianlidar.apps._candidates import Surfaces, code_of, pierced
+from avianlidar.apps.airport._osm import read_extract
+from avianlidar.apps.coverage import _pictures, _sites, _sites_page
+from avianlidar.apps.coverage._plan import Plan
+from avianlidar.apps.coverage._sites import Sites
+from avianlidar.apps.inputs._json import load_json, packaged
+from avianlidar.apps.inputs._read import read_plan
+from avianlidar.apps.pages import _drawing
+from avianlidar.apps.places._candidates import Surfaces, code_of, pierced
+from avianlidar.apps.places._features import properties_of
 from helpertools import error_of
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
@@ -67,7 +68,8 @@ class Candidates(unittest.TestCase):
             np.testing.assert_array_equal(found[:2000], inside | (away[:2000] < margin))
             np.testing.assert_array_equal(siting.is_near(points, outline[::-1], margin)[:2000], found[:2000])
             self.assertTrue(found[2000:].all() or margin == 0.0)
-        self.assertEqual(siting.is_near([(15, 5), (14.9, 5), (9, 5)], [(0, 0), (10, 0), (10, 10), (0, 10)], 5.0).tolist(), [False, True, True])
+        self.assertEqual(siting.is_near([(15, 5), (14.9, 5), (9, 5)], [(0, 0), (10, 0), (10, 10), (0, 10)],
+                                        5.0).tolist(), [False, True, True])
 
     def test_holes_of_outlines_are_not_drawn(self):
         square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
@@ -81,7 +83,7 @@ class Candidates(unittest.TestCase):
                 canvas.draw()
                 places = axes.transData.transform([(0, 0), (2.5, 0.3), (4.6, 0.3)]).astype(int)
                 shown.extend(np.asarray(canvas.buffer_rgba())[::-1][y, x, 0] / 255 for x, y in places)
-            _pictures.drawn((4, 4), draw)
+            _drawing.drawn((4, 4), draw)
             np.testing.assert_allclose(shown, (inner, 0.9, 1.0), atol=0.005)
 
     def test_two_in_one_place_are_one(self):
@@ -99,7 +101,8 @@ class Candidates(unittest.TestCase):
 
     def test_runway_outline_and_coordinates(self):
         outline = siting.runway_outline(siting.Runway("09/27", (0.0, 0.0), (1000.0, 0.0), 45.0), 60.0, 185.0)
-        self.assertEqual([outline.min(axis=0).tolist(), outline.max(axis=0).tolist()], [[-60.0, -185.0], [1060.0, 185.0]])
+        self.assertEqual([outline.min(axis=0).tolist(), outline.max(axis=0).tolist()],
+                         [[-60.0, -185.0], [1060.0, 185.0]])
         origin = (31.2, 121.3, 3.0)
         points = np.array([(0.0, 0.0, 0.0), (1500.0, -900.0, 0.0)])
         degrees = siting.to_geodetic(points, origin)
@@ -113,28 +116,37 @@ class Candidates(unittest.TestCase):
 
 
 class Places(unittest.TestCase):
-    RUNWAYS = [siting.Runway("08/26", (0.0, 0.0), (3000.0, 0.0), 45.0), siting.Runway("Runway 18R/36L", (500.0, -900.0), (500.0, 100.0), 30.0)]
+    RUNWAYS = [siting.Runway("08/26", (0.0, 0.0), (3000.0, 0.0), 45.0),
+               siting.Runway("Runway 18R/36L", (500.0, -900.0), (500.0, 100.0), 30.0)]
 
     def test_ends_are_called_by_where_aircraft_land(self):
-        grass, magnetic = siting.Runway("grass", (0.0, 0.0), (-500.0, 0.0), 20.0), siting.Runway("RWY 35/17", (0.0, 0.0), (60.0, 500.0), 20.0)
-        self.assertEqual(siting.end_names([*self.RUNWAYS, grass, magnetic]), [("08", "26"), ("36L", "18R"), ("grass east", "grass west"), ("35", "17")])
-        self.assertEqual(siting.region_names(self.RUNWAYS), {"strips": ["strip 08/26", "strip 18R/36L"],
-                                                             "approaches": ["approach 08", "approach 26", "approach 36L", "approach 18R"]})
+        grass = siting.Runway("grass", (0.0, 0.0), (-500.0, 0.0), 20.0)
+        magnetic = siting.Runway("RWY 35/17", (0.0, 0.0), (60.0, 500.0), 20.0)
+        self.assertEqual(siting.end_names([*self.RUNWAYS, grass, magnetic]),
+                         [("08", "26"), ("36L", "18R"), ("grass east", "grass west"), ("35", "17")])
+        self.assertEqual(siting.region_names(self.RUNWAYS), {
+                             "strips": ["strip 08/26", "strip 18R/36L"],
+                             "approaches": ["approach 08", "approach 26", "approach 36L", "approach 18R"]})
         self.assertEqual(siting.end_names(2 * [grass])[1], ("grass east (2)", "grass west (2)"))
 
     def test_shares_by_end(self):
-        points, regions = siting.places_by_region(self.RUNWAYS, 1000, 3, {"strips": {"18R/36L": 1}, "approaches": {"08": 2, "26": 1}})
-        self.assertEqual({name: len(numbers) for name, numbers in regions.items()}, {"strip 18R/36L": 250, "approach 08": 500, "approach 26": 250})
+        points, regions = siting.places_by_region(self.RUNWAYS, 1000, 3,
+                                                  {"strips": {"18R/36L": 1}, "approaches": {"08": 2, "26": 1}})
+        self.assertEqual({name: len(numbers) for name, numbers in regions.items()},
+                         {"strip 18R/36L": 250, "approach 08": 500, "approach 26": 250})
         self.assertLess(points[regions["approach 08"], 0].max(), 0.0)  # aircraft that land on 08 come from the west
         self.assertGreater(points[regions["approach 26"], 0].min(), 3000.0)
         self.assertLessEqual(np.abs(points[regions["strip 18R/36L"], 0] - 500.0).max(), 150.0)
-        for shares, words in (({"approaches": {"09": 1}}, "approaches has '09', expected some of 08, 26, 36L, 18R"), ({"approaches": {"08": 0}}, "a sum above 0")):
+        for shares, words in (({"approaches": {"09": 1}}, "approaches has '09', expected some of 08, 26, 36L, 18R"),
+                              ({"approaches": {"08": 0}}, "a sum above 0")):
             with self.assertRaisesRegex(ValueError, words):
                 siting.strips_and_approaches(self.RUNWAYS, 100, shares=shares)
 
     def test_spread_by_distance_and_by_area(self):
-        """Over an approach of the half-width 75 m + 0.15 d, to d = 3000 m: the share of its area before d is (75 d + 0.075 d^2) / 900,000 m^2."""
-        for spread, before, long_one in (("distance", lambda d: d / 3000.0, 0.5), ("area", lambda d: (75 * d + 0.075 * d * d) / 900e3, 0.75)):
+        """Over an approach of the half-width 75 m + 0.15 d, to d = 3000 m: the share of its area before d is (75 d +
+        0.075 d^2) / 900,000 m^2."""
+        for spread, before, long_one in (("distance", lambda d: d / 3000.0, 0.5),
+                                         ("area", lambda d: (75 * d + 0.075 * d * d) / 900e3, 0.75)):
             points, regions = siting.places_by_region(self.RUNWAYS, 40000, 1, spread=spread)
             away = -points[regions["approach 08"], 0]
             for d in (500.0, 1500.0, 2500.0):
@@ -149,7 +161,8 @@ class ObstacleLimits(unittest.TestCase):
     def at(self, runway, *local):
         """Places by (m beyond the runway's end, m to its right)."""
         axis, _ = runway.axis()
-        return np.array([np.add(runway.end, beyond * axis + aside * np.array([axis[1], -axis[0]])) for beyond, aside in local])
+        return np.array([np.add(runway.end, beyond * axis + aside * np.array([axis[1], -axis[0]]))
+                         for beyond, aside in local])
 
     def test_code_numbers(self):
         self.assertEqual([code_of(length) for length in (799.9, 800, 1199.9, 1200, 1799.9, 1800)], [1, 2, 2, 3, 3, 4])
@@ -157,17 +170,20 @@ class ObstacleLimits(unittest.TestCase):
     def test_heights_by_hand(self):
         slanted = siting.Runway("04/22", (100.0, -50.0), (100.0 + 3000 * 0.6, -50.0 + 3000 * 0.8), 45.0)
         inf = np.inf
-        # Of code 4, precision. 285 m beyond the end and 174 m aside is 225 m from the inner edge, where the approach is 173.75 m wide.
-        rows = (((285, 174), inf, 4.5 + 0.143 * 0.25), ((285, -173.7), 4.5, inf), ((310, 0), 5.0, inf), ((60 + 3000 + 1000, 500), 85.0, inf),
-                ((60 + 6600 + 8000, -2000), 150.0, inf), ((60 + 15001, 0), inf, inf), ((-1500, 185), inf, 45 * 0.143), ((-1500, -454.6), inf, 314.6 * 0.143),
-                ((-1500, 455), inf, inf), ((60 + 2000, 140 + 300 + 30), inf, 40 + 30 * 0.143), ((60 + 2000, 140 + 300 + 36), inf, inf),
-                ((-3000 - 310, 0), 5.0, inf), ((-1500, 139.9), inf, inf))
+        # Code 4, precision. The point 285 m beyond the end and 174 m aside is 225 m from the inner edge, where the
+        # approach is 173.75 m wide.
+        rows = (((285, 174), inf, 4.5 + 0.143 * 0.25), ((285, -173.7), 4.5, inf), ((310, 0), 5.0, inf),
+                ((60 + 3000 + 1000, 500), 85.0, inf), ((60 + 6600 + 8000, -2000), 150.0, inf),
+                ((60 + 15001, 0), inf, inf), ((-1500, 185), inf, 45 * 0.143), ((-1500, -454.6), inf, 314.6 * 0.143),
+                ((-1500, 455), inf, inf), ((60 + 2000, 140 + 300 + 30), inf, 40 + 30 * 0.143),
+                ((60 + 2000, 140 + 300 + 36), inf, inf), ((-3000 - 310, 0), 5.0, inf), ((-1500, 139.9), inf, inf))
         found = Surfaces.of(slanted).limits(self.at(slanted, *(place for place, _, _ in rows)))
         np.testing.assert_allclose(found["approach"], [row[1] for row in rows], atol=1e-9)
         np.testing.assert_allclose(found["transitional"], [row[2] for row in rows], atol=1e-9)
         self.assertEqual(np.flatnonzero(found["strip"] == -inf).tolist(), [len(rows) - 1])
         short = siting.Runway("09/27", (0.0, 0.0), (700.0, 0.0), 18.0)  # code 1
-        visual = Surfaces.of(short, changes={"category": "non-instrument"}).limits(self.at(short, (30 + 100, 39), (30 + 100, 41), (-300, 50), (31, 0), (29, 29)))
+        visual = Surfaces.of(short, changes={"category": "non-instrument"}).limits(
+            self.at(short, (30 + 100, 39), (30 + 100, 41), (-300, 50), (31, 0), (29, 29)))
         np.testing.assert_allclose(visual["approach"], [5.0, inf, inf, 0.05, inf], atol=1e-9)
         np.testing.assert_allclose(visual["transitional"], [inf, 5.0 + 0.2, 4.0, inf, inf], atol=1e-9)
         self.assertEqual(visual["strip"].tolist(), [inf] * 4 + [-inf])
@@ -183,9 +199,12 @@ class ObstacleLimits(unittest.TestCase):
 
     def test_plans_change_surfaces(self):
         runway = siting.Runway("09/27", (0.0, 0.0), (3000.0, 0.0), 45.0)
-        tops = np.column_stack([self.at(runway, (0, 0), (285, 174), (310, 0), (310, 0), (-1500, 200)), [5, 10, 5.01, 4.99, 8.5]])
-        for changes, wanted in (({}, [1, 3, 2, 0, 0]), ({"strip": False}, [0, 3, 2, 0, 0]), ({"approach": False, "transitional": True}, [1, 3, 0, 0, 0]),
-                                ({"transitional": {"slope": 0.1}}, [1, 3, 2, 0, 3]), ({"code": 1, "category": "non-instrument"}, [1, 0, 0, 0, 0])):
+        tops = np.column_stack([self.at(runway, (0, 0), (285, 174), (310, 0), (310, 0), (-1500, 200)),
+                                [5, 10, 5.01, 4.99, 8.5]])
+        for changes, wanted in (({}, [1, 3, 2, 0, 0]), ({"strip": False}, [0, 3, 2, 0, 0]),
+                                ({"approach": False, "transitional": True}, [1, 3, 0, 0, 0]),
+                                ({"transitional": {"slope": 0.1}}, [1, 3, 2, 0, 3]),
+                                ({"code": 1, "category": "non-instrument"}, [1, 0, 0, 0, 0])):
             self.assertEqual(pierced([Surfaces.of(runway, changes=changes)], tops).tolist(), wanted, changes)
         self.assertEqual(pierced([], tops).tolist(), [0] * 5)
 
@@ -209,13 +228,15 @@ class Search(unittest.TestCase):
         found[:3] = np.maximum(found[:3], 0.7)  # the best three are at one place
         weights = np.full((1, 40), 1 / 40)
         for count in (2, 3):
-            allowed = [sites for sites in itertools.combinations(range(9), count) if len(set(spots[list(sites)])) == count]
+            allowed = [sites for sites in itertools.combinations(range(9), count) if len(set(spots[list(sites)]))
+                       == count]
             best = max(allowed, key=lambda sites: siting.value_of(found, weights, sites))
             self.assertEqual(siting.exhaustive(found, weights, count, spots).sites, best)
             for largest in (0, 60):
                 network = siting.search(found, weights, count, largest, spots)[count - 1]
                 self.assertEqual(len(set(spots[list(network.sites)])), count)
-        self.assertEqual(siting.search(found[:3], weights, 2, spots=spots[:3])[1].value, siting.search(found[:3], weights, 2)[1].value)
+        self.assertEqual(siting.search(found[:3], weights, 2, spots=spots[:3])[1].value,
+                         siting.search(found[:3], weights, 2)[1].value)
 
     def test_exchange_is_never_below_greedy(self):
         better = 0
@@ -229,7 +250,8 @@ class Search(unittest.TestCase):
                 better += other.value > one.value
             self.assertGreaterEqual(siting.exhaustive(found, weights, 3).value, best[2].value - 1e-12)
         self.assertGreater(better, 0)
-        np.testing.assert_allclose(siting.values_of(found, weights), [siting.value_of(found, weights, [i]) for i in range(20)])
+        np.testing.assert_allclose(siting.values_of(found, weights),
+                                   [siting.value_of(found, weights, [i]) for i in range(20)])
 
     def test_rank_correlation(self):
         self.assertAlmostEqual(siting.rank_correlation([1, 2, 2, 3], [3, 2, 2, 1]), -1.0)
@@ -238,9 +260,11 @@ class Search(unittest.TestCase):
 
 class Kept(unittest.TestCase):
     def test_a_stopped_run_goes_on(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=(1, 2, 3))
+        scene = al.Scene(WALL, material="Wall")
+        sensor = al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=(1, 2, 3))
         sites = np.array([(0, 0, 2), (10, 0, 2), (-30, 0, 2)], dtype=float)
-        places, target = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3)), {"effective_area": 0.003}
+        places = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3))
+        target = {"effective_area": 0.003}
         wanted = siting.look(scene, sensor, sites, places, [""], **target)
         other = al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
         cover = al.Coverage(scene, other, places=places, clutter=False, species="", **target)
@@ -259,20 +283,23 @@ class Kept(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             siting.look(scene, sensor, sites, places, [""], folder, progress=stop, **target)
         self.assertEqual(len(list(folder.iterdir())), 2)
-        again = siting.look(scene, sensor, sites, places, [""], folder, progress=lambda *numbers: made.append(numbers), **target)
+        again = siting.look(scene, sensor, sites, places, [""], folder, progress=lambda *numbers: made.append(numbers),
+                            **target)
         np.testing.assert_array_equal(again, wanted)
         self.assertEqual((made, sensor.position), ([(1, 1)], (1, 2, 3)))
         # What differs in anything has files of its own.
-        self.assertGreater(siting.look(scene, sensor, sites[:1], places, [""], folder, area_factor=1.2, **target).sum(), wanted[0, 0].sum())
+        self.assertGreater(siting.look(scene, sensor, sites[:1], places, [""], folder, area_factor=1.2, **target).sum(),
+                           wanted[0, 0].sum())
         siting.look(scene, sensor, sites[:1], places + 1.0, [""], folder, **target)
         siting.look(scene, sensor, sites[:1], places, [""], folder, visibility=5e3, **target)
         sensor.receiver_efficiency = 0.5 * sensor.receiver_efficiency
         self.assertLess(siting.look(scene, sensor, sites[:1], places, [""], folder, **target).sum(), wanted[0, 0].sum())
         self.assertEqual(len(list(folder.iterdir())), 3 + 4)
 
-    def test_what_is_damaged_is_made_again(self):
+    def test_damaged_files_are_made_again(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
-        sites, places = [(k, 0, 2) for k in range(7)], np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3))
+        sites = [(k, 0, 2) for k in range(7)]
+        places = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3))
         folder = fresh("damaged")
         wanted = siting.look(scene, sensor, sites, places, ["crow"], folder)
         files = sorted(folder.iterdir())
@@ -300,16 +327,17 @@ class Airport(unittest.TestCase):
         cls.scene = al.load_scene(SCENE)
         origin = cls.scene.geodetic_origin
         cls.runways = siting.read_runways(PLAN, origin)
-        outlines = siting.read_outlines(PLAN, origin, "height") + [siting.runway_outline(runway) for runway in cls.runways]
-        cls.sites = siting.candidates(siting.lattice((-2000, 1600, -2200, 2200), 200), (5.0,), [(o, 0.0) for o in outlines])
+        outlines = siting.read_outlines(PLAN, origin, "height") + [*map(siting.runway_outline, cls.runways)]
+        cls.sites = siting.candidates(siting.lattice((-2000, 1600, -2200, 2200), 200), (5.0,),
+                                      [(o, 0.0) for o in outlines])
         cls.sensor = al.Sensor("Search905")
 
     def test_greedy_curve_calculated_elsewhere(self):
         """One beam per direction, pulses that no units share, a gull that is a point, of 0.0297 m2 in the mean."""
         TestCoverage.Airport.setUpClass()
         points, regions = siting.strips_and_approaches(self.runways, 2000)
-        electrons = siting.look(self.scene, self.sensor, self.sites, points, [""], effective_area=0.0297, array="photoelectrons",
-                                visibility=0.0, attenuation_coefficient=TestCoverage.AIR)
+        electrons = siting.look(self.scene, self.sensor, self.sites, points, [""], effective_area=0.0297,
+                                array="photoelectrons", visibility=0.0, attenuation_coefficient=TestCoverage.AIR)
         threshold, dark, excess = 664.069, 119.062, 3.0
         mean = np.concatenate([[0.0], np.logspace(1, 5, 4001)])
         n = mean[:, None] * TestCoverage.Airport.relative
@@ -331,8 +359,10 @@ class Airport(unittest.TestCase):
         heights = [15, "15", "15 m", "15m", "tall", True, -3, None, "15 ft", {}]
         (folder / "town.json").write_text(json.dumps({"type": "FeatureCollection", "features": [
             {**square, "properties": {"height": height}} for height in heights]}))
-        (folder / "town.lidarscene.json").write_text(json.dumps({"version": 1, "origin": {"latitude": 31.1979, "longitude": 121.3363, "height": 3},
-            "objects": [{"footprints": "town.json", "height": 5, "height_attribute": "height", "material": "Wall"}]}))
+        (folder / "town.lidarscene.json").write_text(
+            json.dumps({"version": 1, "origin": {"latitude": 31.1979, "longitude": 121.3363, "height": 3},
+                        "objects": [{"footprints": "town.json", "height": 5, "height_attribute": "height",
+                                     "material": "Wall"}]}))
         scene = siting.with_other_heights(folder / "town.lidarscene.json", folder / "out", lambda: 2.0)
         changed = load_json(load_json(scene)["objects"][0]["footprints"])
         self.assertEqual([f["properties"]["height"] for f in changed["features"]], [17.0] * 4 + heights[4:])
@@ -341,7 +371,8 @@ class Airport(unittest.TestCase):
     def test_a_plan_says_where_nothing_may_stand(self):
         """The best pair of the others, by brute force; draws of the unknown."""
         folder = fresh("plan")
-        square = siting.to_geodetic([(100, -700, 0), (500, -700, 0), (500, 700, 0), (100, 700, 0), (100, -700, 0)], self.scene.geodetic_origin)[:, :2].tolist()
+        square = siting.to_geodetic([(100, -700, 0), (500, -700, 0), (500, 700, 0), (100, 700, 0), (100, -700, 0)],
+                                    self.scene.geodetic_origin)[:, :2].tolist()
         (folder / "taken.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
             {"type": "Feature", "properties": None, "geometry": {"type": "Polygon", "coordinates": [square]}}]}))
         wanted = {"spacing": 400, "bounds": [-400, 800, -600, 600], "masts": [5, 8], "draws": 2, "sensors": 2}
@@ -352,7 +383,8 @@ class Airport(unittest.TestCase):
         self.assertGreater(np.count_nonzero(inside), 3)
         np.testing.assert_array_equal(sites.positions, free[~inside])
         self.assertEqual(set(free[:, 2]), {5.0, 8.0})
-        pairs = [siting.value_of(sites.found, sites.weights, pair) for pair in itertools.combinations(range(len(sites.positions)), 2)
+        pairs = [siting.value_of(sites.found, sites.weights, pair)
+                 for pair in itertools.combinations(range(len(sites.positions)), 2)
                  if (sites.positions[pair[0], :2] != sites.positions[pair[1], :2]).any()]  # not two masts at one place
         self.assertAlmostEqual(sites.networks[1].value, max(pairs), delta=1e-9)
         self.assertEqual([sites.rank_of(i) for i in sites.order[:3]], [1, 2, 3])
@@ -362,15 +394,18 @@ class Airport(unittest.TestCase):
             self.assertGreaterEqual(change.winner.value, change.value - 1e-12)
             if not change.is_another(sites.networks):
                 self.assertAlmostEqual(change.winner.value, change.value, delta=1e-12)
-        self.assertEqual(len({c.winner.value for c in changes if c.what.startswith("effective area")}), 4)  # each draw has another
+        # each draw has another
+        self.assertEqual(len({c.winner.value for c in changes if c.what.startswith("effective area")}), 4)
         self.assertEqual(sites.robustness(changes), [])  # two draws say nothing
-        self.assertEqual([(row["sensors"], row["draws"]) for row in sites.robustness(5 * changes)], [(1, 10), (2, 10)] * 3)
+        self.assertEqual([(row["sensors"], row["draws"]) for row in sites.robustness(5 * changes)],
+                         [(1, 10), (2, 10)] * 3)
 
     def test_masts_keep_below_surfaces_unless_the_plan_says_otherwise(self):
         """Surfaces are those that ObstacleLimits has by hand."""
         def sites(**of):
-            return Sites(Plan({**read_plan(COVERAGE), "places": 100,
-                               "siting": {"spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0, **of}}))
+            return Sites(Plan({**read_plan(COVERAGE), "places": 100, "siting": {
+                                   "spacing": 300, "bounds": [-2000, 2600, -2600, 2600], "masts": [5, 10], "draws": 0,
+                                   **of}}))
         whole, kept = sites(surfaces=False), sites()
         self.assertEqual(whole.pierced, {})
         self.assertIn("the plan switches the surfaces off", _sites_page.words(whole)["obstacle limits"])
@@ -398,18 +433,19 @@ class Airport(unittest.TestCase):
 
 
 class Plans(unittest.TestCase):
-    """All that a plan holds is checked before the first site is looked at; what is wrong is named by file and member."""
+    """All that a plan holds is checked before the first site is looked at; what is wrong is named by file and
+    member."""
 
     @classmethod
     def setUpClass(cls):
         cls.folder = fresh("plans")
-        cls.shapes = json.loads(PLAN.read_text(encoding="utf-8"))
+        cls.shapes = json.loads(PLAN.read_text("utf-8"))
 
     def write(self, name="my", **changes):
         """A plan's file. @param changes of the plan, to None: without it; as `runway_features` of the runways' file"""
         features = changes.pop("runway_features", None)
-        wanted = {"scene": str(SCENE), "sensor": {"preset": "Airport16", "azimuth_step": 5.0}, "runways": str(PLAN), "places": 20, "heights": [15],
-                  "spacing": 500, "siting": {"spacing": 1500, "draws": 1, "sensors": 1}}
+        wanted = {"scene": str(SCENE), "sensor": {"preset": "Airport16", "azimuth_step": 5.0}, "runways": str(PLAN),
+                  "places": 20, "heights": [15], "spacing": 500, "siting": {"spacing": 1500, "draws": 1, "sensors": 1}}
         if features is not None:
             (self.folder / "airport.geojson").write_text(json.dumps({**self.shapes, "features": features}))
             wanted["runways"] = "airport.geojson"
@@ -424,21 +460,25 @@ class Plans(unittest.TestCase):
         self.assertEqual(words.count("\n"), 1)
         return words
 
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_plans_are_named(self):
         lattice = {"spacing": 1500}
         (self.folder / "none.geojson").write_text('{"type": "FeatureCollection", "features": []}')
-        (self.folder / "nowhere.lidarscene.json").write_text('{"version": 1, "objects": [{"ground": {"size": 100}, "material": "wall"}]}')
+        (self.folder / "nowhere.lidarscene.json").write_text(
+            '{"version": 1, "objects": [{"ground": {"size": 100}, "material": "wall"}]}')
         for member, change in (
                 ("siting.spacing: ", {"siting": {"spacing": 0.001}}), ("extent: ", {"extent": [1, 0, 0, 1]}),
                 ("preset", {"sensor": {}}), ("'heigts' is not known; did you mean 'heights'?", {"heigts": [3]}),
                 ("siting: 'mast' is not known; did you mean 'masts'?", {"siting": {**lattice, "mast": [5]}}),
-                ("my.coverage.json: 'sensors' is not known; did you mean 'sensor'?", {"sensor": None, "sensors": {"preset": "Search905"}}),
+                ("my.coverage.json: 'sensors' is not known; did you mean 'sensor'?",
+                 {"sensor": None, "sensors": {"preset": "Search905"}}),
                 ("spread: 'distanse' is not known; did you mean 'distance'?", {"spread": "distanse"}),
                 ("regions: 'strip' is not known; did you mean 'strips'?", {"regions": {"strip": 1}}),
-                ("siting.surfaces: 'categroy' is not known; did you mean 'category'?", {"siting": {**lattice, "surfaces": {"categroy": "precision"}}}),
-                ("siting.surfaces.code: '5' is not one of [1, 2, 3, 4]", {"siting": {**lattice, "surfaces": {"code": "5"}}}),
-                ("sensor: Sensor: property 'range_gat' is not known; did you mean 'range_gate'?", {"sensor": {"preset": "Search905", "range_gat": 9}}),
-                ("Species", {"coverage": {"species": "dodo"}}),
+                ("siting.surfaces: 'categroy' is not known; did you mean 'category'?",
+                 {"siting": {**lattice, "surfaces": {"categroy": "precision"}}}),
+                ("siting.surfaces.code: '5' is not one of [1, 2, 3, 4]",
+                 {"siting": {**lattice, "surfaces": {"code": "5"}}}),
+                ("sensor: Sensor: property 'range_gat' is not known; did you mean 'range_gate'?",
+                 {"sensor": {"preset": "Search905", "range_gat": 9}}), ("Species", {"coverage": {"species": "dodo"}}),
                 ("heights: ", {"heights": [15, 15.0]}), ("heights[0]: ", {"heights": [1e30]}),
                 ("heights: -50 m is below the sensor and all surfaces", {"heights": [20, -50]}),
                 ("mix: ", {"mix": {"crow": 1.0, "dodo": 1.0}}),
@@ -458,7 +498,8 @@ class Plans(unittest.TestCase):
                 self.assertIn(str(file), words)
                 self.assertIn(member, words)
         with unittest.mock.patch.object(os, "sysconf", return_value=200):  # 40 kB of memory
-            self.assertRegex(self.said(self.write(siting={"spacing": 100})), "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
+            self.assertRegex(self.said(self.write(siting={"spacing": 100})),
+                             "my.coverage.json: siting: [0-9,]+ candidates, 1 species and 20 places need")
         file = self.write()
         file.write_text(file.read_text().replace('"places": 20', '"seed": NaN'))
         self.assertIn("my.coverage.json: is not JSON", self.said(file))
@@ -467,87 +508,117 @@ class Plans(unittest.TestCase):
         features = self.shapes["features"]
         line = next(f for f in features if f["properties"].get("kind") == "runway")
         square = next(f for f in features if f["properties"].get("height"))
-        for number, wrong in enumerate((
-                None, {**line, "properties": {"kind": "runway", "displaced_end": "far"}}, {**square, "geometry": {"type": "Polygon", "coordinates": [[]]}},
-                {**line, "geometry": {"type": "LineString", "coordinates": [[121.0, 31.0], [121.0, 31.0]]}})):
+        for number, wrong in enumerate((None, {**line, "properties": {"kind": "runway", "displaced_end": "far"}},
+                                        {**square, "geometry": {"type": "Polygon", "coordinates": [[]]}},
+                                        {**line, "geometry": {"type": "LineString",
+                                                              "coordinates": [[121.0, 31.0], [121.0, 31.0]]}})):
             file = self.write(runway_features=[*features, wrong])
             with self.subTest(number):
-                self.assertRegex(self.said(file), rf"my.coverage.json: runways: .*airport.geojson: features\[{len(features)}\]")
+                self.assertRegex(self.said(file),
+                                 rf"my.coverage.json: runways: .*airport.geojson: features\[{len(features)}\]")
         (self.folder / "cut.geojson").write_bytes(gzip.compress(PLAN.read_bytes())[:-100])
-        self.assertRegex(self.said(self.write(runways="cut.geojson")), "my.coverage.json: runways: .*cut.geojson: its compression by gzip is damaged")
+        self.assertRegex(self.said(self.write(runways="cut.geojson")),
+                         "my.coverage.json: runways: .*cut.geojson: its compression by gzip is damaged")
 
     def test_runways_in_several_lines(self):
         """Lines of one feature that continue one another are one runway, other lines are runways of their own."""
         origin = (53.6, 13.3, 0.0)
-        ends = siting.to_geodetic([(-900, 0, 0), (-10, 1, 0), (10, 0, 0), (900, 1, 0), (-900, 300, 0), (900, 300, 0)], origin)[:, :2].tolist()
+        ends = siting.to_geodetic([(-900, 0, 0), (-10, 1, 0), (10, 0, 0), (900, 1, 0), (-900, 300, 0), (900, 300, 0)],
+                                  origin)[:, :2].tolist()
         file = self.folder / "lines.geojson"
         for order, wanted in (([(2, 3), (0, 1)], [(-900, 0, 900, 1)]), ([(1, 0), (3, 2)], [(900, 1, -900, 0)]),
                               ([(0, 3), (4, 5)], [(-900, 0, 900, 1), (-900, 300, 900, 300)])):
             shape = {"type": "MultiLineString", "coordinates": [[ends[a], ends[b]] for a, b in order]}
-            file.write_text(json.dumps({"features": [{"properties": {"aeroway": "runway", "ref": "09/27"}, "geometry": shape}]}))
+            file.write_text(json.dumps({"features": [{"properties": {"aeroway": "runway", "ref": "09/27"},
+                                                      "geometry": shape}]}))
             found = siting.read_runways(file, origin)
             np.testing.assert_allclose([(*one.start, *one.end) for one in found], wanted, atol=1e-3)
             self.assertEqual([(one.name, one.width) for one in found], [("09/27", 45.0)] * len(wanted))
-        file.write_text('{"features": [{"properties": {"kind": "runway"}, "geometry": {"type": "MultiLineString", "coordinates": []}}]}')
-        self.assertRaisesRegex(al.Error, "features.0.: the coordinates of a MultiLineString", siting.read_runways, file, origin)
+        file.write_text('{"features": [{"properties": {"kind": "runway"}, "geometry": {"type": "MultiLineString", '
+                        '"coordinates": []}}]}')
+        self.assertRaisesRegex(al.Error, "features.0.: the coordinates of a MultiLineString", siting.read_runways, file,
+                               origin)
 
     def test_runways_that_may_be_one_or_none(self):
         """Two of one name, or on one line, give a warning; closed and private ones are not in use."""
         origin, file = (53.6, 13.3, 0.0), self.folder / "pieces.geojson"
 
         def read(*rows):
-            features = [{"properties": {"aeroway": "runway", **tags}, "geometry": {"type": "LineString", "coordinates": siting.to_geodetic(
-                [(*end, 0) for end in ends], origin)[:, :2].tolist()}} for ends, tags in rows]
+            features = [{"properties": {"aeroway": "runway", **tags},
+                         "geometry": {"type": "LineString", "coordinates": siting.to_geodetic(
+                                          [(*end, 0) for end in ends], origin)[:, :2].tolist()}} for ends, tags in rows]
             file.write_text(json.dumps({"features": features}))
             with warnings.catch_warnings(record=True) as heard:
                 warnings.simplefilter("always")
                 found = siting.read_runways(file, origin)
             return [one.name for one in found], "".join(str(one.message) for one in heard)
 
-        west, east, north, far = [(-900, 0), (-100, 0)], [(100, 1), (900, 1)], [(-900, 300), (900, 300)], [(9000, 0), (9900, 0)]
-        for one, other, said in (((west, {"ref": "09/27"}), (east, {"ref": "09/27"}), "pieces.geojson: 09/27 and 09/27 lie on one line, 200 m apart; .* up to 150 m apart"),
-                                 ((west, {"ref": "09"}), (east, {"ref": "27"}), "lie on one line"), ((west, {}), (east, {}), "lie on one line"),
-                                 ((west, {"ref": "09/27"}), (west[::-1], {"ref": "09/27"}), "lie on one line, 0 m apart"), ((west, {"ref": "09"}), (north, {"ref": "27"}), "09 and 27 have one name"),
-                                 ((west, {"ref": "9L"}), (far, {"ref": "27R"}), "9L and 27R have one name"), ((west, {"name": "Grass"}), (north, {"name": "grass"}), "have one name"),
-                                 ((west, {"ref": "09L"}), (north, {"ref": "09R"}), ""), ((west, {}), (north, {}), ""), ((west, {"ref": "09/27"}), (far, {"ref": "08/26"}), ""),
+        west, east, north = [(-900, 0), (-100, 0)], [(100, 1), (900, 1)], [(-900, 300), (900, 300)]
+        far = [(9000, 0), (9900, 0)]
+        for one, other, said in (((west, {"ref": "09/27"}), (east, {"ref": "09/27"}),
+                                  "pieces.geojson: 09/27 and 09/27 lie on one line, 200 m apart; .* up to 150 m apart"),
+                                 ((west, {"ref": "09"}), (east, {"ref": "27"}), "lie on one line"),
+                                 ((west, {}), (east, {}), "lie on one line"),
+                                 ((west, {"ref": "09/27"}), (west[::-1], {"ref": "09/27"}),
+                                  "lie on one line, 0 m apart"),
+                                 ((west, {"ref": "09"}), (north, {"ref": "27"}), "09 and 27 have one name"),
+                                 ((west, {"ref": "9L"}), (far, {"ref": "27R"}), "9L and 27R have one name"),
+                                 ((west, {"name": "Grass"}), (north, {"name": "grass"}), "have one name"),
+                                 ((west, {"ref": "09L"}), (north, {"ref": "09R"}), ""), ((west, {}), (north, {}), ""),
+                                 ((west, {"ref": "09/27"}), (far, {"ref": "08/26"}), ""),
                                  ((west, {"ref": "09/27"}), ([(-500, -700), (-500, 700)], {"ref": "18/36"}), "")):
             names, heard = read(one, other)
             self.assertEqual(len(names), 2)
             self.assertRegex(heard, f"^{said}$" if not said else said, (one, other))
-        for tags in ({"disused": "yes"}, {"disused": True}, {"abandoned": "yes"}, {"runway": "closed"}, {"access": "private"}, {"disused:aeroway": "runway"}, {"abandoned:aeroway": "runway", "kind": "runway"},
-                     {"end_date": "1999"}, {"start_date": "2999-01-01"}, {"status": "closed"}, {"other_tags": '"access"=>"private"'}):
+        # TestExtracts has all tags of runways that are out of use.
+        for tags in ({"disused": True}, {"abandoned:aeroway": "runway", "kind": "runway"}, {"status": "closed"},
+                     {"other_tags": '"access"=>"private"'}):
             self.assertEqual(read((west, {"ref": "09/27"}), (north, {"ref": "09/27", **tags})), (["09/27"], ""), tags)
-        self.assertRaisesRegex(al.Error, "holds no runway in use .left out: private", read, (west, {"access": "private"}))
+        self.assertRaisesRegex(al.Error, "holds no runway in use .left out: private", read,
+                               (west, {"access": "private"}))
 
     def test_runways_that_gdal_writes(self):
-        """GDAL's own GeoJSON of OpenStreetMap has most tags in one text. Names and widths are those that `avianlidar airport` takes."""
-        ways = ({"name": "Main, \"old\"", "ref": "09/27", "width": "45"}, {"ref": "18L/36R", "width": "30 m"}, {"ref": "18R/36L", "width": "148 ft"},
-                {"ref": "05/23"}, {"ref": "13/31", "width": "wide"}, {"ref": "01/19", "surface": "water"}, {"ref": "02/20", "runway": "closed"})
-        nodes = "".join(f'<node id="{2 * k + end + 1}" lat="{53.6 + 0.01 * end}" lon="{13.3 + 0.01 * k}"/>' for k in range(len(ways)) for end in range(2))
-        text = "".join(f'<way id="{k + 1}"><nd ref="{2 * k + 1}"/><nd ref="{2 * k + 2}"/><tag k="aeroway" v="runway"/>' + "".join(
-            f'<tag k="{key}" v="{value.replace(chr(34), "&quot;")}"/>' for key, value in way.items()) + "</way>" for k, way in enumerate(ways))
+        """GDAL's own GeoJSON of OpenStreetMap has most tags in one text. Names and widths are those that `avianlidar
+        airport` takes."""
+        ways = ({"name": "Main, \"old\"", "ref": "09/27", "width": "45"}, {"ref": "18L/36R", "width": "30 m"},
+                {"ref": "18R/36L", "width": "148 ft"}, {"ref": "05/23"}, {"ref": "13/31", "width": "wide"},
+                {"ref": "01/19", "surface": "water"}, {"ref": "02/20", "runway": "closed"})
+        nodes = "".join(f'<node id="{2 * k + end + 1}" lat="{53.6 + 0.01 * end}" lon="{13.3 + 0.01 * k}"/>'
+                        for k in range(len(ways)) for end in range(2))
+        text = "".join(f'<way id="{k + 1}"><nd ref="{2 * k + 1}"/><nd ref="{2 * k + 2}"/><tag k="aeroway" v="runway"/>'
+                       + "".join(f'<tag k="{key}" v="{value.replace(chr(34), "&quot;")}"/>'
+                                 for key, value in way.items()) + "</way>" for k, way in enumerate(ways))
         (self.folder / "a.osm").write_text(f'<osm version="0.6">{nodes}{text}</osm>')
-        gdal.VectorTranslate(str(self.folder / "a.geojson"), str(self.folder / "a.osm"), format="GeoJSON", layers=["lines"])
+        gdal.VectorTranslate(str(self.folder / "a.geojson"), str(self.folder / "a.osm"), format="GeoJSON",
+                             layers=["lines"])
         self.assertIn("other_tags", (self.folder / "a.geojson").read_text())
         with warnings.catch_warnings(record=True) as heard:
             warnings.simplefilter("always")
             found = siting.read_runways(self.folder / "a.geojson", (53.6, 13.3, 0.0))
         self.assertEqual([(one.name, round(one.width, 2)) for one in found],
-                         [('Main, "old"', 45.0), ("18L/36R", 30.0), ("18R/36L", 45.11), ("05/23", 45.0), ("13/31", 45.0)])
+                         [('Main, "old"', 45.0), ("18L/36R", 30.0), ("18R/36L", 45.11), ("05/23", 45.0),
+                          ("13/31", 45.0)])
         self.assertEqual([str(one.message).partition("a.geojson: ")[2] for one in heard],
                          ["13/31: width is 'wide', expected metres above 0; the runway counts as 45 m wide"])
-        extract = read_extract(self.folder / "a.osm", packaged("airport.json"))
-        rows = [properties_of(one, packaged("airport.json")) for one in extract.features]
-        self.assertEqual([(one.name, round(one.width, 3)) for one in found], [(row.get("name") or row["ref"], row["width"]) for row in rows])
+        extract = read_extract(self.folder / "a.osm", packaged("places/airport.json"))
+        rows = [properties_of(one, packaged("places/airport.json")) for one in extract.features]
+        self.assertEqual([(one.name, round(one.width, 3)) for one in found],
+                         [(row.get("name") or row["ref"], row["width"]) for row in rows])
         # Tags in an object, as of Overpass' JSON, and as the hstore of QGIS; numbers and null beside them
         shape = {"type": "LineString", "coordinates": [[13.3, 53.6], [13.3, 53.61]]}
-        for tags in ({"tags": {"aeroway": "runway", "ref": "18/36", "width": "45 m"}}, {"aeroway": "RUNWAY", "ref": "18/36", "width": 45, "name": None},
-                     {"other_tags": '"aeroway"=>"runway","ref"=>"18/36","width"=>"45"'}, {"kind": "runway", "ref": "18/36", "width": "45.0"},
-                     {"other_tags": '{"aeroway": "runway", "ref": "18/36"}'}, {"source_tags": {"aeroway": "runway", "ref": "18/36"}, "names": {"primary": None}},
-                     {"tags": {"aeroway": "runway", "name": None, "ref": "18/36", "width": ""}, "meta": {"name": "editor", "width": "wide"}}):
-            odd = [{"properties": {"kind": "road", name: text}, "geometry": shape} for name in ("tags", "other_tags", "names")
+        for tags in ({"tags": {"aeroway": "runway", "ref": "18/36", "width": "45 m"}},
+                     {"aeroway": "RUNWAY", "ref": "18/36", "width": 45, "name": None},
+                     {"other_tags": '"aeroway"=>"runway","ref"=>"18/36","width"=>"45"'},
+                     {"kind": "runway", "ref": "18/36", "width": "45.0"},
+                     {"other_tags": '{"aeroway": "runway", "ref": "18/36"}'},
+                     {"source_tags": {"aeroway": "runway", "ref": "18/36"}, "names": {"primary": None}},
+                     {"tags": {"aeroway": "runway", "name": None, "ref": "18/36", "width": ""},
+                      "meta": {"name": "editor", "width": "wide"}}):
+            odd = [{"properties": {"kind": "road", name: text}, "geometry": shape}
+                   for name in ("tags", "other_tags", "names")
                    for text in ("{a,b}", "{1: 2}", "{" * 100000, '"a"=>', "[1]", [1], 7, None)]
-            (self.folder / "b.geojson").write_text(json.dumps({"features": [*odd, {"properties": tags, "geometry": shape}]}))
+            (self.folder / "b.geojson").write_text(json.dumps({
+                "features": [*odd, {"properties": tags, "geometry": shape}]}))
             one, = siting.read_runways(self.folder / "b.geojson", (53.6, 13.3, 0.0))
             self.assertEqual((one.name, one.width), ("18/36", 45.0))
 
@@ -559,7 +630,8 @@ class Plans(unittest.TestCase):
             warnings.simplefilter("always")
             np.testing.assert_allclose(Sites(Plan(read_plan(file))).positions[:, :2], [(300, -900), (600, -900)])
         self.assertEqual([str(w.message)[:6] for w in said], ["1 of 3"])
-        for content, words in (("x,y\n1,2\n3,nan\n", "row 2"), ("x,z\n1,2\n", "columns x and y"), ('x,y\n1,2\n"3,4\n5,6\n', "points.csv: line 3: is not CSV")):
+        for content, words in (("x,y\n1,2\n3,nan\n", "row 2"), ("x,z\n1,2\n", "columns x and y"),
+                               ('x,y\n1,2\n"3,4\n5,6\n', "points.csv: line 3: is not CSV")):
             table.write_text(content)
             with self.subTest(words):
                 self.assertRegex(self.said(file), f"my.coverage.json: siting.*{words}")
@@ -569,14 +641,18 @@ class BadInput(unittest.TestCase):
     def test_is_named(self):
         scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
         found, weights = drawn(5, 2, 30, 1)
-        for words, work in (
-                ("outline", lambda: siting.is_near([(0, 0)], [(0, 0), (1, 1)])), ("spacing", lambda: siting.lattice((0, 1, 0, 1), 0.0)),
-                ("points", lambda: siting.candidates([(0, 0, 0)])), ("share", lambda: siting.weights_of(2, {"a": [0, 1]}, {"a": -1.0}, {"crow": 1.0})),
-                ("'b'", lambda: siting.weights_of(2, {"a": [0, 1]}, {"b": 1.0}, {"crow": 1.0})),
-                ("sites", lambda: siting.look(scene, sensor, [(0, 0)], [(0, 200, 1)], ["crow"])),
-                ("places", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200)], ["crow"])),
-                ("area_factor", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["crow"], area_factor=0.0)),
-                ("array", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["crow"], array="none")),
-                ("weights", lambda: siting.search(found, weights[:1], 2)), ("count", lambda: siting.exhaustive(found, weights, 4))):
+        for words, work in (("outline", lambda: siting.is_near([(0, 0)], [(0, 0), (1, 1)])),
+                            ("spacing", lambda: siting.lattice((0, 1, 0, 1), 0.0)),
+                            ("points", lambda: siting.candidates([(0, 0, 0)])),
+                            ("share", lambda: siting.weights_of(2, {"a": [0, 1]}, {"a": -1.0}, {"crow": 1.0})),
+                            ("'b'", lambda: siting.weights_of(2, {"a": [0, 1]}, {"b": 1.0}, {"crow": 1.0})),
+                            ("sites", lambda: siting.look(scene, sensor, [(0, 0)], [(0, 200, 1)], ["crow"])),
+                            ("places", lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200)], ["crow"])),
+                            ("area_factor",
+                             lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["crow"], area_factor=0.0)),
+                            ("array",
+                             lambda: siting.look(scene, sensor, [(0, 0, 2)], [(0, 200, 1)], ["crow"], array="none")),
+                            ("weights", lambda: siting.search(found, weights[:1], 2)),
+                            ("count", lambda: siting.exhaustive(found, weights, 4))):
             with self.assertRaisesRegex((ValueError, al.Error), words):
                 work()

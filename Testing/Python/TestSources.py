@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every source names its licence, the lists of files in CMake are complete, modules of the kernel and of Python depend in one
-direction, and whoever writes VTK's XML files chooses a data mode that every libexpat reads back."""
+"""Every source names its licence, the lists of files in CMake are complete, modules of the kernel and of Python depend
+in one direction, and whoever writes VTK's XML files chooses a data mode that every libexpat reads back."""
 
 import ast
 import graphlib
@@ -8,7 +8,7 @@ import importlib.util
 import os
 import re
 
-from avianlidar import _suffixes
+from avianlidar import _suffixes, apps
 
 source = os.environ["AVIANLIDAR_SOURCE_DIR"]
 
@@ -62,7 +62,7 @@ for path in files("Plugin", ".xml"):
 for folder in ("Filters", "IO", "Plugin"):
     for path in files(folder, ".h", ".cxx"):
         includes = re.search(r"#include.*(nlohmann|NLOHMANN)", read(path))
-        assert not includes or path == "Filters/Private/Common/Json.h", f"{path}: include Json.h"
+        assert not includes or path == "Filters/Private/Files/Json.h", f"{path}: include Json.h"
 
 # Folders depend in one direction: each on those before it in CMake's list.
 def names_in(text):
@@ -123,13 +123,22 @@ for module in imports.keys() - PUBLIC:
     above = {name for name in imports[module] if name.startswith(APPS)}
     assert module.startswith(APPS) or not above, f"{module} imports {above}, which stand on top of it"
 
+# Packages of applications import only packages before them in their list, which names all of them.
+found = {package.split(".")[2] for package in modules if package.count(".") > 2}
+assert found == set(apps.PACKAGES), found ^ set(apps.PACKAGES)
+for module in (module for module in modules if module.count(".") > 2):
+    used = {name.split(".")[2] for name in imports[module] if name.startswith(f"{APPS}.")}
+    above = used - set(apps.PACKAGES[:apps.PACKAGES.index(module.split(".")[2]) + 1])
+    assert not above, f"{module} imports {above}, which come after it in apps.PACKAGES"
+
 # The tests that a header of the kernel names are there.
 tests = {os.path.basename(path) for path in files("Testing", ".cxx", ".py", ".h")}
 for path in (*files("Filters/Kernel", ".h"), *files("Filters/VolumeTree", ".h")):
     held = re.findall(r"\w+\.(?:cxx|py|h)\b", re.search(r" \* Test: (.*?)\*/", read(path), re.DOTALL)[1])
     assert held and tests.issuperset(held), f"{path} names {set(held) - tests}, which are not there"
 
-# VTK 9.1 and 9.2 do not read the default, Appended, back with today's libexpat: whoever leaves XML files chooses Binary or
+# VTK 9.1 and 9.2 do not read the default, Appended, back with today's libexpat: whoever leaves XML files chooses Binary
+# or
 # Ascii, within a few lines of the writer, or in the call of ParaView's Save Data.
 XML_WRITER = re.compile(r"\bvtkXML\w*Writer\b")
 PARAVIEW = re.compile(r"\b(?:SaveData|CreateWriter|XML\w*Writer)\((?:[^()]|\([^()]*\))*\)")
@@ -140,13 +149,16 @@ MODE = re.compile(r"(?:SetDataModeTo|DataMode\b\W{1,4})(?:Ascii|Binary|\{mode\})
 def without_a_mode(text):
     """The writers of VTK's XML files in a text that leave the data mode as it is."""
     lines = [line for line in text.splitlines() if not re.match(r"\s*(?:#include|from|import)\b", line)]
-    found = [line.strip() for number, line in enumerate(lines) if XML_WRITER.search(line) and not MODE.search(" ".join(lines[number:number + 10]))]
+    found = [line.strip() for number, line in enumerate(lines) if XML_WRITER.search(line)
+             and not MODE.search(" ".join(lines[number:number + 10]))]
     if re.search(r"[.\"'`]p?vt[a-z]\b", text):
-        found += [call[0] for call in PARAVIEW.finditer(text) if not OURS.search(call[0]) and not MODE.search(call[0] if "**" not in call[0] else text)]
+        found += [call[0] for call in PARAVIEW.finditer(text) if not OURS.search(call[0])
+                  and not MODE.search(call[0] if "**" not in call[0] else text)]
     return found
 
 
-assert without_a_mode("vtkNew<vtkXMLPolyDataWriter> writer;\nwriter->Write();") and without_a_mode('SaveData("a.vtp", proxy=f(1))')
+assert without_a_mode("vtkNew<vtkXMLPolyDataWriter> "
+                      "writer;\nwriter->Write();") and without_a_mode('SaveData("a.vtp", proxy=f(1))')
 writers = 0
 folders = ("Documentation", "Examples", "Filters", "IO", "Plugin", "Python", "Testing")
 for path in ["README.md", *(path for folder in folders

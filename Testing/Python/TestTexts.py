@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Text that is not UTF-8 or holds a NUL, in files and in their names: no message is lost, no name is cut, and Python reads them all."""
+"""Text that is not UTF-8 or holds a NUL, in files and in their names: no message is lost, no name is cut, and Python
+reads them all."""
 import os
 import warnings
 
@@ -46,7 +47,8 @@ class Texts(InFolder):
             warnings.simplefilter("always")
             al.load_scene(self.scene('{"file": "m.obj"}'))
         self.assertEqual(len(caught), 1, [str(w.message) for w in caught])
-        self.assertRegex(str(caught[0].message), r"no material or material_map[\s\S]*B\\xE4ume|B\\xE4ume[\s\S]*no material or material_map")
+        self.assertRegex(str(caught[0].message),
+                         r"no material or material_map[\s\S]*B\\xE4ume|B\\xE4ume[\s\S]*no material or material_map")
 
     def test_names_in_data(self):
         """What other programs' files bring: names as bytes, of blocks, objects and features."""
@@ -54,7 +56,8 @@ class Texts(InFolder):
             blocks = vtk.vtkMultiBlockDataSet()
             blocks.SetBlock(0, box((9, 0, 0), (1, 1, 1), "Wall"))
             blocks.GetMetaData(0).Set(vtk.vtkCompositeDataSet.NAME(), name)
-            self.assertEqual([one.lower() for one in al.Scene(blocks).objects], [name.decode("utf-8", "backslashreplace").lower()])
+            self.assertEqual([one.lower() for one in al.Scene(blocks).objects],
+                             [name.decode("utf-8", "backslashreplace").lower()])
             blocks.GetBlock(0).GetCellData().RemoveArray("kd")
             with self.assertRaisesRegex(al.Error, "kd, ks, kp"):
                 al.Scan(al.Scene(blocks), al.Sensor(azimuth_step=30)).update()
@@ -73,10 +76,12 @@ class Texts(InFolder):
                 echoes.save(file)
             self.assertTrue(file.exists())
             read = al.load_cloud(file)
-            self.assertTrue(same(read, echoes) if suffix == ".vtp" else read.number_of_points == echoes.number_of_points)
+            self.assertTrue(same(read, echoes) if suffix == ".vtp" else read.number_of_points
+                            == echoes.number_of_points)
             if suffix not in (".bin", ".csv"):
                 file.write_bytes(b"<VTKFile nonsense")
-                with self.assertRaisesRegex(al.Error, "" if suffix == ".vtp" else r"B\\xE4ume\."):  # VTK's own says nothing that is text
+                # VTK's own says nothing that is text
+                with self.assertRaisesRegex(al.Error, "" if suffix == ".vtp" else r"B\\xE4ume\."):
                     al.load_cloud(file)
         with self.assertRaisesRegex(al.Error, r"\\xE4/x.las: cannot be opened"):
             echoes.save(self.latin_name("\u00e4") / "x.las")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Time: beams go from revolution to revolution, a moving scene is sampled at the start of each, and noise is that of the
-revolution. Steps of a sweep are TestScanClock's and TestScanSweep's (kernel)."""
+"""Time: beams go from revolution to revolution, a moving scene is sampled at the start of each, and noise is that of
+the revolution. Steps of a sweep are TestScanClock's and TestScanSweep's (kernel)."""
 
 import unittest
 
@@ -71,13 +71,15 @@ def sensor_output(columns):
 
 
 def sweeping(columns=36, channels=4, revolutions=3, steps=9, rate=2.0):
-    return given(sensor(columns, channels), RotationRate=rate, NumberOfRevolutions=revolutions, StepsPerRevolution=steps)
+    return given(sensor(columns, channels), RotationRate=rate, NumberOfRevolutions=revolutions,
+                 StepsPerRevolution=steps)
 
 
 def noisy(lidar):
     """A photon counter: noise shows in every echo."""
     photon = 6.62607015e-34 * 3.313e14
-    return given(lidar, LowerEnergyLimit=40 * photon, UpperEnergyLimit=1e6 * photon, PulseEnergy=2e5 * photon, NoisePhotonRate=20 / 5e-9)
+    return given(lidar, LowerEnergyLimit=40 * photon, UpperEnergyLimit=1e6 * photon, PulseEnergy=2e5 * photon,
+                 NoisePhotonRate=20 / 5e-9)
 
 
 class Echoes(unittest.TestCase):
@@ -133,7 +135,7 @@ class MovingScene(unittest.TestCase):
 
     @staticmethod
     def distance(data):
-        """Of the wall in front, m."""
+        """Range of the wall in front, m."""
         return array(data, "distance_m").min()
 
     def test_ranges_follow_by_revolution_and_not_within_one(self):

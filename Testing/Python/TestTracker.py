@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tracker, scan by scan, against one of NumPy and SciPy, with the points of a cloud in any order; times of clouds, what is forgotten,
-bad input. Turns, crossings and false tracks are TestTracker.cxx's (kernel), birds that a lidar scans TestBirdTracks'."""
+"""The tracker, scan by scan, against one of NumPy and SciPy, with the points of a cloud in any order; times of clouds,
+what is forgotten, bad input. Turns, crossings and false tracks are TestTracker.cxx's (kernel), birds that a lidar scans
+TestBirdTracks'."""
 
 import unittest
 
@@ -130,10 +131,11 @@ class TestTracker(unittest.TestCase):
                 track = alive[cell_array(tracks, "track_id")[cell]]
                 last = tracks.GetCell(cell).GetPointId(tracks.GetCell(cell).GetNumberOfPoints() - 1)
                 np.testing.assert_allclose(tracks.GetPoint(last), track["mean"][:3], rtol=1e-9)
-                np.testing.assert_allclose(point_array(tracks, "velocity")[last], track["mean"][3:], rtol=1e-7, atol=1e-9)
+                np.testing.assert_allclose(point_array(tracks, "velocity")[last], track["mean"][3:], rtol=1e-7,
+                                           atol=1e-9)
                 xx, yy, zz, xy, yz, xz = point_array(tracks, "position_covariance")[last]
-                np.testing.assert_allclose([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], track["covariance"][:3, :3], rtol=1e-7,
-                                           atol=1e-12)
+                np.testing.assert_allclose([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], track["covariance"][:3, :3],
+                                           rtol=1e-7, atol=1e-12)
                 self.assertEqual(point_array(tracks, "time")[last], track["time"])
                 self.assertEqual(bool(cell_array(tracks, "confirmed")[cell]), track["confirmed"])
         self.assertGreater(contested, 170)
@@ -252,7 +254,7 @@ class TestTracker(unittest.TestCase):
             self.assertEqual(list(cell_array(tracks, "ended")), [ended])
             self.assertEqual(points.GetNumberOfPoints(), 0)
 
-    def test_what_is_too_slow_is_not_confirmed(self):
+    def test_slow_tracks_are_not_confirmed(self):
         for least, sure in ((9.5, 1), (10.5, 0)):
             made = tracker(MinimumSpeed=least)
             for scan in range(20):

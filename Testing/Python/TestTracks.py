@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors that name what is
-wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range are TestBadInput's."""
+"""Tracks: movers as the contract has them, trails, tracks of files and of lines, the bird that they are, and errors
+that name what is wrong. How birds fly is TestFlight's, what they are made of TestBird's (kernel); numbers out of range
+are TestBadInput's."""
 import itertools
 import re
 
@@ -21,7 +22,8 @@ HEADER = "id,species,time,x,y,z\n"
 GEODETIC = "id,species,time,longitude,latitude,height\n"
 ROWS = "17,herring gull,0,0,0,20\nb,crow,1,0,0,30\n17,herring gull,4,0,50,20\nb,crow,3,26,0,30\n"
 SHARED = {*_scene.COEFFICIENTS, "material_id", "object_id"}
-POSES = {"object_classes", "pose_time", "pose_position", "pose_orientation", "object_names", "material_names", "species"}
+POSES = {"object_classes", "pose_time", "pose_position", "pose_orientation", "object_names", "material_names",
+         "species"}
 FLAPS = {"flap_hinge", "flap_axis", "flap_amplitude", "flap_frequency", "flap_phase"}
 
 
@@ -88,7 +90,7 @@ TIMES = [0, 1, 2, 5, 7]
 class Tracks(InFolder):
     def file(self, content, name="own.csv"):
         path = self.folder / name
-        path.write_text(content, encoding="utf-8")
+        path.write_text(content, "utf-8")
         return str(path)
 
     def from_lines(self, data, **properties):
@@ -99,7 +101,8 @@ class Tracks(InFolder):
     def test_movers_have_what_the_contract_says(self):
         for name in PATTERNS:
             with self.subTest(name):
-                source = tracks(Pattern=pattern(name), NumberOfBirds=4, FirstObjectId=50, Reflectance=0.15, TimeRange=(3, 9))
+                source = tracks(Pattern=pattern(name), NumberOfBirds=4, FirstObjectId=50, Reflectance=0.15,
+                                TimeRange=(3, 9))
                 blocks = movers(source)
                 self.assertEqual(len(blocks), 4)
                 species = "starling" if name == "Flock" else "herring gull"
@@ -137,7 +140,7 @@ class Tracks(InFolder):
             self.assertAlmostEqual(np.degrees(field(block, "flap_amplitude")[1]), 35)
 
     def test_trails(self):
-        """Of a file with a comment and an empty line."""
+        """A file with a comment and an empty line."""
         source = tracks(Pattern=pattern("File"), FileName=self.file("# radar\n" + HEADER + "\n" + ROWS))
         blocks = movers(source)
         self.assertNotEqual(*(field(block, "flap_phase")[0] for block in blocks))
@@ -148,7 +151,8 @@ class Tracks(InFolder):
         np.testing.assert_array_equal(vtk_to_numpy(trails.GetPointData().GetArray("time")), [0, 4, 1, 3])
         self.assertEqual(list(vtk_to_numpy(trails.GetCellData().GetArray("object_id"))), [10000, 10001])
         names = text(trails, "species_names")
-        self.assertEqual([names[i] for i in vtk_to_numpy(trails.GetCellData().GetArray("species_id"))], ["herring gull", "crow"])
+        self.assertEqual([names[i] for i in vtk_to_numpy(trails.GetCellData().GetArray("species_id"))],
+                         ["herring gull", "crow"])
         self.assertEqual([text(block, "object_names") for block in blocks], [["herring gull 17"], ["crow b"]])
 
     def test_longitudes_and_latitudes(self):
@@ -167,7 +171,8 @@ class Tracks(InFolder):
             self.assertEqual(len(movers(source)), 1)
             self.assertEqual(len(heard.all()), far, heard.all())
             if far:
-                distance = float(re.search(r"all birds are at least (\d+) km from the scene's origin", heard.warnings[0])[1])
+                distance = float(re.search(r"all birds are at least (\d+) km from the scene's origin",
+                                           heard.warnings[0])[1])
                 self.assertTrue(3000 < distance < equator, distance)
 
     def test_lines(self):
@@ -179,7 +184,7 @@ class Tracks(InFolder):
             blocks = movers(self.from_lines(polyline(TWO_LINES, TIMES, species, where), Species="not used"))
             self.assertEqual([text(block, "species")[0] for block in blocks], [species[0], species[-1]])
 
-    def test_no_birds_are_no_error(self):
+    def test_a_file_without_birds_is_not_an_error(self):
         empty = [tracks(Pattern=pattern(name), NumberOfBirds=0) for name in PATTERNS]
         empty.append(tracks(Pattern=pattern("File"), FileName=self.file(HEADER)))
         empty.append(self.from_lines(vtk.vtkPolyData()))
@@ -194,25 +199,30 @@ class Tracks(InFolder):
         with self.subTest(words):
             with self.assertRaisesRegex(Error, words):
                 update(source)
-            self.assertEqual((source.GetOutputDataObject(0).GetNumberOfBlocks(), source.GetOutputDataObject(1).GetNumberOfPoints()), (0, 0))
+            self.assertEqual((source.GetOutputDataObject(0).GetNumberOfBlocks(),
+                              source.GetOutputDataObject(1).GetNumberOfPoints()), (0, 0))
             good = tracks()
-            for name in ("NumberOfBirds", "TimeRange", "Radius", "Heights", "Species", "SpeciesFileName", "FirstObjectId", "Origin", "Pattern"):
+            for name in ("NumberOfBirds", "TimeRange", "Radius", "Heights", "Species", "SpeciesFileName",
+                         "FirstObjectId", "Origin", "Pattern"):
                 getattr(source, "Set" + name)(getattr(good, "Get" + name)())
             self.assertEqual(len(movers(source)), good.GetNumberOfBirds())
 
     def test_bad_values_name_the_property(self):
-        for properties, words in (({"TimeRange": (1, 1)}, "TimeRange is"), ({"Heights": (3, 2)}, "Heights is 3 to 2"), ({"Origin": (91, 0, 0)}, "Origin: "),
+        for properties, words in (({"TimeRange": (1, 1)}, "TimeRange is"), ({"Heights": (3, 2)}, "Heights is 3 to 2"),
+                                  ({"Origin": (91, 0, 0)}, "Origin: "),
                                   ({"FirstObjectId": 2**31 - 5}, "FirstObjectId is"),
                                   ({"Species": "dodo"}, "Species is 'dodo'"),
                                   ({"SpeciesFileName": "/nowhere.csv"}, "SpeciesFileName /nowhere.csv"),
-                                  ({"Pattern": pattern("Circles"), "NumberOfBirds": 100000, "TimeRange": (0, 1e9)}, "NumberOfBirds, TimeRange")):
+                                  ({"Pattern": pattern("Circles"), "NumberOfBirds": 100000, "TimeRange": (0, 1e9)},
+                                   "NumberOfBirds, TimeRange")):
             self.assert_fails(tracks(**properties), words)
 
     def test_bad_files_are_named(self):
         """Each kind of bad line is TestFlight's (kernel)."""
         self.assert_fails(tracks(Pattern=pattern("File")), "FileName is empty")
         self.assert_fails(tracks(Pattern=pattern("File"), FileName="/nowhere.csv"), "FileName /nowhere.csv")
-        self.assert_fails(tracks(Pattern=pattern("File"), FileName=self.file(HEADER + ROWS + "b,crow,3,0,0,0\n")), "own.csv: line 6: time is '3'")
+        self.assert_fails(tracks(Pattern=pattern("File"), FileName=self.file(HEADER + ROWS + "b,crow,3,0,0,0\n")),
+                          "own.csv: line 6: time is '3'")
 
     def test_bad_lines_are_named(self):
         self.assert_fails(tracks(Pattern=pattern("Lines")), "port 0 has no connection")

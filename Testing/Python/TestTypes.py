@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""mypy finds what is wrong in a program that uses the package, and nothing in what is right or in the package itself."""
+"""mypy finds what is wrong in a program that uses the package, and nothing in what is right or in the package
+itself."""
 import importlib.util
 import os
 import pathlib
@@ -33,8 +34,9 @@ half: float = avianlidar.reach.within_beams(al.Sensor()).to(0.5)
 """
 # Not among them: a method that is not there, as the bases, which are VTK's, have no types and may have it.
 BAD = (("source.SetPulseEnergy('much')", "SetPulseEnergy"), ("source.SetPosition(1.0)", "SetPosition"),
-       ("text: str = source.GetPulseEnergy()", "str"), ("al.Sensor(16)", "Sensor"), ("al.load_scenes('x')", "load_scenes"),
-       ("al.save(scan)", "save"), ("siting.Runway('a')", "Runway"), ("avianlidar.reach.within('a')", "within"))
+       ("text: str = source.GetPulseEnergy()", "str"), ("al.Sensor(16)", "Sensor"),
+       ("al.load_scenes('x')", "load_scenes"), ("al.save(scan)", "save"), ("siting.Runway('a')", "Runway"),
+       ("avianlidar.reach.within('a')", "within"))
 CONFIGURATION = """[mypy]
 ignore_missing_imports = True
 [mypy-vtkmodules.*,vtk.*]
@@ -44,12 +46,14 @@ follow_imports = skip
 
 class Types(unittest.TestCase):
     def test_a_program_and_the_package(self):
-        self.assertTrue(importlib.util.find_spec("mypy"), f"{sys.executable} has no mypy, which CMake/debian-packages.txt lists")
+        self.assertTrue(importlib.util.find_spec("mypy"),
+                        f"{sys.executable} has no mypy, which CMake/debian-packages.txt lists")
         with tempfile.TemporaryDirectory() as folder:
-            pathlib.Path(folder, "program.py").write_text(GOOD + "".join(f"{line}\n" for line, _ in BAD), encoding="utf-8")
-            pathlib.Path(folder, "mypy.ini").write_text(CONFIGURATION, encoding="utf-8")
-            run = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", "cache", "-p", "avianlidar", "-m", "program"], cwd=folder,
-                                 capture_output=True, text=True, check=False, env={**os.environ, "MYPYPATH": f"{PACKAGE.parent}:{folder}"})
+            pathlib.Path(folder, "program.py").write_text(GOOD + "".join(f"{line}\n" for line, _ in BAD), "utf-8")
+            pathlib.Path(folder, "mypy.ini").write_text(CONFIGURATION, "utf-8")
+            run = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", "cache", "-p", "avianlidar", "-m",
+                                  "program"], cwd=folder, capture_output=True, text=True, check=False,
+                                 env={**os.environ, "MYPYPATH": f"{PACKAGE.parent}:{folder}"})
         # VTK's generator names classes of VTK that it does not import.
         found = [line for line in run.stdout.splitlines() if " error: " in line and 'Name "vtk' not in line]
         first = GOOD.count("\n") + 1

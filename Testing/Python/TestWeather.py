@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Air that sends light back: walls and birds behind it, coverage, labels, and what is said of it. The lidar equation in each
-range unit and its noise are TestAir's (kernel).
+"""Air that sends light back: walls and birds behind it, coverage, labels, and what is said of it. The lidar equation in
+each range unit and its noise are TestAir's (kernel).
 
-What others published: extinction by Koschmieder, Kruse and Kim; the fog of another simulator (M. Hahner et al., Fog Simulation on Real
-LiDAR Point Clouds, ICCV 2021, after R. H. Rasshofer et al., Adv. Radio Sci. 9, 2011), its hard and its soft target; Mie's theory of
-droplets and drops."""
+What others published: extinction by Koschmieder, Kruse and Kim; the fog of another simulator (M. Hahner et al., Fog
+Simulation on Real LiDAR Point Clouds, ICCV 2021, after R. H. Rasshofer et al., Adv. Radio Sci. 9, 2011), its hard and
+its soft target; Mie's theory of droplets and drops."""
 import math
 import os
 import pathlib
@@ -44,30 +44,35 @@ def electrons_of_air(sensor, unit, mu):
 
 
 def soft_target(distance, extinction, width, crossing):
-    """Hahner's received power of fog, Eq. of the soft target, over C_A P0 beta: a pulse sin^2(pi t/(2 width)) of 2 width, whose maximum is put
-    at the distance. @param crossing m, between which the view begins to cover the beam, and does"""
+    """Hahner's received power of fog, Eq. of the soft target, over C_A P0 beta: a pulse sin^2(pi t/(2 width)) of 2
+    width, whose maximum is put at the distance. @param crossing m, between which the view begins to cover the beam, and
+    does"""
     def integrand(t):
         r = distance + LIGHT * (width - t) / 2
         share = np.clip((r - crossing[0]) / (crossing[1] - crossing[0]), 0, 1)
         return np.sin(np.pi * t / (2 * width))**2 * np.exp(-2 * extinction * r) / r**2 * share if r > 0 else 0.0
     kinks = [width + 2 * (distance - r) / LIGHT for r in crossing]
-    return integrate.quad(integrand, 0, 2 * width, points=[t for t in kinks if 0 < t < 2 * width], epsrel=1e-10, limit=200)[0]
+    return integrate.quad(integrand, 0, 2 * width, points=[t for t in kinks if 0 < t < 2 * width], epsrel=1e-10,
+                          limit=200)[0]
 
 
 def of_air(visibility, sampling_interval, gate):
     """Middles of the range units, m, and energy in each by the filter, over pulse energy and aperture."""
     sensor = looking(receiver_model="EnergyLimits", lower_energy_limit=0, upper_energy_limit=1e9, noise_photon_rate=0,
                      sampling_interval=sampling_interval, pulse_width=0, range_gate=gate)
-    echoes = al.Scan(NOTHING, sensor, noise=False, return_mode="RangeUnits", visibility=visibility, air_backscatter=True).echoes
+    echoes = al.Scan(NOTHING, sensor, noise=False, return_mode="RangeUnits", visibility=visibility,
+                     air_backscatter=True).echoes
     length = LIGHT * sampling_interval / 2
     units = np.floor(np.array(echoes["distance_m"]) / length).astype(int)
     order = np.argsort(units)
-    return (units[order] + 0.5) * length, np.array(echoes["energy_received"])[order] / sensor.pulse_energy / sensor.receiver_aperture
+    energies = np.array(echoes["energy_received"])[order]
+    return (units[order] + 0.5) * length, energies / sensor.pulse_energy / sensor.receiver_aperture
 
 
 class Law(unittest.TestCase):
     def test_walls_behind_are_weakened(self):
-        wall = al.Scene([(-9, 80, -9), (9, 80, -9), (9, 80, 9), (-9, 80, 9)], [(0, 1, 2), (0, 2, 3)], material=(0.5, 0, 1))
+        wall = al.Scene([(-9, 80, -9), (9, 80, -9), (9, 80, 9), (-9, 80, 9)], [(0, 1, 2), (0, 2, 3)],
+                        material=(0.5, 0, 1))
         sensor = looking()
         clear = al.Scan(wall, sensor, noise=False, attenuation_coefficient=0).echoes["return_energy"]
         rain = 2.7708e-3 * (1 - others.kept_in_view(5.6e-3, 905e-9, 25) / 2)  # 1/m
@@ -98,7 +103,8 @@ class Coverage(unittest.TestCase):
             # The pulse is as long as a unit: its share in the better of two is evenly 0.5 to 1.
             shares = np.linspace(0.5, 1, 101)
             better = [1 - stats.norm.cdf((limit - s * shown) / np.sqrt(dark + 3 * (air + s * shown))) for s in shares]
-            other = [1 - stats.norm.cdf((limit - (1 - s) * shown) / np.sqrt(dark + 3 * (air + (1 - s) * shown))) for s in shares]
+            other = [1 - stats.norm.cdf((limit - (1 - s) * shown) / np.sqrt(dark + 3 * (air + (1 - s) * shown)))
+                     for s in shares]
             truth = np.mean(1 - (1 - np.array(better)) * (1 - np.array(other)))
             self.assertAlmostEqual(p, truth, delta=0.03)
         self.assertTrue(0.1 < found.mean() < 0.9)
@@ -115,18 +121,20 @@ class Labels(unittest.TestCase):
         self.assertEqual(int(echoes.fields["air_backscatter"]), 0)
         with tempfile.TemporaryDirectory() as folder:
             al.save(echoes, pathlib.Path(folder) / "rain.las")
-            self.assertEqual(set(np.array(al.load_cloud(pathlib.Path(folder) / "rain.las")["classification"])[air]), {7})
+            self.assertEqual(set(np.array(al.load_cloud(pathlib.Path(folder) / "rain.las")["classification"])[air]),
+                             {7})
             al.save(echoes, pathlib.Path(folder) / "rain.bin")
             self.assertEqual(set((np.fromfile(pathlib.Path(folder) / "rain.label", np.uint32) & 0xffff)[air]), {1})
 
 
 class Words(unittest.TestCase):
-    def test_what_is_wrong_is_named(self):
+    def test_wrong_weather_is_named(self):
         with self.assertRaisesRegex(al.Error, "receiver_aperture above 0, for example Search905"):
             al.Scan(NOTHING, al.Sensor("Airport16"), rain_rate=1).echoes
 
     def test_weather_on_the_command_line(self):
-        scene = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+        scene = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene",
+                             "hongqiao.lidarscene.json")
         with tempfile.TemporaryDirectory() as folder:
             for words, wrong in (("fog:2000 rain:5", ""), ("fog:-1", "weather 'fog:-1'"),
                                  ("fog:800 rain:1 haze:5000", "weather 'haze:5000' after 'fog:800'")):
@@ -151,20 +159,23 @@ class Extinction(unittest.TestCase):
             moment = 0.25e-6 * math.pi * 8000 * 2 * (rate**0.21 / 4.1)**3  # m^2 of drops in m^3, by Marshall and Palmer
             found = others.extinction_in(905, rain_rate=rate, attenuation_coefficient=0)
             kept = others.kept_in_view(5.6e-3, 905e-9, rate)  # of the half that is diffracted
-            self.assertAlmostEqual(found / ((efficiency - kept) * moment), 1, delta=0.015)  # Mie's is 2.008 to 2.013 areas, ours 2
+            # Mie's is 2.008 to 2.013 areas, ours 2
+            self.assertAlmostEqual(found / ((efficiency - kept) * moment), 1, delta=0.015)
 
 
 class AnotherSimulator(unittest.TestCase):
     def test_fog_returns_the_same_over_range(self):
-        # In units of 0.75 m ours is of a short pulse. A pulse of 2 x 5 ns shifts its light by a variance of 0.074 m^2, which raises a law
-        # exp(-2 mu r)/r^2 by half of that times 6/r^2 + 8 mu/r + 4 mu^2: the tolerance, and 1e-3 for the floats of the filter.
+        # In units of 0.75 m ours is of a short pulse. A pulse of 2 x 5 ns shifts its light by a variance of 0.074 m^2,
+        # which raises a law exp(-2 mu r)/r^2 by half of that times 6/r^2 + 8 mu/r + 4 mu^2: the tolerance, and 1e-3 for
+        # the floats of the filter.
         width, constant = 5e-9, LIGHT / 2
         for visibility in (50, 450):
             mu = 3.912 / visibility
             middles, energies = of_air(visibility, 5e-9, 120.0)
             for r, energy in zip(middles[6::36], energies[6::36]):
                 half = LIGHT * 2.5e-9 / 2
-                theirs = np.mean([soft_target(r + x * half, mu, width, (0.01, 0.02)) for x in (-0.7746, 0, 0.7746)] * np.array([5, 8, 5]) / 6)
+                theirs = np.mean([soft_target(r + x * half, mu, width, (0.01, 0.02)) for x in (-0.7746, 0, 0.7746)]
+                                 * np.array([5, 8, 5]) / 6)
                 theirs *= constant * mu / RATIO / width * 5e-9  # C_A P0 beta, for the time of a unit
                 raised = 0.037 * (6 / r**2 + 8 * mu / r + 4 * mu**2)
                 self.assertAlmostEqual(energy / theirs, 1, delta=1e-3 + 1.3 * raised, msg=f"{visibility} m, {r} m")
@@ -172,9 +183,10 @@ class AnotherSimulator(unittest.TestCase):
 
 def ratio_of_rain(rate, wavelength):
     """Twice the drops' areas over their backscatter, sr, by the light of a range unit. @param wavelength um"""
-    sensor = looking(wavelength=1e3 * wavelength, receiver_model="EnergyLimits", lower_energy_limit=0, upper_energy_limit=1e9,
-                     pulse_width=0, range_gate=60)
-    echoes = al.Scan(NOTHING, sensor, noise=False, return_mode="RangeUnits", attenuation_coefficient=0, rain_rate=rate).echoes
+    sensor = looking(wavelength=1e3 * wavelength, receiver_model="EnergyLimits", lower_energy_limit=0,
+                     upper_energy_limit=1e9, pulse_width=0, range_gate=60)
+    echoes = al.Scan(NOTHING, sensor, noise=False, return_mode="RangeUnits", attenuation_coefficient=0,
+                     rain_rate=rate).echoes
     extinction, length = float(echoes.fields["attenuation_coefficient"]), LIGHT * sensor.sampling_interval / 2
     k = int(np.argmax(echoes["distance_m"]))
     r = float(echoes["distance_m"][k])
@@ -193,8 +205,8 @@ class Mie(unittest.TestCase):
 
     def test_water_is_that_of_hale_and_querry(self):
         """Optical constants of water in the 200-nm to 200-um wavelength region, Applied Optics 12, 1973."""
-        for wavelength, index, extinction in ((0.7, 1.331, 3.35e-8), (0.9, 1.328, 4.86e-7), (1.0, 1.327, 2.89e-6), (1.2, 1.324, 9.89e-6),
-                                              (1.6, 1.317, 8.55e-5)):
+        for wavelength, index, extinction in ((0.7, 1.331, 3.35e-8), (0.9, 1.328, 4.86e-7), (1.0, 1.327, 2.89e-6),
+                                              (1.2, 1.324, 9.89e-6), (1.6, 1.317, 8.55e-5)):
             found = drops.index_of(wavelength)
             self.assertAlmostEqual(found.real, index, delta=0.008)
             self.assertAlmostEqual(found.imag / extinction, 1, delta=0.25)

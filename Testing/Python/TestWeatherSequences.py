@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Weather in sequences: labels of drops, birds that air hides, media of the scene, and folders that are of one weather."""
+"""Weather in sequences: labels of drops, birds that air hides, media of the scene, and folders that are of one
+weather."""
 import json
 import unittest
 
@@ -14,7 +15,8 @@ HOUSE = {"version": 1, "lidar": {"position": [0, 0, 3]}, "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"}]}
 SCENARIO = {"scene": "field.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 5,
             "sensor": {"preset": "Search905", "azimuth_step": 1.5},
-            "birds": [{"pattern": "Circles", "species": "herring gull", "number_of_birds": 60, "radius": 500, "heights": [5, 40]}]}
+            "birds": [{"pattern": "Circles", "species": "herring gull", "number_of_birds": 60, "radius": 500,
+                       "heights": [5, 40]}]}
 
 
 def rows_of(out):
@@ -22,22 +24,24 @@ def rows_of(out):
 
 
 def labels_of(out):
-    return np.concatenate([np.fromfile(file, np.uint32) for file in sorted((out / "sequences" / "00" / "labels").iterdir())])
+    return np.concatenate([np.fromfile(file, np.uint32)
+                           for file in sorted((out / "sequences" / "00" / "labels").iterdir())])
 
 
 class Sequences(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.home = emptied("TestWeatherSequences")
-        (cls.home / "field.lidarscene.json").write_text(json.dumps(HOUSE), encoding="utf-8")
+        (cls.home / "field.lidarscene.json").write_text(json.dumps(HOUSE), "utf-8")
         cls.file = cls.scenario("field")
         for name, words in (("clear", []), ("fog", ["fog:400"]), ("rain", ["rain:10"])):
-            assert main(["sequence", str(cls.file), "-o", str(cls.home / name), *(["--weather", *words] if words else [])]) == 0
+            assert main(["sequence", str(cls.file), "-o", str(cls.home / name),
+                         *(["--weather", *words] if words else [])]) == 0
 
     @classmethod
     def scenario(cls, name, **changes):
         file = cls.home / f"{name}.scenario.json"
-        file.write_text(json.dumps({**SCENARIO, **changes}), encoding="utf-8")
+        file.write_text(json.dumps({**SCENARIO, **changes}), "utf-8")
         return file
 
     def test_drops_are_outliers(self):
@@ -52,7 +56,8 @@ class Sequences(unittest.TestCase):
     def test_birds_that_air_hides(self):
         clear, fog = rows_of(self.home / "clear"), rows_of(self.home / "fog")
         self.assertEqual({(row["visibility_m"], row["rain_mm_h"]) for row in fog}, {("400", "0")})
-        self.assertEqual({(row["visibility_m"], row["rain_mm_h"], row["clear_probability"]) for row in clear}, {("", "0", "")})
+        self.assertEqual({(row["visibility_m"], row["rain_mm_h"], row["clear_probability"]) for row in clear},
+                         {("", "0", "")})
         statuses = {}
         for there, here in zip(clear, fog):
             statuses.setdefault(here["status"], []).append(there["status"])
@@ -72,16 +77,20 @@ class Sequences(unittest.TestCase):
 
     def test_media_of_the_scene_are_air_but_crowns_are_things(self):
         fog = {"name": "fog", "medium": {"kind": "fog", "visibility": 400, "shape": "everywhere"}}
-        wood = {"name": "wood", "medium": {"kind": "foliage", "leaf_area_density": 2, "shape": "box", "center": [-60, 0, 0], "lengths": [8, 1200, 200]}}
+        wood = {"name": "wood", "medium": {"kind": "foliage", "leaf_area_density": 2, "shape": "box",
+                                           "center": [-60, 0, 0], "lengths": [8, 1200, 200]}}
         found = {name: rows_of(self.home / name) for name in ("clear", "fog")}
         for name, media in (("woody", [wood]), ("both", [fog, wood])):
-            (self.home / f"{name}.lidarscene.json").write_text(json.dumps({**HOUSE, "objects": [*HOUSE["objects"], *media]}), encoding="utf-8")
-            self.assertEqual(main(["sequence", str(self.scenario(name, scene=f"{name}.lidarscene.json")), "-o", str(self.home / name)]), 0)
+            (self.home / f"{name}.lidarscene.json").write_text(
+                json.dumps({**HOUSE, "objects": [*HOUSE["objects"], *media]}), "utf-8")
+            self.assertEqual(main(["sequence", str(self.scenario(name, scene=f"{name}.lidarscene.json")), "-o",
+                                   str(self.home / name)]), 0)
             found[name] = rows_of(self.home / name)
         behind = {"hidden": 0, "air": 0}
         for clear, fog, wood, both in zip(*(found[name] for name in ("clear", "fog", "woody", "both"))):
             self.assertEqual(wood["clear_probability"], "")
-            self.assertEqual(both["clear_probability"], wood["expected_probability"] if both["status"] != "absent" else "")
+            self.assertEqual(both["clear_probability"],
+                             wood["expected_probability"] if both["status"] != "absent" else "")
             if wood["status"] == "hidden" and clear["status"] != "hidden":
                 behind["hidden"] += 1
                 self.assertGreaterEqual(float(clear["expected_probability"]), 0.1)
@@ -94,12 +103,15 @@ class Sequences(unittest.TestCase):
         self.assertGreater(min(behind.values()), 5, behind)
 
     def test_weather_belongs_to_what_a_folder_is_made_of(self):
-        self.assertIn('scenario.weather ["fog:400"], now ["fog:500"]', error_of("sequence", self.file, "-o", self.home / "fog", "--weather", "fog:500"))
+        self.assertIn('scenario.weather ["fog:400"], now ["fog:500"]',
+                      error_of("sequence", self.file, "-o", self.home / "fog", "--weather", "fog:500"))
         wrong = self.scenario("wrong", weather=["fog:500"], scan={"Visibility": 3000})
-        self.assertIn("weather: is given beside visibility 3000", error_of("sequence", wrong, "-o", self.home / "wrong"))
+        self.assertIn("weather: is given beside visibility 3000",
+                      error_of("sequence", wrong, "-o", self.home / "wrong"))
         deaf = self.scenario("deaf", weather=["rain:3"], sensor={"preset": "Airport16"})
         self.assertRegex(error_of("sequence", deaf, "-o", self.home / "deaf"),
-                         'weather: the air sends light back, and the sensor has no receiver_aperture .*: choose for example the preset "Search905"')
+                         'weather: the air sends light back, and the sensor has no receiver_aperture .*: choose for '
+                         'example the preset "Search905"')
         over = self.scenario("over", weather=["rain:3"], scan={"visibility": 9000})
         self.assertEqual(main(["sequence", str(over), "-o", str(self.home / "over"), "--weather", "fog:400"]), 0)
         np.testing.assert_array_equal(labels_of(self.home / "over"), labels_of(self.home / "fog"))

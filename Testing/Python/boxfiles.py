@@ -34,7 +34,8 @@ def obj(points, faces, materials=("painted",)):
 def stl(points, faces):
     text = "solid box\n"
     for face in faces:
-        text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(map(float, points[k])) for k in face)
+        text += "facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(map(float, points[k]))
+                                                             for k in face)
         text += "endloop\nendfacet\n"
     return text + "endsolid box\n"
 
@@ -50,19 +51,18 @@ def gltf(points, faces):
     indices = struct.pack("<%dH" % (3 * len(faces)), *(k for f in faces for k in f))
     vertices = np.asarray(points, dtype="<f4").tobytes()
     blob = base64.b64encode(indices + vertices).decode()
-    return json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-        # Half of the shift in the scene graph, half in the vertices.
-        "nodes": [{"mesh": 0, "translation": [0.5, 0, 0]}],
-        "materials": [{"name": "painted"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0, "material": 0}]}],
-        "buffers": [{"uri": "data:application/octet-stream;base64," + blob, "byteLength": len(indices) + len(vertices)}],
-        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(indices)},
-                        {"buffer": 0, "byteOffset": len(indices), "byteLength": len(vertices)}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5123, "count": 3 * len(faces), "type": "SCALAR"},
-            {"bufferView": 1, "componentType": 5126, "count": 8, "type": "VEC3",
-             "min": points.min(0).tolist(), "max": points.max(0).tolist()}]})
+    # Half of the shift in the scene graph, half in the vertices.
+    return json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                       "nodes": [{"mesh": 0, "translation": [0.5, 0, 0]}], "materials": [{"name": "painted"}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0, "material": 0}]}],
+                       "buffers": [{"uri": "data:application/octet-stream;base64," + blob,
+                                    "byteLength": len(indices) + len(vertices)}],
+                       "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(indices)},
+                                       {"buffer": 0, "byteOffset": len(indices), "byteLength": len(vertices)}],
+                       "accessors": [{"bufferView": 0, "componentType": 5123, "count": 3 * len(faces),
+                                      "type": "SCALAR"}, {"bufferView": 1, "componentType": 5126, "count": 8,
+                                                          "type": "VEC3", "min": points.min(0).tolist(),
+                                                          "max": points.max(0).tolist()}]})
 
 
 def collada(points, faces, up):
@@ -74,8 +74,8 @@ def collada(points, faces, up):
 <library_materials><material id="m" name="painted"><instance_effect url="#e"/></material></library_materials>
 <library_geometries><geometry id="g" name="g"><mesh>
 <source id="p"><float_array id="a" count="24">{" ".join(repr(float(c)) for c in points.ravel())}</float_array>
-<technique_common><accessor source="#a" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source>
+<technique_common><accessor source="#a" count="8" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
 <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="{len(faces)}" material="m"><input semantic="VERTEX" source="#v" offset="0"/>
 <p>{" ".join(str(k) for f in faces for k in f)}</p></triangles></mesh></geometry></library_geometries>

@@ -14,8 +14,8 @@ class Browser:
     def __init__(self, width=1150, height=900):
         options = webdriver.ChromeOptions()
         options.binary_location = "/usr/bin/chromium"
-        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
-                         "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9"):
+        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                         "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
@@ -33,7 +33,8 @@ class Browser:
         """Open a file. @return the addresses that were asked for while it loaded"""
         self.driver.get(pathlib.Path(file).resolve().as_uri())
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
-        return [message["params"]["request"]["url"] for message in messages if message["method"] == "Network.requestWillBeSent"]
+        return [message["params"]["request"]["url"] for message in messages if message["method"]
+                == "Network.requestWillBeSent"]
 
     def complaints(self):
         """What the console says since the page was opened."""
@@ -45,7 +46,8 @@ class Browser:
 
     def picture_between(self, first, end, file):
         """Write what is shown from an element to before another (CSS selectors), as PNG."""
-        top, bottom, width = self.run(f"""const y = s => document.querySelector(s).getBoundingClientRect().top + scrollY;
+        top, bottom, width = self.run(f"""
+            const y = s => document.querySelector(s).getBoundingClientRect().top + scrollY;
             return [y('{first}'), y('{end}'), document.documentElement.scrollWidth]""")
         found = self.driver.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": {
             "x": 0, "y": max(top - 8, 0), "width": width, "height": bottom - top, "scale": 1}})

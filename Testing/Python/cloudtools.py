@@ -21,7 +21,8 @@ ORIGIN = (31.1979, 121.3363, 3.0)  # the paper's airport
 
 def add_field(data, name, values, unit=None):
     """A tuple of numbers, or a list of texts, as field data."""
-    _cloud.add_array(data.GetFieldData(), name, values if isinstance(values, list) else np.array([values], dtype=float), unit)
+    _cloud.add_array(data.GetFieldData(), name, values if isinstance(values, list) else np.array([values], dtype=float),
+                     unit)
 
 
 def add_array(data, name, values, unit=None):
@@ -40,7 +41,8 @@ def cloud(points, kind=vtk.vtkPolyData):
 
 def extremes(kinds, order="<"):
     """Three points of x, y, z and of each kind of number, {name: kind}: its least value, 1 and its largest."""
-    rows = np.zeros(3, [(axis, order + "f4") for axis in "xyz"] + [(name, order + kind) for name, kind in kinds.items()])
+    rows = np.zeros(3,
+                    [(axis, order + "f4") for axis in "xyz"] + [(name, order + kind) for name, kind in kinds.items()])
     rows["x"] = (1, 2, 3)
     for name, kind in kinds.items():
         limits = np.finfo(kind) if kind[0] == "f" else np.iinfo(kind)

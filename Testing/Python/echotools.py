@@ -112,7 +112,8 @@ def bird(**properties):
 
 def sensor(columns=90, channels=4):
     """A beam source of few beams."""
-    return given(al.vtkAvianLidarBeamSource(), AzimuthStep=360.0 / columns, NumberOfChannels=channels, ElevationStep=1.0)
+    return given(al.vtkAvianLidarBeamSource(), AzimuthStep=360.0 / columns, NumberOfChannels=channels,
+                 ElevationStep=1.0)
 
 
 def scan(surfaces, beams=None, **properties):

@@ -40,7 +40,7 @@ def number(data, name):
 
 def read_table(file):
     """{column: {row: text}} of a Markdown table."""
-    return parse_table(pathlib.Path(file).read_text(encoding="utf-8").splitlines())
+    return parse_table(pathlib.Path(file).read_text("utf-8").splitlines())
 
 
 def parse_table(lines):

@@ -32,8 +32,8 @@ def same(one, two):
 
 
 def from_terminal(test, work, typed="", **options):
-    """What a command writes to a pseudo-terminal, and its exit code; the test is skipped where there is none. @param typed into it
-    @param options of Popen"""
+    """What a command writes to a pseudo-terminal, and its exit code; the test is skipped where there is none. @param
+    typed into it @param options of Popen"""
     try:
         parent, child = pty.openpty()
     except OSError as error:  # in a chroot or a container without /dev/pts

@@ -58,7 +58,8 @@ def needed_and_full(test, name, lidar):
 
 
 def compare_units(test, name, needed, full):
-    """Energies within the beam's bound, and what one of the results lacks within it of Qlow; the number of units that differ."""
+    """Energies within the beam's bound, and what one of the results lacks within it of Qlow; the number of units that
+    differ."""
     lower = full.fields["lower_energy_limit"]
     skipped = dict(zip(needed.report["beam_id"], needed.report["skipped"]))
     bound = dict(zip(needed.report["beam_id"], needed.report["skipped_bound"]))

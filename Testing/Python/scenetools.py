@@ -61,7 +61,7 @@ def cells(block, name):
 
 
 def volume(triangles):
-    """Of a closed surface with its normals outwards, by the divergence theorem, about its own centre."""
+    """Volume of a closed surface with normals outwards, by the divergence theorem about its own centre."""
     about = triangles - triangles.mean(axis=(0, 1))
     return np.einsum("ij,ij->i", about[:, 0], np.cross(about[:, 1], about[:, 2])).sum() / 6
 
@@ -79,17 +79,19 @@ def is_closed(triangles):
 def write_scene(folder, name, scene):
     """Write a scene file and return its name."""
     file = os.path.join(folder, name + ".lidarscene.json")
-    pathlib.Path(file).write_text(scene if isinstance(scene, str) else json.dumps(scene), encoding="utf-8")
+    pathlib.Path(file).write_text(scene if isinstance(scene, str) else json.dumps(scene), "utf-8")
     return file
 
 
 def frame(origin, place):
-    """Position and rotation of the tangent frame of a place in that of the origin, by ECEF (WGS84, the textbook's formula)."""
+    """Position and rotation of the tangent frame of a place in that of the origin, by ECEF (WGS84, the textbook's
+    formula)."""
     def ecef(p):
         a, f = 6378137.0, 1 / 298.257223563
         lat, lon = math.radians(p["latitude"]), math.radians(p["longitude"])
         n = a / math.sqrt(1 - f * (2 - f) * math.sin(lat) ** 2)
-        return np.array([(n + p["height"]) * math.cos(lat) * math.cos(lon), (n + p["height"]) * math.cos(lat) * math.sin(lon),
+        return np.array([(n + p["height"]) * math.cos(lat) * math.cos(lon),
+                         (n + p["height"]) * math.cos(lat) * math.sin(lon),
                          (n * (1 - f) ** 2 + p["height"]) * math.sin(lat)])
 
     def axes(p):

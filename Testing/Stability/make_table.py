@@ -47,7 +47,8 @@ def main():
         old = list(csv.reader(lines))[1:]
     known = [row[0] for row in old]
     rows = recorded(arguments.program, arguments.large)
-    rows.sort(key=lambda row: known.index(row[0]) if row[0] in known else len(known))  # whichever ran first; new ones last
+    # whichever ran first; new ones last
+    rows.sort(key=lambda row: known.index(row[0]) if row[0] in known else len(known))
     if not arguments.check:
         with open(arguments.table, "w", encoding="utf-8", newline="") as lines:
             csv.writer(lines, lineterminator="\n").writerows([HEAD, *rows])

@@ -49,7 +49,7 @@ PICTURES = {
     "weather": {"weather": "weather"},
     "your_airport": {"airport": "your-airport"},
 }
-DATA = {"ranges": ("ranges.json", "Python/avianlidar/apps")}  # numbers that the package holds, by study
+DATA = {"ranges": ("ranges.json", "Python/avianlidar/apps/inputs")}  # numbers that the package holds, by study
 TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "intervals", "media_time", "mirror_lobes",
           "more_reflections", "moved_scenes", "multiple_scattering", "others", "paper_times", "presets", "protocol",
           "quadcopter", "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")

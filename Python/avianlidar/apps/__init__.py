@@ -1,3 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Applications of scans and coverage: sequences, plans and maps, sites, reports. In the package, only modules with
-public names and the functions of the command's verbs import this subpackage."""
+"""Applications of scans and coverage, in packages by task. In the package `avianlidar`, only modules with public names
+and the functions of the command's verbs import this subpackage."""
+
+PACKAGES = "pages", "inputs", "places", "airport", "sequences", "coverage"  # each imports only packages before it

@@ -15,19 +15,20 @@ from .._ranks import Ranks
 from .._sensor import Sensor
 from .._terminal import bar, close_bar, table, tell, warn
 from .._weather import without_air
-from . import _pictures, _sites_page
-from ._answer import percent, share_of
-from ._design_page import Designs, answers
-from ._inputs import PROPERTIES, read_plan, read_scenario
-from ._maps import write_maps
-from ._on_sale import farthest, idea
-from ._plan import Plan
-from ._report import Report
-from ._sequence import Sequence
-from ._sites import Sites
-from ._tables import write_table
-from ._tracks import BirdTracks
-from ._words import counted
+from .coverage import _sites_page
+from .coverage._answer import percent, share_of
+from .coverage._design_page import Designs, answers
+from .coverage._maps import write_maps
+from .coverage._plan import Plan
+from .coverage._report import Report
+from .coverage._sites import Sites
+from .inputs._on_sale import farthest, idea
+from .inputs._read import PROPERTIES, read_plan, read_scenario
+from .inputs._tables import write_table
+from .pages._drawing import gradient
+from .pages._words import counted
+from .sequences._sequence import Sequence
+from .sequences._tracks import BirdTracks
 
 
 @contextlib.contextmanager
@@ -45,7 +46,7 @@ def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
 def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
     """The ranks of a job, and the threads of each; ImportError if a job that draws has no Matplotlib."""
     if draws:
-        _pictures.gradient()
+        gradient()
     ranks = Ranks(ends_job=True)
     return ranks, getattr(options, "threads", 0) or (1 if ranks.size > 1 else 0)
 
@@ -92,17 +93,17 @@ def track(options) -> None:
 
 
 def bench(options) -> None:
-    from ._bench import verdict, write_bench
-    _pictures.gradient()  # raises an error without Matplotlib before the work
+    from .sequences._bench import verdict, write_bench
+    gradient()  # raises an error without Matplotlib before the work
     found = write_bench(options.folders, options.predictions, options.out, options.sequences, options.first, bar)
     tell(*(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}" for scored in found),
          f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")
 
 
 def airport(options) -> None:
-    from ._airport import write
-    from ._airport_map import AirportMap
-    from ._airport_pages import counts
+    from .airport._write import write
+    from .airport._map import AirportMap
+    from .airport._pages import counts
     extract = AirportMap(options.extract, options.heights, options.icao, options.bounds, options.obstacles, bar)
     with only_run(options.out, goes_on=False):
         kept, made = write(extract, options.out)

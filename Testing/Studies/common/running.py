@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from avianlidar._cloud import vertices
 from avianlidar._pipeline import update
-from avianlidar.apps._targets import SIDES as BOX_SIDES  # noqa: F401 of BOX
+from avianlidar.apps.coverage._targets import SIDES as BOX_SIDES  # noqa: F401 of BOX
 from avianlidar.vtkAvianLidar import (vtkAvianLidarCloudComparison, vtkAvianLidarEchoFilter, vtkAvianLidarMaterial,
                                       vtkAvianLidarSceneReader)
 

@@ -11,7 +11,7 @@ import numpy as np
 import avianlidar as al
 import tools
 from avianlidar import reach
-from avianlidar.apps._pictures import draw_reach
+from avianlidar.apps.coverage._pictures import draw_reach
 from running import study
 
 SHOWN = ("Search905", "Search1550", "Automotive16", "Airport16")  # in the picture
@@ -42,7 +42,11 @@ def main(options):
         for name, axes in zip(SHOWN, np.ravel(panels)):
             draw_reach(axes, curves[name], "2 of 3 scans")
             axes.set_title(f"{name}{'' if name == 'Airport16' else ', assumed receiver'}", fontsize=10)
-    text = json.dumps({"shares": reach.SHARES, "visibility": VISIBILITY, "ranges": numbers}, indent=1)
-    (options.out / "ranges.json").write_text(f"{text}\n", encoding="utf-8")
+    # One line for each bird.
+    birds = {name: ",\n".join(f"   {json.dumps(bird)}: {json.dumps(metres)}" for bird, metres in of.items())
+             for name, of in numbers.items()}
+    table = ",\n".join(f"  {json.dumps(name)}: {{\n{rows}}}" for name, rows in birds.items())
+    head = f'{{"shares": {json.dumps(reach.SHARES)}, "visibility": {VISIBILITY},'
+    (options.out / "ranges.json").write_text(f'{head}\n "ranges": {{\n{table}}}}}\n', encoding="utf-8")
     tools.leave(options.out, "coverage-ranges", (
         "receiver", "bird", "9 of 10, to", "half, to", "a tenth, to", "9 of 10 by 2 of 3 scans, to"), rows, 2)

@@ -19,11 +19,11 @@ from scipy.spatial.transform import Rotation
 import avianlidar as al
 import tools
 from avianlidar import _sheet
-from avianlidar.apps._targets import box, quadcopter  # noqa: F401 intervals.py takes `box` from here
-from avianlidar.apps._json import packaged
+from avianlidar.apps.coverage._targets import box, quadcopter  # noqa: F401 intervals.py takes `box` from here
+from avianlidar.apps.inputs._json import packaged
 from running import above_zero, argument, finite, study, whole
 
-ACROSS = packaged("targets.json")["drone"]["across"]  # m, from motor to motor over the middle
+ACROSS = packaged("coverage/targets.json")["drone"]["across"]  # m, from motor to motor over the middle
 REFLECTANCE = 0.05, 0.5  # assumed: dark plastic and carbon to light grey
 THICK = 0.8, 1.25        # assumed: of the parts in targets.json
 OFF_AXIS = 2.0           # deg at most, evenly over the disc

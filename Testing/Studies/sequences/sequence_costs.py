@@ -20,7 +20,7 @@ import numpy as np
 
 import tools
 from avianlidar import Sequence
-from avianlidar.apps._inputs import read_scenario
+from avianlidar.apps.inputs._read import read_scenario
 from running import AIRPORT, argument, study, whole
 
 SCENARIO = AIRPORT.parents[2] / "sequence" / "hongqiao.scenario.json"

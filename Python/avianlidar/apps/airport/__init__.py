@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes, plans and scenarios of airports, made from maps, rasters of heights and surveyed obstacles."""
