@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PhotonReceiver.h"
 
-#include "Figures.h"
 #include "Distributions.h"
+#include "Figures.h"
 #include "ValueError.h"
 
 #include <boost/math/special_functions/erf.hpp>

@@ -58,7 +58,6 @@ struct CellSamples
       (this->variance.capacity() + this->moves.capacity() + this->halves.capacity()) *
       sizeof(double);
   }
-
 };
 
 /// The strips of a surface. Range units are divided into equal parts, so that strips are short
