@@ -2,7 +2,7 @@
 #include "vtkAvianLidarBeamView.h"
 
 #include "BeamShape.h"
-#include "BeamSight.h"
+#include "BeamSurfaces.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarPrint.h"
@@ -263,7 +263,7 @@ void vtkAvianLidarBeamView::Look(const vtkAvianLidarRanks& ranks, vtkFieldData* 
   const avianlidar::KeepGoing keepGoing =
     vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
   const std::vector<SeenSurface> seen =
-    avianlidar::sightAlong(in.Setup, in.Beams.beams, beam, [&] { return keepGoing(0.0); });
+    avianlidar::surfacesAlong(in.Setup, in.Beams.beams, beam, [&] { return keepGoing(0.0); });
   const avianlidar::BeamFrame frame = avianlidar::makeBeamFrame(in.Beams.beams.origins[beam],
     in.Beams.beams.directions[beam], avianlidar::BeamShape(in.Setup.sensor).width());
   double length = 0.0;

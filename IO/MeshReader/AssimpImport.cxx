@@ -122,7 +122,7 @@ public:
   const std::string& GetReason() const { return this->Reason; }
 
   /// Returns the vector to be added to the vertices, in the unit of the file (MoveObjToOrigin()).
-  const Vec3& GetOffset() const { return this->Offset; }
+  const Point3& GetOffset() const { return this->Offset; }
 
   /// Makes Assimp read another text in place of the mesh.
   /// @param ending file extension that tells Assimp the format of the text
@@ -229,7 +229,7 @@ private:
   std::string MeshName;
   std::map<std::string, std::string> Texts; ///< by the name without a folder
   std::string Reason;
-  Vec3 Offset{};
+  Point3 Offset{};
   // Assimp opens a file of unknown format once for each format.
   std::shared_ptr<const std::vector<char>> Unpacked;
 };
@@ -253,7 +253,7 @@ public:
     this->Corners.clear();
     for (unsigned int k = 0; k < face.mNumIndices; ++k)
     {
-      const Vec3& p = mesh.points[first + face.mIndices[k]];
+      const Point3& p = mesh.points[first + face.mIndices[k]];
       this->Corners.emplace_back(p[0], p[1], p[2]);
     }
     this->Polygon.Divide(this->Corners);
@@ -616,8 +616,8 @@ Mesh ReadAssimpMesh(const std::string& file)
   {
     mesh.warnings.push_back(lost);
   }
-  const Vec3& moved = files->GetOffset();
-  for (Vec3& p : mesh.points)
+  const Point3& moved = files->GetOffset();
+  for (Point3& p : mesh.points)
   {
     p = { unit * (p[0] + moved[0]), unit * (p[1] + moved[1]), unit * (p[2] + moved[2]) };
   }

@@ -181,7 +181,7 @@ bool ReadNumber(const char*& at, const char* end, double& number)
 
 /// Reads the coordinates behind a "v". Returns false if a coordinate cannot be read, or if a weight
 /// divides the coordinates.
-bool ReadVertex(const char*& at, const char* end, Vec3& vertex)
+bool ReadVertex(const char*& at, const char* end, Point3& vertex)
 {
   for (double& coordinate : vertex)
   {
@@ -385,16 +385,16 @@ void CheckObj(const std::string& text)
     });
 }
 
-Vec3 MoveObjToOrigin(std::vector<char>& bytes)
+Point3 MoveObjToOrigin(std::vector<char>& bytes)
 {
   constexpr double farAway = 8192.0; // limit of the rounding below 0.001
-  Vec3 offset{};
+  Point3 offset{};
   double farthest = 0.0;
   bool isFirst = true, canMove = true;
   ForEachLine({ bytes.data(), bytes.size() },
     [&](const char* at, const char* end)
     {
-      Vec3 vertex;
+      Point3 vertex;
       if (!IsVertex(at, end))
       {
         return;
@@ -419,7 +419,7 @@ Vec3 MoveObjToOrigin(std::vector<char>& bytes)
   ForEachLine({ bytes.data(), bytes.size() },
     [&](const char* at, const char* end)
     {
-      Vec3 vertex;
+      Point3 vertex;
       if (IsVertex(at, end) && ReadVertex(at, end, vertex))
       {
         moved.push_back('v');

@@ -42,7 +42,7 @@ void CheckObj(const std::string& text);
  * changed.
  * @return vector to be added to the vertices that Assimp reads, in the unit of the file
  */
-Vec3 MoveObjToOrigin(std::vector<char>& bytes);
+Point3 MoveObjToOrigin(std::vector<char>& bytes);
 }
 
 #endif

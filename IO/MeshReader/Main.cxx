@@ -31,9 +31,9 @@ namespace
 {
 struct PointHash
 {
-  std::size_t operator()(const Vec3& p) const
+  std::size_t operator()(const Point3& p) const
   {
-    const Vec3 sums{ p[0] + 0.0, p[1] + 0.0, p[2] + 0.0 }; // -0 becomes 0
+    const Point3 sums{ p[0] + 0.0, p[1] + 0.0, p[2] + 0.0 }; // -0 becomes 0
     return std::hash<std::string_view>()({ reinterpret_cast<const char*>(&sums), sizeof sums });
   }
 };
@@ -41,11 +41,11 @@ struct PointHash
 /// Merges points with identical coordinates. Triangles keep their number and order.
 void MergePoints(Mesh& mesh)
 {
-  std::unordered_map<Vec3, std::int64_t, PointHash> index;
+  std::unordered_map<Point3, std::int64_t, PointHash> index;
   index.reserve(mesh.points.size());
-  std::vector<Vec3> points;
+  std::vector<Point3> points;
   std::vector<std::int64_t> target;
-  for (const Vec3& point : mesh.points)
+  for (const Point3& point : mesh.points)
   {
     const auto [known, isNew] = index.emplace(point, static_cast<std::int64_t>(points.size()));
     points.insert(points.end(), isNew ? 1 : 0, point);
@@ -62,7 +62,7 @@ Mesh ReadMesh(const std::string& file)
 {
   Mesh mesh = IsVtkFile(file) ? ReadVtkMesh(file) : ReadAssimpMesh(file);
   failIf(mesh.triangles.empty(), "holds no triangle");
-  for (const Vec3& p : mesh.points)
+  for (const Point3& p : mesh.points)
   {
     failIf(!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]),
       "has a vertex whose coordinates are not finite");

@@ -396,7 +396,7 @@ void AddDataSet(vtkDataSet* data, Mesh& mesh)
   double farthest = 0.0;
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
-    Vec3 p;
+    Point3 p;
     surface->GetPoint(i, p.data());
     farthest = std::max({ farthest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
     mesh.points.push_back(p);

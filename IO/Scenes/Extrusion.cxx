@@ -17,7 +17,7 @@ void AddTriangle(Mesh& mesh, Index a, Index b, Index c, int material)
   mesh.materials.push_back(material);
 }
 
-Index AddPoint(Mesh& mesh, const Vec3& p)
+Index AddPoint(Mesh& mesh, const Point3& p)
 {
   mesh.points.push_back(p);
   return static_cast<Index>(mesh.points.size()) - 1;
@@ -27,7 +27,7 @@ Index AddPoint(Mesh& mesh, const Vec3& p)
 Index AddRaised(const Sheet& sheet, double height, Mesh& mesh)
 {
   const auto first = static_cast<Index>(mesh.points.size());
-  for (const Vec3& p : sheet.points)
+  for (const Point3& p : sheet.points)
   {
     mesh.points.push_back({ p[0], p[1], p[2] + height });
   }
@@ -69,8 +69,8 @@ int BaysOf(double length, double bay)
 
 void AddGlazedFacade(const Facade& f, int wall, const Glazing& glazing, Mesh& mesh)
 {
-  const Vec3 p = mesh.points[f.bottomLeft], q = mesh.points[f.bottomRight],
-             top = mesh.points[f.topLeft];
+  const Point3 p = mesh.points[f.bottomLeft], q = mesh.points[f.bottomRight],
+               top = mesh.points[f.topLeft];
   const double margin = std::min(0.02, (1 - glazing.share) / 4);
   const double strip = glazing.share / (1 - 2 * margin);
   const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
@@ -127,7 +127,7 @@ Sheet Join(const std::vector<TerrainPiece>& pieces)
   {
     const Sheet plan = Triangulate(piece.polygon);
     std::vector<Index> ids;
-    for (const Vec3& p : plan.points)
+    for (const Point3& p : plan.points)
     {
       const auto found = known.emplace(
         std::array<std::int64_t, 2>{ std::llround(p[0] / same), std::llround(p[1] / same) },

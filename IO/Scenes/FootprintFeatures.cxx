@@ -386,7 +386,7 @@ std::vector<FootprintFeature> ReadFeatures(OGRLayer& layer, const Object& object
 
 void ToLocal(Ring& ring, const GeoreferencedPoints& frame, double height)
 {
-  std::vector<Vec3> points;
+  std::vector<Point3> points;
   for (const Vec2& p : ring)
   {
     points.push_back({ p[0], p[1], height });

@@ -271,7 +271,7 @@ void TurnUp(const std::string& file, char upAxis, Mesh& mesh)
   const char said = mesh.upAxis ? mesh.upAxis : UpAxis(file);
   if ((upAxis ? upAxis : said) == 'y')
   {
-    for (Vec3& p : mesh.points)
+    for (Point3& p : mesh.points)
     {
       p = { p[0], -p[2], p[1] };
     }

@@ -33,7 +33,7 @@ struct Polygon
 /// the left of each edge.
 struct Sheet
 {
-  std::vector<Vec3> points;
+  std::vector<Point3> points;
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::vector<std::array<std::int64_t, 2>> outline;
 };

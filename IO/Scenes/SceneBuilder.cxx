@@ -100,11 +100,12 @@ void MapMaterials(
 void Place(const Scene& scene, const Object& object, Mesh& mesh)
 {
   const Placement& placement = object.placement;
-  const Vec3 t = placement.position.value_or(Vec3{ 0, 0, 0 });
+  const Point3 t = placement.position.value_or(Point3{ 0, 0, 0 });
   const Mat3& r = placement.rotation;
-  for (Vec3& p : mesh.points)
+  for (Point3& p : mesh.points)
   {
-    const Vec3 v{ placement.scale[0] * p[0], placement.scale[1] * p[1], placement.scale[2] * p[2] };
+    const Point3 v{ placement.scale[0] * p[0], placement.scale[1] * p[1],
+      placement.scale[2] * p[2] };
     p = { r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + t[0],
       r[3] * v[0] + r[4] * v[1] + r[5] * v[2] + t[1],
       r[6] * v[0] + r[7] * v[1] + r[8] * v[2] + t[2] };
@@ -175,7 +176,7 @@ Part MakeMesh(BuiltScene& built, const Object& object, MeshFiles& files,
       " points or lines were left out");
   }
   constexpr double leastLoss = 0.01; // rounding that gives a warning, m
-  const Vec3& scale = object.placement.scale;
+  const Point3& scale = object.placement.scale;
   const double lost =
     part.mesh.rounding * std::max({ std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2]) });
   if (lost > leastLoss)
@@ -345,7 +346,7 @@ using Vector = glm::dvec3;
 
 Vector CornerOf(const Mesh& mesh, std::int64_t point)
 {
-  const Vec3& p = mesh.points[point];
+  const Point3& p = mesh.points[point];
   return { p[0], p[1], p[2] };
 }
 

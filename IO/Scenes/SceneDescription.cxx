@@ -166,7 +166,7 @@ Mat3 ParseMatrix(const JsonNode& node)
   const auto rows = node.Items(3);
   for (int i = 0; i < 3; ++i)
   {
-    const Vec3 row = rows[i].Vector();
+    const Point3 row = rows[i].Vector();
     std::copy(row.begin(), row.end(), m.begin() + 3 * i);
   }
   for (int i = 0; i < 3; ++i)
@@ -188,13 +188,13 @@ Mat3 ParseMatrix(const JsonNode& node)
 /// Returns the rotation whose second axis (the model's north, +y) points along a direction, and
 /// whose third axis (the model's up) is as near to up as possible. The direction must not be
 /// vertical.
-Mat3 RotationToDirection(const Vec3& direction)
+Mat3 RotationToDirection(const Point3& direction)
 {
   const double horizontal = std::hypot(direction[0], direction[1]);
   const double length = std::hypot(horizontal, direction[2]);
-  const Vec3 y{ direction[0] / length, direction[1] / length, direction[2] / length };
-  const Vec3 x{ direction[1] / horizontal, -direction[0] / horizontal, 0 };
-  const Vec3 z{ x[1] * y[2], -x[0] * y[2], x[0] * y[1] - x[1] * y[0] };
+  const Point3 y{ direction[0] / length, direction[1] / length, direction[2] / length };
+  const Point3 x{ direction[1] / horizontal, -direction[0] / horizontal, 0 };
+  const Point3 z{ x[1] * y[2], -x[0] * y[2], x[0] * y[1] - x[1] * y[0] };
   return { x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2] };
 }
 
@@ -213,13 +213,13 @@ Mat3 ParseRotation(const JsonNode& node)
   {
     return ParseMatrix(node);
   }
-  const Vec3 direction = node.Vector();
+  const Point3 direction = node.Vector();
   node.FailIf(!(std::hypot(direction[0], direction[1]) > 1e-9 * std::abs(direction[2])),
     "must be a direction that is neither zero nor vertical");
   return RotationToDirection(direction);
 }
 
-Vec3 ParseScale(const JsonNode& node)
+Point3 ParseScale(const JsonNode& node)
 {
   const auto items = node.IsNumber() ? std::vector<JsonNode>(3, node) : node.Items(3);
   return { items[0].PositiveNumber(), items[1].PositiveNumber(), items[2].PositiveNumber() };

@@ -7,12 +7,12 @@
 
 namespace avianlidar::scene
 {
-void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3>& points)
+void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Point3>& points)
 {
   GeodeticFrame from, to;
   from.setOrigin(place.latitude, place.longitude, place.height);
   to.setOrigin(origin.latitude, origin.longitude, origin.height);
-  for (Vec3& p : points)
+  for (Point3& p : points)
   {
     p = to.convert(avianlidar::Frame::ECEF, avianlidar::Frame::ENU,
       from.convert(avianlidar::Frame::ENU, avianlidar::Frame::ECEF, p));
@@ -66,7 +66,7 @@ GeoreferencedPoints::GeoreferencedPoints(const Geodetic& origin, const std::stri
 {
 }
 
-void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
+void GeoreferencedPoints::ToLocal(std::vector<Point3>& points) const
 {
   if (this->ToWgs84)
   {
@@ -85,7 +85,7 @@ void GeoreferencedPoints::ToLocal(std::vector<Vec3>& points) const
       points[i] = { x[i], y[i], z[i] };
     }
   }
-  for (Vec3& p : points)
+  for (Point3& p : points)
   {
     failIf(!GeodeticFrame::checkPoint(avianlidar::Frame::Geodetic, p).empty(),
       "coordinates lie outside their coordinate reference system");

@@ -20,7 +20,7 @@ namespace avianlidar::scene
  * Transforms points from the tangent frame (east, north, up) of a place to the tangent frame of the
  * origin. The up directions of the two frames differ by 1 degree at a distance of 111 km.
  */
-void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Vec3>& points);
+void MoveToPlace(const Geodetic& origin, const Geodetic& place, std::vector<Point3>& points);
 
 /**
  * Transforms coordinates of a reference system to metres east, north and up of an origin. The
@@ -35,7 +35,7 @@ public:
   GeoreferencedPoints(const Geodetic& origin, const std::string& crs);
   GeoreferencedPoints(const Geodetic& origin, const OGRSpatialReference& crs);
 
-  void ToLocal(std::vector<Vec3>& points) const;
+  void ToLocal(std::vector<Point3>& points) const;
 
 private:
   GeodeticFrame Frame;

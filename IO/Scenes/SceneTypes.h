@@ -20,7 +20,7 @@
 
 namespace avianlidar::scene
 {
-using Vec3 = std::array<double, 3>;
+using Point3 = std::array<double, 3>;
 /// Rows of a 3 x 3 matrix, one after the other.
 using Mat3 = std::array<double, 9>;
 
@@ -54,10 +54,10 @@ struct MaterialRule
 /// Position, rotation and scale of an object: p = frame(position + rotation * (scale * v)).
 struct Placement
 {
-  std::optional<Vec3> position;
+  std::optional<Point3> position;
   std::optional<Geodetic> geodetic;
   Mat3 rotation{ 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-  Vec3 scale{ 1, 1, 1 };
+  Point3 scale{ 1, 1, 1 };
 };
 
 /// Glass of facades. A facade has bays of equal width, and each bay has one centred strip of glass.
@@ -137,8 +137,8 @@ struct Scene
 {
   std::string file;
   std::optional<Geodetic> origin;
-  std::optional<Vec3> lidar; ///< position of the lidar, m east, north and up
-  bool lidarInside = false;  ///< whether the lidar may be inside a part
+  std::optional<Point3> lidar; ///< position of the lidar, m east, north and up
+  bool lidarInside = false;    ///< whether the lidar may be inside a part
   std::vector<Material> materials;
   std::vector<MaterialRule> rules;
   std::vector<Object> objects;
@@ -149,7 +149,7 @@ struct Scene
 /// from a file, or a material id of the scene.
 struct Mesh
 {
-  std::vector<Vec3> points;
+  std::vector<Point3> points;
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::vector<int> materials;
   std::vector<std::string> materialNames;

@@ -27,7 +27,7 @@ Terrain::Terrain(const std::string& name, const Mesh& mesh)
   bool down = false;
   for (const auto& [a, b, c] : mesh.triangles)
   {
-    const Vec3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
+    const Point3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
     const double ux = q[0] - p[0], uy = q[1] - p[1], uz = q[2] - p[2];
     const double vx = r[0] - p[0], vy = r[1] - p[1], vz = r[2] - p[2];
     const double twice = ux * vy - uy * vx;
@@ -38,7 +38,7 @@ Terrain::Terrain(const std::string& name, const Mesh& mesh)
     }
     (twice > 0 ? up : down) = true;
     Ring ring{ { p[0], p[1] }, { q[0], q[1] }, { r[0], r[1] } };
-    const Vec3 plane{ (uz * vy - uy * vz) / twice, (ux * vz - uz * vx) / twice, p[2] };
+    const Point3 plane{ (uz * vy - uy * vz) / twice, (ux * vz - uz * vx) / twice, p[2] };
     if (twice < 0)
     {
       std::swap(ring[1], ring[2]);

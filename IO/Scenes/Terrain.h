@@ -17,7 +17,7 @@ struct TerrainPiece
 {
   Polygon polygon;
   Vec2 center{};
-  Vec3 plane{};
+  Point3 plane{};
 
   double HeightAt(const Vec2& p) const
   {

@@ -527,7 +527,7 @@ TEST(MovedBeams, NothingStaticIsTracedTwice)
   // Nor is a beam with echoes lit again. (A beam that now holds a bird may be of sky, or may have
   // held one in each scan so far.)
   std::vector<std::size_t> touchedNow;
-  for (const MoverSight& sight : result.sights)
+  for (const MoverLight& sight : result.sights)
   {
     touchedNow.push_back(sight.beam);
   }

@@ -35,7 +35,7 @@ struct BeamReport
 };
 
 /// Light, without noise, that one beam receives from one mover on paths with one reflection.
-struct MoverSight
+struct MoverLight
 {
   std::uint32_t mover;
   std::size_t beam;

@@ -176,14 +176,14 @@ void MovedBeams::addLightOf(std::uint32_t begin, std::uint32_t end, const BeamLi
 }
 
 /// @param air light of the air along the beam
-MoverSight MovedBeams::sightOf(
+MoverLight MovedBeams::sightOf(
   const Touch& touch, const BeamFrame& frame, const BeamLight& light, AirLight& air)
 {
   const Mover& mover = (*this->Setup.movers)[touch.mover];
   const std::uint32_t first = this->Setup.firstTriangles[touch.mover];
   const auto end = static_cast<std::uint32_t>(first + mover.mesh.size());
   const Vec3 to = touch.pose.position - frame.origin;
-  MoverSight sight{ touch.mover, 0, 0.0, 0.0,
+  MoverLight sight{ touch.mover, 0, 0.0, 0.0,
     std::atan2(safeLength(glm::cross(frame.axis, to)), glm::dot(frame.axis, to)), false };
   sight.held = this->Width.isRound ? sight.offAxis <= this->Width.half : frame.contains(to);
   this->Units.clear();
@@ -202,7 +202,7 @@ MoverSight MovedBeams::sightOf(
 }
 
 MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes,
-  BeamReport& report, std::vector<MoverSight>& sights, BeamLight memory)
+  BeamReport& report, std::vector<MoverLight>& sights, BeamLight memory)
 {
   const std::vector<Touch>& touching = this->Touching[beam - this->First];
   SceneTriangles& scene = this->Simulator.scene();

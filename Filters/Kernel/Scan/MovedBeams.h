@@ -56,7 +56,7 @@ public:
   /// Append the echoes of a beam with movers, append the light that the beam receives from each
   /// mover, and fill the beam's report. @param memory light whose memory is used again
   Followed simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
-    std::vector<MoverSight>& sights, BeamLight memory);
+    std::vector<MoverLight>& sights, BeamLight memory);
 
   /// Static triangles, and the triangles of the movers that the beam simulated last may touch.
   const SceneTriangles& scene() const { return this->Simulator.scene(); }
@@ -69,7 +69,7 @@ private:
   };
   void findAmong(const std::vector<std::uint32_t>& movers, std::size_t begin, std::size_t end,
     std::vector<std::uint32_t>& found) const;
-  MoverSight sightOf(
+  MoverLight sightOf(
     const Touch& touch, const BeamFrame& frame, const BeamLight& light, AirLight& air);
   void addLightOf(std::uint32_t first, std::uint32_t end, const BeamLight& light);
 

@@ -28,7 +28,7 @@ struct Block
   std::uint64_t raysTraced = 0;
   std::uint64_t beamsTraced = 0;
   std::uint64_t beamsTouched = 0;
-  std::vector<MoverSight> sights;
+  std::vector<MoverLight> sights;
   std::vector<SeenPlane> planes;
 };
 

@@ -31,7 +31,7 @@ struct ScanResult
   std::uint64_t raysTraced = 0;           ///< number of rays traced; 0 if all beams were kept
   std::uint64_t beamsTraced = 0;          ///< number of beams whose static surfaces were searched
   std::uint64_t beamsTouched = 0;         ///< number of beams that movers may touch
-  std::vector<MoverSight> sights;         ///< light from movers, by beam; empty unless requested
+  std::vector<MoverLight> sights;         ///< light from movers, by beam; empty unless requested
   std::vector<CoincidentPair> coincident; ///< result of findCoincidentObjects()
 };
 

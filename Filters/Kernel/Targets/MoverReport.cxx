@@ -12,16 +12,16 @@
 namespace avianlidar
 {
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
-  const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted)
+  const std::vector<MoverLight>& sights, int threads, const std::function<bool()>& wanted)
 {
   std::vector<MoverReport> reports(setup.movers ? setup.movers->size() : 0);
-  std::vector<const MoverSight*> best(reports.size(), nullptr);
+  std::vector<const MoverLight*> best(reports.size(), nullptr);
   constexpr double never = std::numeric_limits<double>::infinity();
   std::vector<std::array<double, 2>> met(reports.size(), { never, -never }); // first and last time
-  for (const MoverSight& sight : sights)
+  for (const MoverLight& sight : sights)
   {
     MoverReport& report = reports[sight.mover];
-    const MoverSight*& known = best[sight.mover];
+    const MoverLight*& known = best[sight.mover];
     report.touched = true;
     report.beams += sight.held;
     if (sight.held || sight.energy > 0.0)

@@ -39,7 +39,7 @@ struct MoverReport
   double effectiveArea = 0.0; ///< effective area, m^2; NaN if the mover's sphere holds `origin`
   bool touched = false;       ///< true if a beam may touch the mover
   std::uint32_t beams = 0;    ///< number of beams that contain the mover's origin
-  double energy = 0.0;        ///< largest of MoverSight::energy, J
+  double energy = 0.0;        ///< largest of MoverLight::energy, J
   double probability = 0.0;   ///< probability that any beam perceives the mover
 };
 
@@ -49,7 +49,7 @@ struct MoverReport
 /// loopThreads(0)
 /// @param wanted function called repeatedly on the calling thread; may be empty
 std::vector<MoverReport> reportMovers(const ScanSetup& setup, const ScanBeams& beams,
-  const std::vector<MoverSight>& sights, int threads, const std::function<bool()>& wanted = {});
+  const std::vector<MoverLight>& sights, int threads, const std::function<bool()>& wanted = {});
 }
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file BeamSight.h
+ * @file BeamSurfaces.h
  * @brief Finds the triangles that one beam sees, their shares of its solid angle, and their
  * energies.
  *
@@ -47,7 +47,7 @@ struct SeenSurface
 /// Surfaces that beam `beam` sees, in the order of the triangles. @param setup setup planned by
 /// planModel() @param wanted function called during the work; WorkStopped is thrown if it returns
 /// false
-std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& beams,
+std::vector<SeenSurface> surfacesAlong(const ScanSetup& setup, const ScanBeams& beams,
   std::size_t beam, const std::function<bool()>& wanted = {});
 
 /// Directions along the outline of a beam, not normalised: the component along the axis is 1. A

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BeamSight.h"
+#include "BeamSurfaces.h"
 
 #include "BeamShape.h"
 #include "BeamSimulator.h"
@@ -108,7 +108,7 @@ void light(
     moved.find(0, 1);
     if (moved.isTouched(0))
     {
-      std::vector<MoverSight> sights;
+      std::vector<MoverLight> sights;
       const MovedBeams::Followed followed =
         moved.simulate(0, echoes, report, sights, BeamLight(setup.sensor));
       f(followed.light, moved.scene());
@@ -152,7 +152,7 @@ void addSamples(
 }
 }
 
-std::vector<SeenSurface> sightAlong(const ScanSetup& setup, const ScanBeams& beams,
+std::vector<SeenSurface> surfacesAlong(const ScanSetup& setup, const ScanBeams& beams,
   std::size_t beam, const std::function<bool()>& wanted)
 {
   ScanBeams one;
