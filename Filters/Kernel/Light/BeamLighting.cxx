@@ -35,14 +35,14 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, 
 {
 }
 
-BeamLight BeamLighting::direct(const Beam& beam, BeamLight light)
+BeamLight BeamLighting::direct(const Beam& beam, BeamLight&& light)
 {
   light.clear(this->Setup.sensor.backgroundRadiance);
   const VisiblePolygons* const polygons = beam.view.polygons();
   const CellSamples* const cells = beam.view.cells();
   if (polygons && !this->placeNodes(beam, light))
   {
-    return light;
+    return std::move(light);
   }
   if (cells)
   {
@@ -58,7 +58,7 @@ BeamLight BeamLighting::direct(const Beam& beam, BeamLight light)
   {
     this->drawLeaves(beam, light);
     light.isPerceivable = this->MayAlarm || !beam.air.alone().empty();
-    return light;
+    return std::move(light);
   }
   if (this->Setup.sensor.seesDaylight())
   {
@@ -83,7 +83,7 @@ BeamLight BeamLighting::direct(const Beam& beam, BeamLight light)
   {
     this->planPaths(beam, ofPaths, light);
   }
-  return light;
+  return std::move(light);
 }
 
 /// Decide whether paths with two reflections are to be found. @param most bound of their energy, J
@@ -184,13 +184,13 @@ void BeamLighting::drawLeaves(const Beam& beam, BeamLight& light)
   }
 }
 
-BeamLight BeamLighting::withPaths(const Beam& beam, BeamLight light, const PathStarts& starts,
+BeamLight BeamLighting::withPaths(const Beam& beam, BeamLight&& light, const PathStarts& starts,
   const StrataPartition* strata, SecondaryTrace& known, TraceCounters& cost)
 {
   const double lostBefore = light.lost;
   light.isPerceivable = this->collectPaths(beam, starts, strata, known, cost, light);
   light.skipped |= light.isPerceivable && light.lost > lostBefore ? SkippedSecondaryPaths : 0u;
-  return light;
+  return std::move(light);
 }
 
 /// Find the paths with two reflections. @return false if nothing of the beam can be perceived
@@ -230,12 +230,12 @@ bool BeamLighting::collectPaths(const Beam& beam, const PathStarts& starts,
   return true;
 }
 
-BeamLight BeamLighting::summed(const Beam& beam, BeamLight light) const
+BeamLight BeamLighting::summed(const Beam& beam, BeamLight&& light) const
 {
   const BeamSamples* const samples = light.samples();
   if (!light.isPerceivable || !samples)
   {
-    return light;
+    return std::move(light);
   }
   if (beam.air.scan().fillsScene() || beam.air.isLocal())
   {
@@ -253,7 +253,7 @@ BeamLight BeamLighting::summed(const Beam& beam, BeamLight light) const
     light.units.add({ path.length, path.energy });
   }
   light.units.accumulate();
-  return light;
+  return std::move(light);
 }
 
 /// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J

@@ -64,16 +64,16 @@ public:
   };
 
   /// The direct echoes of a beam. @param memory light whose memory is used again
-  BeamLight direct(const Beam& beam, BeamLight memory);
+  BeamLight direct(const Beam& beam, BeamLight&& memory);
 
   /// Add paths with two reflections to the direct echoes. @param starts hits from which paths
   /// start @param known geometry of paths that was found before; new geometry is added
   /// @param cost costs of tracing, increased
-  BeamLight withPaths(const Beam& beam, BeamLight light, const PathStarts& starts,
+  BeamLight withPaths(const Beam& beam, BeamLight&& light, const PathStarts& starts,
     const StrataPartition* strata, SecondaryTrace& known, TraceCounters& cost);
 
   /// Sum the energies in range units, if anything may be perceived.
-  BeamLight summed(const Beam& beam, BeamLight light) const;
+  BeamLight summed(const Beam& beam, BeamLight&& light) const;
 
 private:
   bool placeNodes(const Beam& beam, BeamLight& light);

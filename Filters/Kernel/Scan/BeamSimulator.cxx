@@ -8,6 +8,21 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// Finish the report of a beam. @param cost cost of tracing the beam in this run
+void finishReport(const TraceCounters& cost, KeptBeam& kept, BeamReport& report)
+{
+  if (report.status == BeamStatus::NoSurface && kept.view.isBehindGate())
+  {
+    report.status = BeamStatus::OutsideGate;
+  }
+  addCounters(cost, kept.counters);
+  report.counters = kept.counters;
+  report.raysTracedNow = cost.raysTraced;
+}
+}
+
 BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams,
   const ScanOptions& options, BeamSampler& sampler, std::function<bool()> wanted)
   : Scene(*setup.tree)
@@ -61,44 +76,38 @@ BeamSimulator::Traced BeamSimulator::trace(std::size_t begin, std::size_t end,
 }
 
 BeamLight BeamSimulator::follow(std::size_t beam, TraceCounters cost, KeptBeam& kept,
-  std::vector<Echo>& echoes, BeamReport& report, BeamLight memory)
+  std::vector<Echo>& echoes, BeamReport& report, BeamLight&& memory)
 {
-  BeamLight light = std::move(memory);
-  light.clear(this->Setup.sensor.backgroundRadiance);
   report.range = std::numeric_limits<double>::quiet_NaN();
   report.direct = kept.view.direct();
   report.isCrowded = kept.view.cells() && kept.view.cells()->isCrowded;
   report.status = kept.view.meetsSurfaces() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  const bool isKnown = kept.lit && this->followKnown(beam, *kept.lit, echoes, report);
-  if (!isKnown)
+  if (kept.lit && this->followKnown(beam, *kept.lit, echoes, report))
   {
-    const BeamFrame frame =
-      makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
-    const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
-    light = this->lightOf(beam, frame, air, kept, cost, std::move(light));
-    if (light.isPerceivable)
+    finishReport(cost, kept, report);
+    memory.clear(this->Setup.sensor.backgroundRadiance);
+    return std::move(memory);
+  }
+  const BeamFrame frame =
+    makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
+  const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
+  BeamLight light = this->lightOf(beam, frame, air, kept, cost, std::move(memory));
+  if (light.isPerceivable)
+  {
+    if (light.samples() && this->KeepsLight && !kept.lit)
     {
-      if (light.samples() && this->KeepsLight && !kept.lit)
-      {
-        kept.lit = std::make_unique<LitBeam>(light);
-      }
-      const Received received =
-        this->Receiver.receive(this->Beams.ids[beam], light.arriving(), air, light.leaves);
-      const BeamEchoes::Report echo = this->Echoes.add(received, light, kept.lit.get(), echoes);
-      report.status = echo.status;
-      report.range = echo.range;
+      kept.lit = std::make_unique<LitBeam>(light);
     }
-    report.lost = light.lost;
-    report.skipped = light.skipped;
+    const Received received =
+      this->Receiver.receive(this->Beams.ids[beam], light.arriving(), air, light.leaves);
+    const BeamEchoes::Report echo = this->Echoes.add(received, light, kept.lit.get(), echoes);
+    report.status = echo.status;
+    report.range = echo.range;
   }
-  if (report.status == BeamStatus::NoSurface && kept.view.isBehindGate())
-  {
-    report.status = BeamStatus::OutsideGate;
-  }
-  addCounters(cost, kept.counters);
-  kept.held = isKnown ? kept.held : kept.heldBytes();
-  report.counters = kept.counters;
-  report.raysTracedNow = cost.raysTraced;
+  report.lost = light.lost;
+  report.skipped = light.skipped;
+  kept.held = kept.heldBytes();
+  finishReport(cost, kept, report);
   return light;
 }
 
@@ -122,7 +131,7 @@ bool BeamSimulator::followKnown(
 
 /// The light of a beam. @param cost cost of tracing the beam in this run, increased
 BeamLight BeamSimulator::lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air,
-  KeptBeam& kept, TraceCounters& cost, BeamLight memory)
+  KeptBeam& kept, TraceCounters& cost, BeamLight&& memory)
 {
   const BeamLighting::Beam lit{ this->Beams.ids[beam], frame, kept.view, air };
   BeamLight light = this->Lighting.direct(lit, std::move(memory));

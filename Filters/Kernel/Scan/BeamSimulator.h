@@ -69,13 +69,13 @@ public:
   /// and fill the report. @param cost cost of tracing the beam in this run @param memory light
   /// whose memory is used again @return light of the beam; without samples if kept light was used
   BeamLight follow(std::size_t beam, TraceCounters cost, KeptBeam& kept, std::vector<Echo>& echoes,
-    BeamReport& report, BeamLight memory);
+    BeamReport& report, BeamLight&& memory);
 
 private:
   bool followKnown(
     std::size_t beam, const LitBeam& lit, std::vector<Echo>& echoes, BeamReport& report);
   BeamLight lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air, KeptBeam& kept,
-    TraceCounters& cost, BeamLight memory);
+    TraceCounters& cost, BeamLight&& memory);
 
   SceneTriangles Scene;
   const ScanSetup& Setup;

@@ -202,7 +202,7 @@ MoverLight MovedBeams::sightOf(
 }
 
 MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes,
-  BeamReport& report, std::vector<MoverLight>& sights, BeamLight memory)
+  BeamReport& report, std::vector<MoverLight>& sights, BeamLight&& memory)
 {
   const std::vector<Touch>& touching = this->Touching[beam - this->First];
   SceneTriangles& scene = this->Simulator.scene();
