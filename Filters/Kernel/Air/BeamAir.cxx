@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace avianlidar
 {
@@ -144,11 +145,10 @@ double BeamAir::leftByLeaves(double range) const
   return sum;
 }
 
-double BeamAir::transmissionBetween(const Vec3& from, const Vec3& to) const
+double BeamAir::transmissionBetween(const Vec3& from, const Vec3& to, MediumCrosser& crosser,
+  std::vector<MediumCrossing>& found) const
 {
   const double length = safeLength(to - from);
-  MediumCrosser crosser;
-  std::vector<MediumCrossing> found;
   double depth = 0.0;
   for (const PlacedMedium& placed : this->Scan->media())
   {

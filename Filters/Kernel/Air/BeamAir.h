@@ -124,8 +124,9 @@ public:
   /// Transmission of volumes to a range, m, and back. @param columns bits of cells; 0: all cells
   double transmission(double range, std::uint64_t columns = 0) const;
   /// Transmission of volumes one way between two points. @param from, to points relative to the
-  /// apex, m
-  double transmissionBetween(const Vec3& from, const Vec3& to) const;
+  /// apex, m @param crosser, found memory
+  double transmissionBetween(const Vec3& from, const Vec3& to, MediumCrosser& crosser,
+    std::vector<MediumCrossing>& found) const;
 
   /// A medium of leaves, and the ranges between which the beam may meet it.
   struct Leaves

@@ -36,7 +36,8 @@
 #include <vector>
 
 namespace avianlidar
-{ /// The leaves drawn in a beam that is divided into rays; no rays in any other beam.
+{
+/// The leaves drawn in a beam that is divided into rays; no rays in any other beam.
 class DrawnLeaves
 {
 public:
@@ -74,7 +75,6 @@ private:
 };
 
 /// Draws the leaves of one beam after the other. Each thread needs its own object.
-
 class LeafGaps
 {
 public:
@@ -92,8 +92,7 @@ public:
   };
 
   /// Draw the leaves of a beam that meets leaves. @param leaves result of BeamAir::leaves()
-  /// @param solidAngle solid angle of the beam, sr @param samples samples of surfaces, which are
-  /// sorted and get `open`
+  /// @param samples samples of surfaces, which are sorted and get `open`
   DrawnLeaves draw(const BeamAir& air, const std::vector<BeamAir::Leaves>& leaves,
     std::int32_t seed, std::uint64_t beam, std::int32_t revolution, std::vector<Sample>& samples);
 

@@ -7,7 +7,6 @@ namespace avianlidar
 {
 BeamSampler::BeamSampler(const Sensor& sensor, Sampling sampling, std::uint32_t rays)
   : strata(rays)
-  , error(sampling, rays, &strata)
   , Shape(sensor)
   , Method(sampling)
 {

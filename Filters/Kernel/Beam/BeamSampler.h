@@ -18,7 +18,6 @@
 
 #include "BeamRays.h"
 #include "BeamShape.h"
-#include "StandardError.h"
 
 #include <cstdint>
 #include <vector>
@@ -42,7 +41,6 @@ public:
   bool isStratified() const { return this->Method == Sampling::Stratified; }
 
   StrataPartition strata;
-  StandardErrorEstimator error;
 
 private:
   const BeamShape Shape;

@@ -68,10 +68,10 @@ public:
   /// True if the rays of a beam are drawn.
   bool has(std::size_t beam) const { return this->Rays[beam - this->First].size() > 0; }
 
-  /// Strata of the drawn rays of every beam; null for Monte Carlo.
+  /// Strata of the drawn rays of every beam; null for Monte Carlo and for given rays.
   const StrataPartition* strata() const
   {
-    return this->Sampler->isStratified() ? &this->Sampler->strata : nullptr;
+    return this->Sampler && this->Sampler->isStratified() ? &this->Sampler->strata : nullptr;
   }
 
 private:

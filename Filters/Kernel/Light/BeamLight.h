@@ -5,7 +5,7 @@
  *
  * Source: paper, Eq. 4-10.
  * Differs: see BeamLighting.h.
- * Valid: as long as the view of the beam.
+ * Valid: `seen`, `cells` and `starts` point into the view of the beam, which must stay.
  * Test: TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamLight_h
@@ -46,13 +46,13 @@ struct BeamLight
   const CellSamples* cells = nullptr; ///< samples of a beam in cells, or null
   PolygonNodes nodes;                 ///< samples of an integrated beam
   Throughput direct;                  ///< throughputs of the direct echoes of the samples
-  /// Energies of the direct echoes of the samples, J; empty if nothing can be perceived.
+  /// Energies of the direct echoes of the samples, J; incomplete unless `isPerceivable`.
   std::vector<double> energies;
   std::vector<double> means;           ///< see meanEnergies(); empty if no leaves are drawn
   DrawnLeaves leaves;                  ///< leaves drawn in the beam
   bool hasPaths = false;               ///< whether paths with two reflections are to be found
   bool pathsNeedStarts = false;        ///< whether such paths start at hits of rays
-  const BeamSamples* starts = nullptr; ///< hits from which paths start; null: none
+  const BeamSamples* starts = nullptr; ///< hits from which paths start; may be null
   std::vector<SecondaryPath> paths;
   RangeUnitAccumulator units;       ///< energies of direct echoes and paths, in range units
   std::vector<MetSurface> surfaces; ///< samples of surfaces, which shadow the air
@@ -66,7 +66,7 @@ struct BeamLight
     return this->isIntegrated ? &this->nodes.samples : this->seen;
   }
   /// True if paths start at the samples themselves.
-  bool raysAreLit() const { return this->samples() == this->starts; }
+  bool raysAreLit() const { return this->starts && this->samples() == this->starts; }
   /// Energies of the direct echoes with the mean transmission of leaves, J.
   const std::vector<double>& meanEnergies() const
   {
@@ -79,7 +79,7 @@ struct BeamLight
   /// Lower bound of the ranges of the samples, m. A strip of cells begins before its mean.
   double nearestRange() const;
 
-  /// Remove the light, and keep the memory. @param sky radiance without surfaces, W/(m2 sr nm)
+  /// Begin without samples, and keep the memory. @param sky radiance without surfaces, W/(m2 sr nm)
   void clear(double sky);
 };
 }

@@ -36,6 +36,7 @@
 #include "PolygonQuadrature.h"
 #include "SecondaryReflection.h"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -54,7 +55,7 @@ public:
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, bool mayAlarm, bool lightsAll,
     std::function<bool()> wanted);
 
-  /// A beam on which light is sent.
+  /// A beam, and what it sees.
   struct Beam
   {
     std::uint64_t id;
@@ -67,7 +68,8 @@ public:
   BeamLight direct(const Beam& beam, BeamLight&& memory);
 
   /// Add paths with two reflections to the direct echoes. @param starts hits from which paths
-  /// start @param known geometry of paths that was found before; new geometry is added
+  /// start @param strata strata of the beam's rays; null for Monte Carlo @param known geometry of
+  /// paths that was found before; new geometry is added
   /// @param cost costs of tracing, increased
   BeamLight withPaths(const Beam& beam, BeamLight&& light, const PathStarts& starts,
     const StrataPartition* strata, SecondaryTrace& known, TraceCounters& cost);

@@ -4,6 +4,8 @@
 #include "BeamShape.h"
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <utility>
 
 namespace avianlidar
@@ -39,7 +41,8 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanAir& air, const S
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, air,
       setup.revolution, wanted)
   , Lighting(setup, this->Scene, this->Receiver.mayAlarm(), options.lightsAll, std::move(wanted))
-  , Echoes(setup, this->Receiver, sampler.error)
+  , OfRays(setup.settings.sampling, sampler.strata.numberOfRays(), &sampler.strata)
+  , Echoes(setup, this->Receiver, this->OfRays)
 {
 }
 

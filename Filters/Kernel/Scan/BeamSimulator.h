@@ -3,10 +3,11 @@
  * @file BeamSimulator.h
  * @brief Follows beams from their axes to their echoes.
  *
- * Neighbouring beams are traced together (ViewTracer.h). Then each beam passes the other stages
- * alone: the air along it (AirFinder.h), its light (BeamLighting.h), and what the receiver makes of
- * the light (BeamReceiver.h, BeamEchoes.h). What is kept from an earlier scan is not computed
- * again. Light is not computed where a scan differs from the scan before only in noise (LitBeam.h).
+ * trace() finds what neighbouring beams see, as these beams are traced together (ViewTracer.h).
+ * Then follow() takes each beam through the other stages alone: the air along it (AirFinder.h), its
+ * light (BeamLighting.h), and what the receiver makes of the light (BeamReceiver.h, BeamEchoes.h).
+ * What is kept from an earlier scan is not computed again. Light is not computed where a scan
+ * differs from the scan before only in noise (LitBeam.h).
  *
  * Source: paper, Algorithm 2.
  * Differs: neighbouring beams are traced together, and lit from kept views.
@@ -23,6 +24,7 @@
 #include "KeptBeam.h"
 #include "ViewTracer.h"
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -54,14 +56,14 @@ public:
   SceneTriangles& scene() { return this->Scene; }
   const SceneTriangles& scene() const { return this->Scene; }
 
-  /// Find what each beam in [begin, end) sees, unless `kept` (of all beams) already holds it.
-  /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped @return
-  /// costs of the beams in this run, and the number of beams for which something was traced
+  /// Costs of beams in this run, and the number of beams for which something was traced.
   struct Traced
   {
     std::vector<TraceCounters> costs;
     std::size_t beams;
   };
+  /// Find what each beam in [begin, end) sees, unless `kept` (of all beams) already holds it.
+  /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped
   Traced trace(std::size_t begin, std::size_t end, std::vector<KeptBeam>& kept,
     const std::function<bool(std::size_t)>& leaveOut = {});
 
@@ -89,6 +91,7 @@ private:
   AirFinder AirAlong;
   BeamReceiver Receiver;
   BeamLighting Lighting;
+  StandardErrorEstimator OfRays; ///< memory of Echoes
   BeamEchoes Echoes;
   SampleGeometry Geometry; ///< memory of lightOf()
 };

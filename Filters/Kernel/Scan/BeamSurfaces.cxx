@@ -6,6 +6,7 @@
 #include "MovedBeams.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>

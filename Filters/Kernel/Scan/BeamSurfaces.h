@@ -15,8 +15,8 @@
  * triangles enter is integrated, and other beams are sampled.
  * Test: Testing/Python/TestBeamView.py.
  */
-#ifndef avianlidar_BeamSight_h
-#define avianlidar_BeamSight_h
+#ifndef avianlidar_BeamSurfaces_h
+#define avianlidar_BeamSurfaces_h
 
 #include "BeamFrame.h"
 #include "ScanBeams.h"

@@ -202,7 +202,8 @@ std::uint64_t traceKey(const ScanSetup& setup)
     {
       places.insert(places.end(),
         { static_cast<double>(volume.shape), volume.centre.x, volume.centre.y, volume.centre.z,
-          volume.radius(), volume.bottom, volume.top, volume.softness });
+          volume.radius(), volume.up.x, volume.up.y, volume.up.z, volume.bottom, volume.top,
+          volume.softness });
     }
   }
   const std::uint64_t objects =

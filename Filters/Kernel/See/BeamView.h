@@ -3,10 +3,10 @@
  * @file BeamView.h
  * @brief What one beam sees: nothing, visible polygons, strips of cells, or the hits of its rays.
  *
- * A view holds geometry alone. It is kept from scan to scan.
+ * A view is kept from scan to scan.
  *
  * Source: none.
- * Valid: for one traceKey() (TraceCache.h).
+ * Valid: for one traceKey() (TraceCache.h), and in a crowded beam for one crowdKey().
  * Test: TestScanAgain.cxx.
  */
 #ifndef avianlidar_BeamView_h
@@ -50,8 +50,9 @@ using SeenSurfaces = std::variant<std::monostate, NothingSeen, std::unique_ptr<V
 struct BeamView
 {
   SeenSurfaces seen;
-  /// Hits of the beam's rays, from which paths with two reflections start. Null if no ray hits a
-  /// triangle, and in an integrated beam until first needed.
+  /// Hits of the beam's rays, from which paths with two reflections start. Null if a beam by rays
+  /// hits nothing, and in other beams until first needed. Empty if no ray of a beam in cells hits a
+  /// triangle.
   std::unique_ptr<BeamSamples> hits;
 
   DirectEcho direct() const { return static_cast<DirectEcho>(this->seen.index()); }

@@ -23,7 +23,8 @@
 
 namespace avianlidar
 {
-/// Where paths with two reflections start: nowhere, or at hits of rays.
+/// Where paths with two reflections start: nowhere, or at hits of rays. Valid as long as the view,
+/// the drawn rays and the geometry do not change.
 struct PathStarts
 {
   const BeamSamples& hits;

@@ -26,6 +26,7 @@
 #include "ScanSetup.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace avianlidar

@@ -4,6 +4,8 @@
 #include "BeamShape.h"
 
 #include <limits>
+#include <memory>
+#include <variant>
 
 namespace avianlidar
 {

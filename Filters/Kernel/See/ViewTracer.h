@@ -26,6 +26,7 @@
 #include "ViewFinder.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace avianlidar

@@ -509,8 +509,10 @@ void SecondaryReflection::listPaths(
   const bool bySample = beam.trace.searched.empty();
   // Transmission of the media that do not fill the scene.
   const Vec3 apex(0.0);
+  MediumCrosser crosser;
+  std::vector<MediumCrossing> found;
   const auto passed = [&](const Vec3& one, const Vec3& two)
-  { return beam.air ? beam.air->transmissionBetween(one, two) : 1.0; };
+  { return beam.air ? beam.air->transmissionBetween(one, two, crosser, found) : 1.0; };
   const auto leftOf = [&](const Vec3& one, const Vec3& two)
   { return passed(apex, one) * passed(one, two) * passed(two, apex); };
   const auto pointOf = [&](std::uint32_t sample)
