@@ -87,7 +87,7 @@ def domains_of(smproperty):
 
 
 def bounds_of(domain, i):
-    """(minimum, maximum) of a range domain; infinite where there is none."""
+    """(minimum, maximum) of a range domain; infinite without a range domain."""
     there = reference(0)
     low = domain.GetMinimum(i, there)
     low = low if there.get() else -math.inf

@@ -61,7 +61,7 @@ class Reader(InFolder):
         self.assertEqual(points(read(FILE)).tolist(), [[1, 2, 3], [4, 5, 6]])
         self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)  # a mesh is another reader's
         put(elements=VERTEX + after.replace("1", "0"))
-        self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 1)  # without a face it is none
+        self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 1)  # a file without faces is a cloud
         for order, form in (("<", "binary_little_endian"), (">", "binary_big_endian")):
             data = np.array([(1.5, 2), (2.5, 3)], dtype=[("f", order + "f4"), ("s", order + "i2")]).tobytes()
             data += b"\2" + np.array([7, 8, 9], order + "i4").tobytes() + b"\0" + np.array([1], order + "i4").tobytes()

@@ -49,6 +49,12 @@ public:
   /// Begin a beam. @param air, surfaces air of the beam, and result of BeamAir::arrange(); both
   /// must outlive the use of the object
   void begin(const BeamAir& air, const std::vector<MetSurface>& surfaces);
+  /// Forget the beam, and keep the memory.
+  void end()
+  {
+    this->Air = nullptr;
+    this->Surfaces = nullptr;
+  }
 
   /// Light that one medium returns in a unit.
   struct Share

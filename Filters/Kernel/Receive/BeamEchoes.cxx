@@ -69,7 +69,10 @@ BeamEchoes::Report BeamEchoes::add(
     }
     return known.echo;
   };
-  return this->finish(received, echoOf, light.isOutsideGate(), light.samples() != nullptr, echoes);
+  const Report report =
+    this->finish(received, echoOf, light.isOutsideGate(), light.samples() != nullptr, echoes);
+  this->Shares.end();
+  return report;
 }
 
 std::optional<BeamEchoes::Report> BeamEchoes::addKnown(

@@ -78,6 +78,7 @@ void BeamReceiver::planAir()
       this->Looked = unit + 1;
     }
   }
+  this->Light.end();
 }
 
 /// Variance of the noise of a unit that receives the mean light of media alone, J^2.
@@ -184,6 +185,7 @@ public:
     this->collectUnits();
     this->formReturns();
     this->select();
+    this->Receiver.Light.end();
     return std::move(this->Result);
   }
 

@@ -46,9 +46,17 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanAir& air, const S
 {
 }
 
-BeamSimulator::Traced BeamSimulator::trace(std::size_t begin, std::size_t end,
-  std::vector<KeptBeam>& kept, const std::function<bool(std::size_t)>& leaveOut)
+SeenBeam& BeamSimulator::Traced::of(std::size_t beam)
 {
+  const std::size_t place = this->Places[beam - this->First];
+  this->Nothing.cost = {};
+  return place < this->Count ? this->Seen[place] : this->Nothing;
+}
+
+BeamSimulator::Traced BeamSimulator::trace(std::size_t begin, std::size_t end,
+  std::vector<KeptBeam>& kept, const std::function<bool(std::size_t)>& leaveOut, Traced&& memory)
+{
+  Traced traced = std::move(memory);
   this->Rays.begin(this->Beams.ids, begin, end);
   std::vector<BeamToSee> beams;
   for (std::size_t beam = begin; beam < end; ++beam)
@@ -60,25 +68,27 @@ BeamSimulator::Traced BeamSimulator::trace(std::size_t begin, std::size_t end,
       beams.push_back({ beam, isKnown });
     }
   }
-  Traced traced{ std::vector<TraceCounters>(end - begin), beams.size() };
-  std::vector<SeenBeam> seen = this->Tracing.see(beams);
+  traced.First = begin;
+  traced.Count = beams.size();
+  traced.Places.assign(end - begin, beams.size());
+  traced.Seen = this->Tracing.see(beams, std::move(traced.Seen));
   for (std::size_t k = 0; k < beams.size(); ++k)
   {
     BeamView& view = kept[beams[k].beam].view;
     if (beams[k].onlyRays)
     {
-      view.hits = std::move(seen[k].view.hits);
+      view.hits = std::move(traced.Seen[k].view.hits);
     }
     else
     {
-      view = std::move(seen[k].view);
+      view = std::move(traced.Seen[k].view);
     }
-    traced.costs[beams[k].beam - begin] = seen[k].cost;
+    traced.Places[beams[k].beam - begin] = k;
   }
   return traced;
 }
 
-BeamLight BeamSimulator::follow(std::size_t beam, TraceCounters cost, KeptBeam& kept,
+BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& kept,
   std::vector<Echo>& echoes, BeamReport& report, BeamLight&& memory)
 {
   report.range = std::numeric_limits<double>::quiet_NaN();
@@ -87,14 +97,14 @@ BeamLight BeamSimulator::follow(std::size_t beam, TraceCounters cost, KeptBeam& 
   report.status = kept.view.meetsSurfaces() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
   if (kept.lit && this->followKnown(beam, *kept.lit, echoes, report))
   {
-    finishReport(cost, kept, report);
+    finishReport(traced.cost, kept, report);
     memory.clear(this->Setup.sensor.backgroundRadiance);
     return std::move(memory);
   }
   const BeamFrame frame =
     makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
   const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
-  BeamLight light = this->lightOf(beam, frame, air, kept, cost, std::move(memory));
+  BeamLight light = this->lightOf(beam, frame, air, kept, traced, std::move(memory));
   if (light.isPerceivable)
   {
     if (light.samples() && this->KeepsLight && !kept.lit)
@@ -110,7 +120,7 @@ BeamLight BeamSimulator::follow(std::size_t beam, TraceCounters cost, KeptBeam& 
   report.lost = light.lost;
   report.skipped = light.skipped;
   kept.held = kept.heldBytes();
-  finishReport(cost, kept, report);
+  finishReport(traced.cost, kept, report);
   return light;
 }
 
@@ -132,23 +142,23 @@ bool BeamSimulator::followKnown(
   return echo.has_value();
 }
 
-/// The light of a beam. @param cost cost of tracing the beam in this run, increased
+/// The light of a beam. @param traced what was traced of the beam; its cost is increased
 BeamLight BeamSimulator::lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air,
-  KeptBeam& kept, TraceCounters& cost, BeamLight&& memory)
+  KeptBeam& kept, SeenBeam& traced, BeamLight&& memory)
 {
   const BeamLighting::Beam lit{ this->Beams.ids[beam], frame, kept.view, air };
   BeamLight light = this->Lighting.direct(lit, std::move(memory));
   if (light.hasPaths)
   {
     const PathStarts starts = light.pathsNeedStarts
-      ? this->Hits.startsOf(beam, frame, this->Rays, kept.view, this->Geometry)
+      ? this->Hits.startsOf(beam, frame, this->Rays, kept.view, traced.geometry, traced.hasGeometry)
       : PathStarts::nowhere();
     if (!kept.paths)
     {
       kept.paths = std::make_unique<SecondaryTrace>();
     }
     light = this->Lighting.withPaths(
-      lit, std::move(light), starts, this->Rays.strata(), *kept.paths, cost);
+      lit, std::move(light), starts, this->Rays.strata(), *kept.paths, traced.cost);
   }
   return this->Lighting.summed(lit, std::move(light));
 }

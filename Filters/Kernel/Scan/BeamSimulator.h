@@ -56,28 +56,41 @@ public:
   SceneTriangles& scene() { return this->Scene; }
   const SceneTriangles& scene() const { return this->Scene; }
 
-  /// Costs of beams in this run, and the number of beams for which something was traced.
-  struct Traced
+  /// What was traced in this run.
+  class Traced
   {
-    std::vector<TraceCounters> costs;
-    std::size_t beams;
+  public:
+    /// Number of beams for which something was traced.
+    std::size_t size() const { return this->Count; }
+    /// What was traced of a beam; nothing if all was kept.
+    SeenBeam& of(std::size_t beam);
+
+  private:
+    friend class BeamSimulator;
+
+    std::size_t First = 0;
+    std::size_t Count = 0;
+    std::vector<std::size_t> Places; ///< by beam: place in `Seen`, or past its end
+    std::vector<SeenBeam> Seen;
+    SeenBeam Nothing;
   };
   /// Find what each beam in [begin, end) sees, unless `kept` (of all beams) already holds it.
-  /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped
+  /// @param leaveOut function that is true for beams to skip; empty: no beam is skipped @param
+  /// memory result whose memory is used again
   Traced trace(std::size_t begin, std::size_t end, std::vector<KeptBeam>& kept,
-    const std::function<bool(std::size_t)>& leaveOut = {});
+    const std::function<bool(std::size_t)>& leaveOut, Traced&& memory);
 
   /// Follow a traced beam to its echoes: add new geometry of paths to `kept`, append the echoes,
-  /// and fill the report. @param cost cost of tracing the beam in this run @param memory light
+  /// and fill the report. @param traced what was traced of the beam @param memory light
   /// whose memory is used again @return light of the beam; without samples if kept light was used
-  BeamLight follow(std::size_t beam, TraceCounters cost, KeptBeam& kept, std::vector<Echo>& echoes,
+  BeamLight follow(std::size_t beam, SeenBeam& traced, KeptBeam& kept, std::vector<Echo>& echoes,
     BeamReport& report, BeamLight&& memory);
 
 private:
   bool followKnown(
     std::size_t beam, const LitBeam& lit, std::vector<Echo>& echoes, BeamReport& report);
   BeamLight lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air, KeptBeam& kept,
-    TraceCounters& cost, BeamLight&& memory);
+    SeenBeam& traced, BeamLight&& memory);
 
   SceneTriangles Scene;
   const ScanSetup& Setup;
@@ -93,7 +106,6 @@ private:
   BeamLighting Lighting;
   StandardErrorEstimator OfRays; ///< memory of Echoes
   BeamEchoes Echoes;
-  SampleGeometry Geometry; ///< memory of lightOf()
 };
 }
 

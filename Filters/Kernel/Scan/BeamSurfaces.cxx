@@ -118,8 +118,9 @@ void light(
   }
   std::vector<KeptBeam> kept(1);
   BeamSimulator simulator(setup, air, one, { false, true }, sampler, wanted);
-  const TraceCounters cost = simulator.trace(0, 1, kept).costs[0];
-  f(simulator.follow(0, cost, kept[0], echoes, report, BeamLight(setup.sensor)), simulator.scene());
+  BeamSimulator::Traced traced = simulator.trace(0, 1, kept, {}, {});
+  f(simulator.follow(0, traced.of(0), kept[0], echoes, report, BeamLight(setup.sensor)),
+    simulator.scene());
 }
 
 /// Add the samples of a beam: shares, energies with ranges and angles, or both.

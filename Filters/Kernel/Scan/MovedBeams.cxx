@@ -220,8 +220,9 @@ MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& e
   this->CurrentBeam.directions[0] = this->Beams.directions[beam];
   this->CurrentBeam.times[0] = this->Beams.timeOf(beam);
   std::vector<KeptBeam> kept(1);
-  const TraceCounters cost = this->Simulator.trace(0, 1, kept).costs[0];
-  BeamLight light = this->Simulator.follow(0, cost, kept[0], echoes, report, std::move(memory));
+  this->Traced = this->Simulator.trace(0, 1, kept, {}, std::move(this->Traced));
+  BeamLight light =
+    this->Simulator.follow(0, this->Traced.of(0), kept[0], echoes, report, std::move(memory));
   if (this->Sights)
   {
     const BeamFrame frame =
@@ -233,6 +234,7 @@ MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& e
       sights.push_back(this->sightOf(touch, frame, light, this->LightOfAir));
       sights.back().beam = beam;
     }
+    this->LightOfAir.end();
   }
   return { std::move(kept[0].view), std::move(light) };
 }

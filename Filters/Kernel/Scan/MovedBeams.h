@@ -88,6 +88,7 @@ private:
   // Memory of simulate().
   ScanBeams CurrentBeam; ///< the beam alone
   BeamSimulator Simulator;
+  BeamSimulator::Traced Traced;
   AirFinder AirAlong;
   AirLight LightOfAir;
   RangeUnitAccumulator Units; ///< energies that one mover returns

@@ -39,7 +39,9 @@ struct Worker
 {
   BeamSimulator simulator;
   std::unique_ptr<MovedBeams> moved; ///< null if nothing moves
-  BeamLight light;                   ///< light of the last beam, for its memory
+  // Memory of the beams before.
+  BeamSimulator::Traced traced;
+  BeamLight light;
 
   Worker(const ScanSetup& setup, const ScanAir& air, const ScanBeams& beams, bool keepsLight,
     BeamSampler& sampler, const std::function<bool()>& wanted, bool sights)
@@ -180,8 +182,9 @@ private:
     }
     const auto isTouched = [&](std::size_t b)
     { return worker.moved && worker.moved->isTouched(b); };
-    const BeamSimulator::Traced traced = worker.simulator.trace(begin, end, kept, isTouched);
-    block.beamsTraced += traced.beams;
+    BeamSimulator::Traced& traced = worker.traced;
+    traced = worker.simulator.trace(begin, end, kept, isTouched, std::move(traced));
+    block.beamsTraced += traced.size();
     std::size_t raysSince = 0;
     for (std::size_t b = begin; b < end; ++b)
     {
@@ -198,7 +201,7 @@ private:
       else
       {
         worker.light = worker.simulator.follow(
-          b, traced.costs[b - begin], kept[b], block.echoes, report, std::move(worker.light));
+          b, traced.of(b), kept[b], block.echoes, report, std::move(worker.light));
       }
       block.beamOfEcho.resize(block.echoes.size(), b);
       if (!this->Setup.tree->planeOwners.empty())

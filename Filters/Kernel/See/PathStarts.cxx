@@ -38,7 +38,7 @@ PathStarts PathStarts::nowhere()
 }
 
 PathStarts HitFinder::startsOf(std::size_t beam, const BeamFrame& frame, DrawnRays& rays,
-  BeamView& view, SampleGeometry& geometry)
+  BeamView& view, SampleGeometry& geometry, bool known)
 {
   if (view.hits && view.hits->size() == 0)
   {
@@ -48,7 +48,10 @@ PathStarts HitFinder::startsOf(std::size_t beam, const BeamFrame& frame, DrawnRa
   const BeamRays& drawn = rays.of(beam);
   if (view.hits)
   {
-    this->Samples.findAgain(frame, drawn, *view.hits, geometry);
+    if (!known)
+    {
+      this->Samples.findAgain(frame, drawn, *view.hits, geometry);
+    }
     return { *view.hits, drawn, geometry };
   }
   this->Met.resize(drawn.size());

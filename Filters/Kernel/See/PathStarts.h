@@ -47,10 +47,10 @@ public:
     const std::vector<std::uint32_t>& triangles, SampleGeometry& geometry);
 
   /// Hits from which paths of a beam start. The hits of an integrated beam are added to its view:
-  /// one hit for each ray that meets a visible polygon. @param geometry set to the geometry of the
-  /// hits
+  /// one hit for each ray that meets a visible polygon. @param geometry geometry of the
+  /// hits, set unless `known` is true
   PathStarts startsOf(std::size_t beam, const BeamFrame& frame, DrawnRays& rays, BeamView& view,
-    SampleGeometry& geometry);
+    SampleGeometry& geometry, bool known);
 
 private:
   const ScanSetup& Setup;

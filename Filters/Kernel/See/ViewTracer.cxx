@@ -3,8 +3,10 @@
 
 #include "BeamShape.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <variant>
 
 namespace avianlidar
@@ -29,9 +31,11 @@ bool ViewTracer::lacksHits(const BeamView& view) const
   return view.cells() && !view.hits && this->Setup.settings.numberOfReflections > 1;
 }
 
-std::vector<SeenBeam> ViewTracer::see(const std::vector<BeamToSee>& beams)
+std::vector<SeenBeam> ViewTracer::see(
+  const std::vector<BeamToSee>& beams, std::vector<SeenBeam>&& memory)
 {
-  std::vector<SeenBeam> seen(beams.size());
+  std::vector<SeenBeam> seen = std::move(memory);
+  seen.resize(std::max(seen.size(), beams.size()));
   this->Frames.clear();
   this->Searched.clear();
   this->FramesOfRays.clear();
@@ -45,6 +49,9 @@ std::vector<SeenBeam> ViewTracer::see(const std::vector<BeamToSee>& beams)
     const bool needsRays = beams[k].onlyRays || byRays;
     (needsRays ? this->FramesOfRays : this->Frames).push_back(frame);
     (needsRays ? this->TracedRays : this->Searched).push_back(k);
+    seen[k].view = {};
+    seen[k].cost = {};
+    seen[k].hasGeometry = false;
     if (!beams[k].onlyRays)
     {
       seen[k].view.seen = byRays ? SeenSurfaces(SeenByRays{}) : SeenSurfaces(NothingSeen{});
@@ -123,7 +130,8 @@ void ViewTracer::traceRays(const std::vector<BeamToSee>& beams, std::vector<Seen
     {
       this->Triangles.assign(triangles, triangles + count);
       one.view.hits = this->Hits.hitsOf(
-        this->FramesOfRays[n], this->Rays.of(beams[k].beam), this->Triangles, this->Geometry);
+        this->FramesOfRays[n], this->Rays.of(beams[k].beam), this->Triangles, one.geometry);
+      one.hasGeometry = true;
     }
     else if (beams[k].onlyRays || this->lacksHits(one.view))
     {

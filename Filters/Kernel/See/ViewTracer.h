@@ -43,6 +43,8 @@ struct SeenBeam
 {
   BeamView view; ///< only `hits` if the rest of the view was known
   TraceCounters cost;
+  SampleGeometry geometry;  ///< geometry of `hits`
+  bool hasGeometry = false; ///< whether `geometry` was found
 };
 
 /// Looks along some beams at a time. Each thread needs its own object. The constructor's arguments
@@ -58,8 +60,9 @@ public:
   /// True if paths with two reflections may start from rays whose hits the view lacks.
   bool lacksHits(const BeamView& view) const;
 
-  /// Find what beams see. @return one entry for each entry of `beams`
-  std::vector<SeenBeam> see(const std::vector<BeamToSee>& beams);
+  /// Find what beams see. @param memory result whose memory is used again @return entries for the
+  /// entries of `beams`, perhaps followed by entries without meaning
+  std::vector<SeenBeam> see(const std::vector<BeamToSee>& beams, std::vector<SeenBeam>&& memory);
 
 private:
   SeenSurfaces findSurfaces(std::size_t beam, const BeamFrame& frame, TraceCounters& cost);
@@ -84,7 +87,6 @@ private:
   std::vector<std::size_t> TracedRays;
   std::vector<std::size_t> Numbers;
   std::vector<std::uint32_t> Triangles;
-  SampleGeometry Geometry;
 };
 }
 

@@ -72,7 +72,7 @@ class Around:
         self.slope = np.arccos(np.clip(cosine, -1, 1)) * np.tan(np.radians(STEEPEST))  # how far apart, of the range
 
     def ranges(self, values):
-        """Of the beams around, NaN where there is none or no answer."""
+        """The value of the beams around; NaN without such beams or without an answer."""
         return np.where(self.beams >= 0, values[self.beams], np.nan)
 
     def isolated(self, values):

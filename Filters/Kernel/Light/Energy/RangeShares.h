@@ -56,6 +56,8 @@ public:
   /// Begin a beam. @param units range units after accumulate(), which must outlive the use of the
   /// object
   void begin(const RangeUnitAccumulator& units);
+  /// Forget the beam, and keep the memory.
+  void end() { this->Units = nullptr; }
 
   /// Shares of the paths in units [first, last), which must lie inside the gate. The shares are
   /// valid until the next call.
