@@ -421,7 +421,7 @@ class Extracts(unittest.TestCase):
         self.assertIn("was not made by this command", words)
 
     def test_a_coast_and_the_outline_of_the_aerodrome(self):
-        """Sea lies to the right of a coastline, islands are land, and lidars stand in the aerodrome but not on roads."""
+        """Sea lies to the right of a coastline, islands are land, and lidars stand in the aerodrome off its roads."""
         plan = Map()
         plan.way([(-800, 0), (800, 0)], aeroway="runway", ref="09/27", width="30")
         plan.area((-1000, -500), (1000, 500), aeroway="aerodrome", icao="XSEA")

@@ -32,7 +32,7 @@ def same(one, two):
 
 
 def from_terminal(test, work, typed="", **options):
-    """What a command writes to a pseudo-terminal, and its exit code; a system without pseudo-terminals skips the test. @param
+    """What a command writes to a pseudo-terminal, and its exit code; without one the test is skipped. @param
     typed into it @param options of Popen"""
     try:
         parent, child = pty.openpty()
