@@ -26,6 +26,13 @@ double energyOf(const Sensor& sensor, double electrons)
 {
   return electrons / PhotonReceiver(sensor).electronsPerJoule;
 }
+
+/// Range that the receiver reports, m. @param normal a standard normal deviate
+double reported(
+  const Sensor& sensor, double range, double energy, double normal, bool hasNoise = true)
+{
+  return RangeErrors(sensor, hasNoise).of(energy, normal).reported(range, sensor);
+}
 }
 
 TEST(RangeErrors, DeviationByItsFormula)
@@ -58,28 +65,27 @@ TEST(RangeErrors, DeviationByItsFormula)
 TEST(RangeErrors, WalkAndQuantum)
 {
   Sensor sensor = photons();
-  EXPECT_EQ(RangeErrors(sensor, true).measured(123.456, 1e-12, 2.0), 123.456); // none by default
+  EXPECT_EQ(reported(sensor, 123.456, 1e-12, 2.0), 123.456); // none by default
   sensor.rangeWalk = 0.3;
   const double low = sensor.lowerEnergyLimit;
-  EXPECT_NEAR(RangeErrors(sensor, true).measured(100.0, low, 0.0), 100.3, 1e-12);
-  EXPECT_NEAR(RangeErrors(sensor, true).measured(100.0, 10.0 * low, 0.0), 100.03, 1e-12);
+  EXPECT_NEAR(reported(sensor, 100.0, low, 0.0), 100.3, 1e-12);
+  EXPECT_NEAR(reported(sensor, 100.0, 10.0 * low, 0.0), 100.03, 1e-12);
   sensor.rangeQuantum = 0.25;
-  EXPECT_EQ(RangeErrors(sensor, true).measured(100.0, low, 0.0), 100.25);
+  EXPECT_EQ(reported(sensor, 100.0, low, 0.0), 100.25);
   sensor.rangeNoise = 7.0; // of a photon receiver alone
   sensor.receiverModel = ReceiverModel::EnergyLimits;
   EXPECT_EQ(RangeErrors(sensor, true).deviation(low), 0.0);
   sensor.rangeNoiseFloor = 1.0;
-  EXPECT_EQ(RangeErrors(sensor, true).measured(100.0, low, 2.0), 102.25);
-  EXPECT_EQ(RangeErrors(sensor, false).measured(100.0, low, 2.0), 100.25);
+  EXPECT_EQ(reported(sensor, 100.0, low, 2.0), 102.25);
+  EXPECT_EQ(reported(sensor, 100.0, low, 2.0, false), 100.25);
   // No range is before or beyond the gate.
-  EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, -5.0), 3.75);
-  EXPECT_EQ(
-    RangeErrors(sensor, true).measured(sensor.rangeGate - 1.0, low, 3.0), sensor.rangeGate - 2.25);
+  EXPECT_EQ(reported(sensor, 1.0, low, -5.0), 3.75);
+  EXPECT_EQ(reported(sensor, sensor.rangeGate - 1.0, low, 3.0), sensor.rangeGate - 2.25);
   sensor.minimumRange = 2.0;
-  EXPECT_EQ(RangeErrors(sensor, true).measured(3.0, low, -5.0), 5.75);
+  EXPECT_EQ(reported(sensor, 3.0, low, -5.0), 5.75);
   sensor.minimumRange = 0.0;
   sensor.rangeNoiseFloor = 1e9;
-  EXPECT_EQ(RangeErrors(sensor, true).measured(1.0, low, 1.0), 0.0);
+  EXPECT_EQ(reported(sensor, 1.0, low, 1.0), 0.0);
   sensor.rangeQuantum = 1e-310; // multiples of it would overflow
   EXPECT_NE(checkSensor(sensor).find("range_quantum"), std::string::npos);
 }

@@ -41,6 +41,7 @@ public:
     : Accumulator(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate)
     , Clear(sensor, {})
     , Receiver(sensor, planNoise(sensor, true), 0, mode, this->Clear)
+    , Ranges(sensor, mode)
   {
   }
   const std::vector<Return>& operator()(const std::vector<Pulse>& echoes, std::uint64_t beam = 0)
@@ -58,7 +59,7 @@ public:
     shares.begin(this->Accumulator);
     for (Return& ret : this->Got.returns)
     {
-      ret.range = this->Receiver.rangeOf(this->Got, ret,
+      ret.range = this->Ranges.of(this->Got, ret,
         shares.sharesOf(
           this->Got.units[ret.firstUnit].index, this->Got.units[ret.lastUnit - 1].index + 1),
         this->Accumulator.pathLengths());
@@ -69,6 +70,7 @@ public:
   RangeUnitAccumulator Accumulator;
   const ScanAir Clear;
   BeamReceiver Receiver;
+  const ReturnRanges Ranges;
   Received Got;
 };
 

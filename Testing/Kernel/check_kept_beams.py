@@ -15,7 +15,7 @@ import tempfile
 # Header, struct, and the files that must not compile with a member more.
 GUARDED = [("Sensor/Sensor.h", "Sensor", ["Sensor/Sensor.cxx", "Scan/TraceCache.cxx"]),
            ("Setup/EchoSettings.h", "EchoSettings", ["Setup/EchoSettings.cxx"]),
-           ("Setup/ScanSetup.h", "ModelNeeds", ["Receive/LitBeam.cxx"]), ("Setup/ScanSetup.h", "ScanSetup", ["Receive/LitBeam.cxx"])]
+           ("Setup/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]), ("Setup/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
 
 
 def compiles(entry, folder, text):

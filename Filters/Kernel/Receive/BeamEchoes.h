@@ -7,30 +7,53 @@
  * Source: paper, Eq. 10-12.
  * Differs: the paper gives one point per perceived range unit, without labels. Returns are defined
  * in BeamReceiver.h.
- * Valid: the standard error is NaN where
- * StandardError.h gives no error. For an integrated beam the standard error includes the bound of
- * PolygonQuadrature.h.
- * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
+ * Valid: the standard error is NaN where StandardError.h gives no error. For an integrated beam the
+ * standard error includes the bound of PolygonQuadrature.h. Test: TestScanReport.cxx, TestScan.cxx,
+ * TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamEchoes_h
 #define avianlidar_BeamEchoes_h
 
-#include "BeamReceiver.h"
 #include "EchoLabels.h"
 #include "EnergyErrors.h"
-#include "LitBeam.h"
+#include "ReturnRanges.h"
 
-#include <optional>
+#include <cstdint>
 #include <vector>
 
 namespace avianlidar
 {
+/// Numbers of the first, last and strongest range unit of a return.
+struct UnitsOfReturn
+{
+  std::int64_t first, last, strongest;
+
+  bool operator==(const UnitsOfReturn& other) const
+  {
+    return this->first == other.first && this->last == other.last &&
+      this->strongest == other.strongest;
+  }
+};
+
+UnitsOfReturn unitsOf(const Received& received, const Return& ret);
+
+/// The part of an echo that follows from light alone: it is the same in all scans in which a return
+/// has these units.
+struct LightEcho
+{
+  UnitsOfReturn units;
+  Echo echo; ///< with range, labels and standard error
+};
+
 /// Makes the echoes of one beam after the other. Each thread needs its own object. The
 /// constructor's arguments must outlive the object.
 class BeamEchoes
 {
 public:
-  BeamEchoes(const ScanSetup& setup, BeamReceiver& receiver, StandardErrorEstimator& ofRays);
+  BeamEchoes(const ScanSetup& setup, StandardErrorEstimator& ofRays);
+
+  /// What follows from light alone, for all returns with light that add() needs.
+  std::vector<LightEcho> ofLight(const Received& received, const BeamLight& light);
 
   /// What the receiver reports of a beam.
   struct Report
@@ -39,27 +62,22 @@ public:
     double range; ///< range of the strongest return, m; NaN without a return
   };
 
-  /// Append the echoes of a beam. @param keep output: those values of the returns that do not
-  /// depend on noise; may be null
-  Report add(
-    const Received& received, const BeamLight& light, LitBeam* keep, std::vector<Echo>& echoes);
-
-  /// Append the echoes of a beam whose light was kept. @return no report, with echoes unchanged, if
-  /// `known` lacks a return
-  std::optional<Report> addKnown(
-    const Received& received, const LitBeam& known, std::vector<Echo>& echoes);
+  /// Append the echoes of a beam. @param ofLight what follows from light for all returns with
+  /// light @param meets true if the beam meets a surface @param outsideGate see
+  /// BeamLight::isOutsideGate(). The value follows from direct echoes alone, as the cache may
+  /// change which paths with two reflections are traced.
+  Report add(const Received& received, const std::vector<LightEcho>& ofLight, bool meets,
+    bool outsideGate, std::vector<Echo>& echoes) const;
 
 private:
-  template <class F>
-  Report finish(
-    const Received& received, F echoOf, bool outsideGate, bool meets, std::vector<Echo>& echoes);
-  Echo echoOfLight(const Received& received, const BeamLight& light, const Return& ret);
+  Echo echoOf(const Received& received, const Return& ret, std::size_t& place,
+    const std::vector<LightEcho>& ofLight) const;
 
   const ScanSetup& Setup;
-  BeamReceiver& Receiver;
+  const ReturnRanges Ranges;
   EchoLabels Labels;
   EnergyErrors Errors;
-  ShareFinder Shares; ///< memory of add()
+  ShareFinder Shares; ///< memory of ofLight()
 };
 }
 

@@ -48,6 +48,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Seed(seed)
   , Revolution(revolution)
   , Mode(mode)
+  , Ranges(sensor, mode)
   , Wanted(std::move(wanted))
   , Pulse(sensor.pulseWidth / sensor.samplingInterval)
   , Sky(sensor, noise)
@@ -109,59 +110,6 @@ const BeamReceiver::Exposure& BeamReceiver::exposureTo(double radiance)
   return *this->Other;
 }
 
-/// Range, m, of a place in the part of a unit that lies inside the gate. @param place 0 to 1
-double BeamReceiver::placeIn(std::int64_t unit, double place) const
-{
-  const double begin = static_cast<double>(unit) * this->UnitLength;
-  const double low = std::max(begin, this->Instrument.minimumRange);
-  const double high = std::min(begin + this->UnitLength, this->Instrument.rangeGate);
-  return low < high ? low + place * (high - low) : begin + place * this->UnitLength;
-}
-
-double BeamReceiver::rangeOfNoise(const Received& received, const Return& run) const
-{
-  double weight = 0.0;
-  double moment = 0.0;
-  for (std::size_t u = run.firstUnit; u < run.lastUnit; ++u)
-  {
-    const ReceivedUnit& unit = received.units[u];
-    weight += unit.energy;
-    moment += unit.energy * this->placeIn(unit.index, placeOfNoise(received.key, unit.index));
-  }
-  return moment / weight;
-}
-
-double BeamReceiver::rangeOf(const Received& received, const Return& run, const RangeShares& shares,
-  const std::vector<double>& lengths) const
-{
-  if (!run.hasLight || this->Mode == ReturnMode::RangeUnits)
-  {
-    return run.range;
-  }
-  // Lengths are taken from the beginning of the first unit, which is near and below all lengths.
-  // The sums then have no round-off of the range, nor of a unit that is as long as the scene.
-  const double reference =
-    2.0 * this->UnitLength * static_cast<double>(received.units[run.firstUnit].index);
-  const WeightedSum sum =
-    sumShares(shares, [&](std::size_t s) { return lengths[shares.contribution[s]] - reference; });
-  return sum.energy > 0.0 ? 0.5 * (reference + sum.moment / sum.energy)
-                          : this->rangeOfNoise(received, run);
-}
-
-double BeamReceiver::measured(const Received& received, const Return& run, double range)
-{
-  if (this->Mode == ReturnMode::RangeUnits)
-  {
-    return range;
-  }
-  const Exposure& exposure = this->exposureTo(received.radiance);
-  const ReceivedUnit& unit = received.units[run.strongestUnit];
-  // Where the air raises the limit, an echo has the errors of a weaker echo in clear air.
-  const double share = unit.lower > exposure.lower ? exposure.lower / unit.lower : 1.0;
-  return exposure.errors.measured(range, run.energyReceived * share,
-    exposure.errors.hasNoise() ? rangeDeviate(received.key, unit.index) : 0.0);
-}
-
 class BeamReceiver::Reception
 {
 public:
@@ -185,6 +133,7 @@ public:
     this->collectUnits();
     this->formReturns();
     this->select();
+    this->findErrors();
     this->Receiver.Light.end();
     return std::move(this->Result);
   }
@@ -199,6 +148,7 @@ private:
   double noiseOf(std::int64_t unit, double light);
   void formReturns();
   void select();
+  void findErrors();
   double openAt(std::int64_t unit) const;
 
   BeamReceiver& Receiver;
@@ -387,8 +337,9 @@ double BeamReceiver::Reception::noiseOf(std::int64_t unit, double light)
 /// are drawn.
 double BeamReceiver::Reception::openAt(std::int64_t unit) const
 {
-  return this->Leaves.any() ? this->Leaves.openAt(this->Air, this->Receiver.placeIn(unit, 0.5))
-                            : 1.0;
+  return this->Leaves.any()
+    ? this->Leaves.openAt(this->Air, this->Receiver.Ranges.placeIn(unit, 0.5))
+    : 1.0;
 }
 
 void BeamReceiver::Reception::formReturns()
@@ -445,8 +396,7 @@ void BeamReceiver::Reception::formReturns()
     run.energy = perceivedEnergy(run.energyReceived, strongest.lower, strongest.upper);
     if (single || !run.hasLight)
     {
-      run.range = single ? this->Receiver.placeIn(this->Result.units[run.firstUnit].index, 0.5)
-                         : this->Receiver.rangeOfNoise(this->Result, run);
+      run.range = this->Receiver.Ranges.ofNoise(this->Result, run);
     }
     run.returnNumber = static_cast<int>(r) + 1;
     run.numberOfReturns = static_cast<int>(this->Result.returns.size());
@@ -479,5 +429,24 @@ void BeamReceiver::Reception::select()
       return;
   }
   this->Result.returns.assign(1, chosen);
+}
+
+/// Set the errors of the ranges of the returns.
+void BeamReceiver::Reception::findErrors()
+{
+  const auto set = [&](Return& run)
+  {
+    const ReceivedUnit& strongest = this->Result.units[run.strongestUnit];
+    // Where the air raises the limit, an echo has the errors of a weaker echo in clear air.
+    const double share =
+      strongest.lower > this->Exposed.lower ? this->Exposed.lower / strongest.lower : 1.0;
+    run.error = this->Exposed.errors.of(run.energyReceived * share,
+      this->Exposed.errors.hasNoise() ? rangeDeviate(this->Result.key, strongest.index) : 0.0);
+  };
+  if (this->Result.strongest && this->Receiver.Mode != ReturnMode::RangeUnits)
+  {
+    std::for_each(this->Result.returns.begin(), this->Result.returns.end(), set);
+    set(*this->Result.strongest);
+  }
 }
 }

@@ -36,17 +36,25 @@ double RangeErrors::deviation(double energy) const
   return std::hypot(sensor.rangeNoiseFloor, ofSignal);
 }
 
-double RangeErrors::measured(double range, double energy, double normal) const
+RangeError RangeErrors::of(double energy, double normal) const
 {
   const Sensor& sensor = this->Instrument;
+  RangeError error;
   if (sensor.rangeWalk > 0.0)
   {
-    range += sensor.rangeWalk * std::min(1.0, sensor.lowerEnergyLimit / energy);
+    error.walk = sensor.rangeWalk * std::min(1.0, sensor.lowerEnergyLimit / energy);
   }
   if (this->Noise)
   {
-    range += this->deviation(energy) * normal;
+    error.noise = this->deviation(energy) * normal;
   }
+  return error;
+}
+
+double RangeError::reported(double range, const Sensor& sensor) const
+{
+  range += this->walk;
+  range += this->noise;
   // Nothing is recorded outside the gate. Ranges outside are mirrored at its ends, so that they do
   // not pile up there.
   const double begin = sensor.minimumRange;

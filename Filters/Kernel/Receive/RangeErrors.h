@@ -36,6 +36,17 @@
 
 namespace avianlidar
 {
+/// Error of the range of a return.
+struct RangeError
+{
+  double walk = 0.0;  ///< by the strength of the echo, m
+  double noise = 0.0; ///< by chance, m
+
+  /// Range that the receiver reports, m: within the gate, a multiple of the quantum. @param range
+  /// true range, m
+  double reported(double range, const Sensor& sensor) const;
+};
+
 class RangeErrors
 {
 public:
@@ -49,10 +60,9 @@ public:
   /// the upper limit counts as the limit
   double deviation(double energy) const;
 
-  /// Range that the receiver reports, m, within the gate. @param range true range, m @param energy
-  /// Qrec of the strongest unit, J
-  /// @param normal a standard normal deviate
-  double measured(double range, double energy, double normal) const;
+  /// Error of the range of a return. @param energy Qrec of the strongest unit, J @param normal a
+  /// standard normal deviate
+  RangeError of(double energy, double normal) const;
 
 private:
   Sensor Instrument;

@@ -5,7 +5,6 @@
 
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 namespace avianlidar
@@ -42,7 +41,7 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanAir& air, const S
       setup.revolution, wanted)
   , Lighting(setup, this->Scene, this->Receiver.mayAlarm(), options.lightsAll, std::move(wanted))
   , OfRays(setup.settings.sampling, sampler.strata.numberOfRays(), &sampler.strata)
-  , Echoes(setup, this->Receiver, this->OfRays)
+  , Echoes(setup, this->OfRays)
 {
 }
 
@@ -113,7 +112,13 @@ BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& ke
     }
     const Received received =
       this->Receiver.receive(this->Beams.ids[beam], light.arriving(), air, light.leaves);
-    const BeamEchoes::Report echo = this->Echoes.add(received, light, kept.lit.get(), echoes);
+    const std::vector<LightEcho> ofLight = this->Echoes.ofLight(received, light);
+    const BeamEchoes::Report echo = this->Echoes.add(
+      received, ofLight, light.samples() != nullptr, light.isOutsideGate(), echoes);
+    if (kept.lit)
+    {
+      kept.lit->add(ofLight);
+    }
     report.status = echo.status;
     report.range = echo.range;
   }
@@ -131,15 +136,17 @@ bool BeamSimulator::followKnown(
 {
   const Received received = this->Receiver.receive(
     this->Beams.ids[beam], lit.arriving(), BeamAir(this->Air), DrawnLeaves());
-  const std::optional<BeamEchoes::Report> echo = this->Echoes.addKnown(received, lit, echoes);
-  if (echo)
+  if (!lit.knows(received))
   {
-    report.status = echo->status;
-    report.range = echo->range;
-    report.lost = lit.lost;
-    report.skipped = lit.skipped;
+    return false;
   }
-  return echo.has_value();
+  const BeamEchoes::Report echo =
+    this->Echoes.add(received, lit.returns, true, lit.outsideGate, echoes);
+  report.status = echo.status;
+  report.range = echo.range;
+  report.lost = lit.lost;
+  report.skipped = lit.skipped;
+  return true;
 }
 
 /// The light of a beam. @param traced what was traced of the beam; its cost is increased

@@ -20,6 +20,7 @@
 #include "AirFinder.h"
 #include "BeamEchoes.h"
 #include "BeamLighting.h"
+#include "BeamReceiver.h"
 #include "BeamReport.h"
 #include "KeptBeam.h"
 #include "ViewTracer.h"

@@ -16,8 +16,8 @@
 #ifndef avianlidar_LitBeam_h
 #define avianlidar_LitBeam_h
 
+#include "BeamEchoes.h"
 #include "BeamLight.h"
-#include "Echo.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,14 +29,8 @@ struct LitBeam
 {
   static constexpr std::size_t MostReturns = 16;
 
-  /// The values of a return that do not depend on noise.
-  struct KnownReturn
-  {
-    std::int64_t first, last, strongest; ///< numbers of range units
-    Echo echo;
-  };
   std::vector<RangeUnit> units;
-  std::vector<KnownReturn> returns;
+  std::vector<LightEcho> returns;   ///< known returns
   std::vector<MetSurface> surfaces; ///< samples of surfaces, which shadow the air
   double radiance;                  ///< BeamLight::radiance, W/(m2 sr nm)
   bool outsideGate;                 ///< BeamLight::isOutsideGate()
@@ -53,13 +47,18 @@ struct LitBeam
   {
   }
 
+  /// Keep returns that are not known yet.
+  void add(const std::vector<LightEcho>& found);
+
+  /// True if all returns with light are known.
+  bool knows(const Received& received) const;
+
   ArrivingLight arriving() const { return { this->units, this->surfaces, this->radiance }; }
 
   std::size_t bytes() const
   {
     return sizeof(LitBeam) + this->units.capacity() * sizeof(RangeUnit) +
-      this->returns.capacity() * sizeof(KnownReturn) +
-      this->surfaces.capacity() * sizeof(MetSurface);
+      this->returns.capacity() * sizeof(LightEcho) + this->surfaces.capacity() * sizeof(MetSurface);
   }
 };
 

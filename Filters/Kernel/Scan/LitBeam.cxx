@@ -4,10 +4,37 @@
 #include "Hash.h"
 #include "MemberCount.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace avianlidar
 {
+void LitBeam::add(const std::vector<LightEcho>& found)
+{
+  for (const LightEcho& one : found)
+  {
+    const auto isSame = [&](const LightEcho& known) { return known.units == one.units; };
+    if (this->returns.size() < MostReturns &&
+      std::none_of(this->returns.begin(), this->returns.end(), isSame))
+    {
+      this->returns.push_back(one);
+    }
+  }
+}
+
+bool LitBeam::knows(const Received& received) const
+{
+  const auto isKnown = [&](const Return& ret)
+  {
+    const UnitsOfReturn wanted = unitsOf(received, ret);
+    return !ret.hasLight ||
+      std::any_of(this->returns.begin(), this->returns.end(),
+        [&](const LightEcho& known) { return known.units == wanted; });
+  };
+  return std::all_of(received.returns.begin(), received.returns.end(), isKnown) &&
+    (!received.strongest || isKnown(*received.strongest));
+}
+
 std::uint64_t lightKey(const ScanSetup& setup)
 {
   // The key leaves out values that cannot differ. A lit beam belongs to a trace, and thus to a tree
