@@ -21,7 +21,6 @@ double BeamLight::nearestRange() const
 void BeamLight::clear(double sky)
 {
   this->isPerceivable = this->isIntegrated = false;
-  this->hasPaths = this->pathsNeedStarts = false;
   this->seen = this->starts = nullptr;
   this->cells = nullptr;
   this->energies.clear();
@@ -31,6 +30,7 @@ void BeamLight::clear(double sky)
   this->units.clear();
   this->surfaces.clear();
   this->radiance = sky;
+  this->mostOfPaths = 0.0;
   this->lost = 0.0;
   this->skipped = 0;
 }

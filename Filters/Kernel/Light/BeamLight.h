@@ -50,8 +50,7 @@ struct BeamLight
   std::vector<double> energies;
   std::vector<double> means;           ///< see meanEnergies(); empty if no leaves are drawn
   DrawnLeaves leaves;                  ///< leaves drawn in the beam
-  bool hasPaths = false;               ///< whether paths with two reflections are to be found
-  bool pathsNeedStarts = false;        ///< whether such paths start at hits of rays
+  double mostOfPaths = 0.0;            ///< bound of the energy of paths with two reflections, J
   const BeamSamples* starts = nullptr; ///< hits from which paths start; may be null
   std::vector<SecondaryPath> paths;
   RangeUnitAccumulator units;       ///< energies of direct echoes and paths, in range units

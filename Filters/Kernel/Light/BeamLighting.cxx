@@ -10,18 +10,6 @@
 
 namespace avianlidar
 {
-namespace
-{
-/// Surfaces between which mirror paths go (MirrorRegions.h), with hidden parts if the beam is in
-/// cells; null: mirror paths start from rays.
-const VisiblePolygons* surfacesOfPaths(const BeamView& view)
-{
-  const VisiblePolygons* const surfaces =
-    view.cells() ? view.cells()->surfaces.get() : view.polygons();
-  return surfaces && MirrorRegions::takes(*surfaces) ? surfaces : nullptr;
-}
-}
-
 BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, bool mayAlarm,
   bool lightsAll, std::function<bool()> wanted)
   : Setup(setup)
@@ -35,14 +23,37 @@ BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, 
 {
 }
 
-BeamLight BeamLighting::direct(const Beam& beam, BeamLight&& light)
+BeamLight BeamLighting::light(const Beam& beam, const StrataPartition* strata,
+  std::unique_ptr<SecondaryTrace>& known, TraceCounters& cost, BeamLight&& memory)
 {
+  BeamLight light = std::move(memory);
   light.clear(this->Setup.sensor.backgroundRadiance);
+  light.isPerceivable = this->addDirect(beam, light);
+  if (light.isPerceivable && light.samples() && this->hasPaths(light))
+  {
+    if (!known)
+    {
+      known = std::make_unique<SecondaryTrace>();
+    }
+    const double lostBefore = light.lost;
+    light.isPerceivable = this->collectPaths(beam, strata, *known, cost, light);
+    light.skipped |= light.isPerceivable && light.lost > lostBefore ? SkippedSecondaryPaths : 0u;
+  }
+  if (light.isPerceivable && light.samples())
+  {
+    this->addUp(beam, light);
+  }
+  return light;
+}
+
+/// Add the direct echoes of a beam. @return false if nothing of the beam can be perceived
+bool BeamLighting::addDirect(const Beam& beam, BeamLight& light)
+{
   const VisiblePolygons* const polygons = beam.view.polygons();
   const CellSamples* const cells = beam.view.cells();
   if (polygons && !this->placeNodes(beam, light))
   {
-    return std::move(light);
+    return false;
   }
   if (cells)
   {
@@ -57,8 +68,7 @@ BeamLight BeamLighting::direct(const Beam& beam, BeamLight&& light)
   if (!samples)
   {
     this->drawLeaves(beam, light);
-    light.isPerceivable = this->MayAlarm || !beam.air.alone().empty();
-    return std::move(light);
+    return this->MayAlarm || !beam.air.alone().empty();
   }
   if (this->Setup.sensor.seesDaylight())
   {
@@ -67,43 +77,43 @@ BeamLight BeamLighting::direct(const Beam& beam, BeamLight&& light)
   light.direct.measure(this->Setup, *samples);
   const double most =
     this->Setup.sensor.pulseEnergy * transmissionBound(samples->nearest, this->Setup.attenuation());
-  const bool again = this->Setup.settings.numberOfReflections > 1;
-  double ofPaths = 0.0;
-  if (again && polygons && polygons->facing)
-  {
-    ofPaths = most * this->Secondary.bound(this->Bounds.mostAlbedo, this->Bounds.nearest);
-  }
-  else if (again && !polygons && beam.view.hits)
-  {
-    ofPaths = most * this->Secondary.bound(*samples, light.direct);
-  }
+  light.mostOfPaths = most * this->boundOfPaths(beam, light);
   const double dropped = polygons ? this->Bounds.dropped : 0.0;
-  light.isPerceivable = this->mayBePerceived(beam, most, dropped + ofPaths, light);
-  if (light.isPerceivable && ofPaths > 0.0)
-  {
-    this->planPaths(beam, ofPaths, light);
-  }
-  return std::move(light);
+  return this->mayBePerceived(beam, most, dropped + light.mostOfPaths, light);
 }
 
-/// Decide whether paths with two reflections are to be found. @param most bound of their energy, J
-void BeamLighting::planPaths(const Beam& beam, double most, BeamLight& light) const
+/// Upper bound of the sum of the throughputs of paths with two reflections.
+double BeamLighting::boundOfPaths(const Beam& beam, const BeamLight& light) const
+{
+  if (this->Setup.settings.numberOfReflections < 2)
+  {
+    return 0.0;
+  }
+  if (const VisiblePolygons* const polygons = beam.view.polygons())
+  {
+    return polygons->facing ? this->Secondary.bound(this->Bounds.mostAlbedo, this->Bounds.nearest)
+                            : 0.0;
+  }
+  return beam.view.hits ? this->Secondary.bound(*light.samples(), light.direct) : 0.0;
+}
+
+/// True if paths with two reflections are to be found.
+bool BeamLighting::hasPaths(BeamLight& light) const
 {
   // No path is shorter than twice the range of either end.
-  if (dropsFaintPaths(this->Setup.settings) && !this->LightsAll &&
-    light.nearestRange() > this->Setup.sensor.rangeGate)
+  if (!(light.mostOfPaths > 0.0) ||
+    (dropsFaintPaths(this->Setup.settings) && !this->LightsAll &&
+      light.nearestRange() > this->Setup.sensor.rangeGate))
   {
-    return;
+    return false;
   }
   if (!this->Setup.needs.secondaryReflections)
   {
     const double before = light.lost;
-    light.lost += std::min(most, this->Setup.needs.secondaryBound);
+    light.lost += std::min(light.mostOfPaths, this->Setup.needs.secondaryBound);
     light.skipped |= light.lost > before ? SkippedSecondaryPaths : 0u;
-    return;
   }
-  light.hasPaths = true;
-  light.pathsNeedStarts = !surfacesOfPaths(beam.view) || connectionsOf(this->Setup.settings) > 0;
+  return this->Setup.needs.secondaryReflections;
 }
 
 /// Set the nodes of an integrated beam. @return false if a bound shows that nothing of the beam can
@@ -184,20 +194,12 @@ void BeamLighting::drawLeaves(const Beam& beam, BeamLight& light)
   }
 }
 
-BeamLight BeamLighting::withPaths(const Beam& beam, BeamLight&& light, const PathStarts& starts,
-  const StrataPartition* strata, SecondaryTrace& known, TraceCounters& cost)
-{
-  const double lostBefore = light.lost;
-  light.isPerceivable = this->collectPaths(beam, starts, strata, known, cost, light);
-  light.skipped |= light.isPerceivable && light.lost > lostBefore ? SkippedSecondaryPaths : 0u;
-  return std::move(light);
-}
-
 /// Find the paths with two reflections. @return false if nothing of the beam can be perceived
-bool BeamLighting::collectPaths(const Beam& beam, const PathStarts& starts,
-  const StrataPartition* strata, SecondaryTrace& known, TraceCounters& cost, BeamLight& light)
+bool BeamLighting::collectPaths(const Beam& beam, const StrataPartition* strata,
+  SecondaryTrace& known, TraceCounters& cost, BeamLight& light)
 {
   const BeamSamples& samples = *light.samples();
+  const PathStarts& starts = beam.starts;
   light.starts = &starts.hits;
   if (!light.raysAreLit())
   {
@@ -211,7 +213,7 @@ bool BeamLighting::collectPaths(const Beam& beam, const PathStarts& starts,
   {
     paths.air = &beam.air;
   }
-  paths.surfaces = surfacesOfPaths(beam.view);
+  paths.surfaces = beam.view.surfacesOfMirrors();
   paths.cells = paths.surfaces && light.cells ? &light.cells->samples : nullptr;
   if (dropsFaintPaths(this->Setup.settings) && this->onlySurfacesMatter(beam))
   {
@@ -230,13 +232,10 @@ bool BeamLighting::collectPaths(const Beam& beam, const PathStarts& starts,
   return true;
 }
 
-BeamLight BeamLighting::summed(const Beam& beam, BeamLight&& light) const
+/// Sum the energies in range units.
+void BeamLighting::addUp(const Beam& beam, BeamLight& light) const
 {
   const BeamSamples* const samples = light.samples();
-  if (!light.isPerceivable || !samples)
-  {
-    return std::move(light);
-  }
   if (beam.air.scan().fillsScene() || beam.air.isLocal())
   {
     light.surfaces.resize(samples->size());
@@ -253,7 +252,6 @@ BeamLight BeamLighting::summed(const Beam& beam, BeamLight&& light) const
     light.units.add({ path.length, path.energy });
   }
   light.units.accumulate();
-  return std::move(light);
 }
 
 /// Set the energies of direct echoes. @param most bound of the energy of a path of throughput 1, J

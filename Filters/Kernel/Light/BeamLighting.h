@@ -38,6 +38,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -60,26 +61,22 @@ public:
   {
     std::uint64_t id;
     const BeamFrame& frame;
-    const BeamView& view; ///< what the beam sees; must outlive the light
-    const BeamAir& air;   ///< the air along the beam
+    const BeamView& view;     ///< what the beam sees; must outlive the light
+    const PathStarts& starts; ///< hits from which paths with two reflections start
+    const BeamAir& air;       ///< the air along the beam
   };
 
-  /// The direct echoes of a beam. @param memory light whose memory is used again
-  BeamLight direct(const Beam& beam, BeamLight&& memory);
-
-  /// Add paths with two reflections to the direct echoes. @param starts hits from which paths
-  /// start @param strata strata of the beam's rays; null for Monte Carlo @param known geometry of
-  /// paths that was found before; new geometry is added
-  /// @param cost costs of tracing, increased
-  BeamLight withPaths(const Beam& beam, BeamLight&& light, const PathStarts& starts,
-    const StrataPartition* strata, SecondaryTrace& known, TraceCounters& cost);
-
-  /// Sum the energies in range units, if anything may be perceived.
-  BeamLight summed(const Beam& beam, BeamLight&& light) const;
+  /// The light of a beam. @param strata strata of the beam's rays; null for Monte Carlo @param
+  /// known geometry of paths that was found before, or null; new geometry is added @param cost
+  /// costs of tracing, increased @param memory light whose memory is used again
+  BeamLight light(const Beam& beam, const StrataPartition* strata,
+    std::unique_ptr<SecondaryTrace>& known, TraceCounters& cost, BeamLight&& memory);
 
 private:
+  bool addDirect(const Beam& beam, BeamLight& light);
+  bool hasPaths(BeamLight& light) const;
+  void addUp(const Beam& beam, BeamLight& light) const;
   bool placeNodes(const Beam& beam, BeamLight& light);
-  void planPaths(const Beam& beam, double most, BeamLight& light) const;
   bool mayBePerceived(const Beam& beam, double most, double others, BeamLight& light);
   double passMedia(const Beam& beam, double sum, BeamLight& light);
   void drawLeaves(const Beam& beam, BeamLight& light);
@@ -87,8 +84,9 @@ private:
   bool isSkipped(
     const Beam& beam, double most, double farthest, double nearest, BeamLight& light) const;
   void dropFaintPaths(BeamLight& light) const;
-  bool collectPaths(const Beam& beam, const PathStarts& starts, const StrataPartition* strata,
-    SecondaryTrace& known, TraceCounters& cost, BeamLight& light);
+  double boundOfPaths(const Beam& beam, const BeamLight& light) const;
+  bool collectPaths(const Beam& beam, const StrataPartition* strata, SecondaryTrace& known,
+    TraceCounters& cost, BeamLight& light);
 
   const ScanSetup& Setup;
   const SceneTriangles& Scene;

@@ -102,8 +102,11 @@ BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& ke
   }
   const BeamFrame frame =
     makeBeamFrame(this->Beams.origins[beam], this->Beams.directions[beam], this->Width);
+  const PathStarts starts =
+    this->Hits.startsOf(beam, frame, this->Rays, kept.view, traced.geometry, traced.hasGeometry);
   const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
-  BeamLight light = this->lightOf(beam, frame, air, kept, traced, std::move(memory));
+  BeamLight light = this->Lighting.light({ this->Beams.ids[beam], frame, kept.view, starts, air },
+    this->Rays.strata(), kept.paths, traced.cost, std::move(memory));
   if (light.isPerceivable)
   {
     if (light.samples() && this->KeepsLight && !kept.lit)
@@ -147,26 +150,5 @@ bool BeamSimulator::followKnown(
   report.lost = lit.lost;
   report.skipped = lit.skipped;
   return true;
-}
-
-/// The light of a beam. @param traced what was traced of the beam; its cost is increased
-BeamLight BeamSimulator::lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air,
-  KeptBeam& kept, SeenBeam& traced, BeamLight&& memory)
-{
-  const BeamLighting::Beam lit{ this->Beams.ids[beam], frame, kept.view, air };
-  BeamLight light = this->Lighting.direct(lit, std::move(memory));
-  if (light.hasPaths)
-  {
-    const PathStarts starts = light.pathsNeedStarts
-      ? this->Hits.startsOf(beam, frame, this->Rays, kept.view, traced.geometry, traced.hasGeometry)
-      : PathStarts::nowhere();
-    if (!kept.paths)
-    {
-      kept.paths = std::make_unique<SecondaryTrace>();
-    }
-    light = this->Lighting.withPaths(
-      lit, std::move(light), starts, this->Rays.strata(), *kept.paths, traced.cost);
-  }
-  return this->Lighting.summed(lit, std::move(light));
 }
 }

@@ -4,8 +4,9 @@
  * @brief Follows beams from their axes to their echoes.
  *
  * trace() finds what neighbouring beams see, as these beams are traced together (ViewTracer.h).
- * Then follow() takes each beam through the other stages alone: the air along it (AirFinder.h), its
- * light (BeamLighting.h), and what the receiver makes of the light (BeamReceiver.h, BeamEchoes.h).
+ * Then follow() takes each beam through the other stages alone: the starts of its paths
+ * (PathStarts.h), the air along it (AirFinder.h), its light (BeamLighting.h), and what the receiver
+ * makes of the light (BeamReceiver.h, BeamEchoes.h).
  * What is kept from an earlier scan is not computed again. Light is not computed where a scan
  * differs from the scan before only in noise (LitBeam.h).
  *
@@ -90,8 +91,6 @@ public:
 private:
   bool followKnown(
     std::size_t beam, const LitBeam& lit, std::vector<Echo>& echoes, BeamReport& report);
-  BeamLight lightOf(std::size_t beam, const BeamFrame& frame, const BeamAir& air, KeptBeam& kept,
-    SeenBeam& traced, BeamLight&& memory);
 
   SceneTriangles Scene;
   const ScanSetup& Setup;

@@ -51,8 +51,8 @@ struct BeamView
 {
   SeenSurfaces seen;
   /// Hits of the beam's rays, from which paths with two reflections start. Null if a beam by rays
-  /// hits nothing, and in other beams until first needed. Empty if no ray of a beam in cells hits a
-  /// triangle.
+  /// hits nothing, and in integrated beams until first needed. Empty if no ray of a beam in cells
+  /// hits a triangle.
   std::unique_ptr<BeamSamples> hits;
 
   DirectEcho direct() const { return static_cast<DirectEcho>(this->seen.index()); }
@@ -60,6 +60,16 @@ struct BeamView
   const VisiblePolygons* polygons() const { return this->part<VisiblePolygons>(); }
   /// Samples of a beam divided into cells; null for other beams.
   const CellSamples* cells() const { return this->part<CellSamples>(); }
+  /// Surfaces between which mirror paths are found by regions (MirrorRegions.h), with hidden parts
+  /// if the beam is in cells. Null if mirror paths start from rays: in beams by rays, and in beams
+  /// that see more than 1,024 polygons.
+  const VisiblePolygons* surfacesOfMirrors() const
+  {
+    constexpr std::size_t most = 1024;
+    const VisiblePolygons* const surfaces =
+      this->cells() ? this->cells()->surfaces.get() : this->polygons();
+    return surfaces && surfaces->polygons.size() <= most ? surfaces : nullptr;
+  }
   /// True if the beam meets surfaces, all of them behind the range gate.
   bool isBehindGate() const
   {

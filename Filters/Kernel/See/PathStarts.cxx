@@ -37,9 +37,21 @@ PathStarts PathStarts::nowhere()
   return { hits, rays, geometry };
 }
 
+/// True if paths with two reflections may start at hits of a beam's rays.
+bool HitFinder::mayStartIn(const BeamView& view) const
+{
+  const bool hasPaths = view.polygons() ? view.polygons()->facing : view.hits != nullptr;
+  return this->Setup.needs.secondaryReflections && hasPaths &&
+    (connectionsOf(this->Setup.settings) > 0 || !view.surfacesOfMirrors());
+}
+
 PathStarts HitFinder::startsOf(std::size_t beam, const BeamFrame& frame, DrawnRays& rays,
   BeamView& view, SampleGeometry& geometry, bool known)
 {
+  if (!this->mayStartIn(view))
+  {
+    return PathStarts::nowhere();
+  }
   if (view.hits && view.hits->size() == 0)
   {
     const PathStarts none = PathStarts::nowhere();

@@ -46,13 +46,15 @@ public:
   std::unique_ptr<BeamSamples> hitsOf(const BeamFrame& frame, const BeamRays& rays,
     const std::vector<std::uint32_t>& triangles, SampleGeometry& geometry);
 
-  /// Hits from which paths of a beam start. The hits of an integrated beam are added to its view:
-  /// one hit for each ray that meets a visible polygon. @param geometry geometry of the
-  /// hits, set unless `known` is true
+  /// Hits from which paths of a beam start, or nowhere if the settings or the view exclude such
+  /// paths. The hits of an integrated beam are added to its view: one hit for each ray that meets a
+  /// visible polygon. @param geometry geometry of the hits, set unless `known` is true
   PathStarts startsOf(std::size_t beam, const BeamFrame& frame, DrawnRays& rays, BeamView& view,
     SampleGeometry& geometry, bool known);
 
 private:
+  bool mayStartIn(const BeamView& view) const;
+
   const ScanSetup& Setup;
   RaySamples Samples;
   std::vector<std::uint32_t> Met; ///< triangles that the rays of an integrated beam meet

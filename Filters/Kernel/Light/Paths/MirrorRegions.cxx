@@ -15,9 +15,6 @@ namespace avianlidar
 {
 namespace
 {
-/// Largest number of polygons of a beam.
-constexpr std::size_t MostFacets = 1024;
-
 /// Largest number of regions of a surface for which each region has samples of its own.
 constexpr std::size_t FewRegions = 32;
 
@@ -142,11 +139,6 @@ bool MirrorRegions::Box::meets(const Box& other) const
 {
   return this->low.x < other.high.x && other.low.x < this->high.x && this->low.y < other.high.y &&
     other.low.y < this->high.y;
-}
-
-bool MirrorRegions::takes(const VisiblePolygons& seen)
-{
-  return seen.polygons.size() <= MostFacets;
 }
 
 void MirrorRegions::begin(

@@ -46,9 +46,6 @@ class MirrorRegions
 public:
   MirrorRegions(const ScanSetup& setup, const SceneTriangles& scene);
 
-  /// False if a beam sees too many polygons for regions.
-  static bool takes(const VisiblePolygons& seen);
-
   /// Begin a beam. @param cells samples of a beam in cells, whose polygons have hidden parts; null
   /// for other beams
   void begin(std::uint64_t beam, const BeamFrame& frame, const VisiblePolygons& seen,
