@@ -18,6 +18,7 @@
 #include "SecondaryReflection.h"
 #include "Throughput.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -70,6 +71,13 @@ struct BeamLight
   const std::vector<double>& meanEnergies() const
   {
     return this->means.empty() ? this->energies : this->means;
+  }
+  /// The path of a contribution to `units`, or null for a direct echo. The direct echoes of the
+  /// samples are the first contributions, followed by `paths`.
+  const SecondaryPath* pathOf(std::uint32_t contribution) const
+  {
+    const std::size_t first = this->energies.size();
+    return contribution < first ? nullptr : &this->paths[contribution - first];
   }
   ArrivingLight arriving() const { return { this->units.units(), this->surfaces, this->radiance }; }
 

@@ -21,9 +21,9 @@ AVIANLIDAR_MULTIVERSION void anglesOfAll(double* cosines, std::size_t count)
 }
 
 /// True if everything that the beam meets has one object and one material.
-bool EchoLabels::meetsOneThing(
-  const BeamSamples& samples, const std::vector<SecondaryPath>& paths) const
+bool EchoLabels::meetsOneThing(const BeamLight& light) const
 {
+  const BeamSamples& samples = *light.samples();
   if (samples.surfaces.empty())
   {
     return false;
@@ -37,28 +37,26 @@ bool EchoLabels::meetsOneThing(
       this->Setup.materialId(met.triangle) == material;
   };
   return std::all_of(samples.surfaces.begin(), samples.surfaces.end(), isFirst) &&
-    std::all_of(paths.begin(), paths.end(), isFirst);
+    std::all_of(light.paths.begin(), light.paths.end(), isFirst);
 }
 
-void EchoLabels::findAngles(
-  const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
+void EchoLabels::findAngles(const BeamLight& light, const RangeShares& shares)
 {
-  const std::size_t direct = samples.size();
+  const BeamSamples& samples = *light.samples();
   this->Angles.resize(shares.count);
   for (std::size_t s = 0; s < shares.count; ++s)
   {
     const std::uint32_t c = shares.contribution[s];
-    const double cosine = c < direct ? samples.cosine[c] : paths[c - direct].cosIncidence;
+    const SecondaryPath* const path = light.pathOf(c);
+    const double cosine = path ? path->cosIncidence : samples.cosine[c];
     this->Angles[s] = std::min(1.0, cosine);
   }
   anglesOfAll(this->Angles.data(), this->Angles.size());
 }
 
 /// Sum the energies by object and material.
-void EchoLabels::findLargest(
-  const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths)
+void EchoLabels::findLargest(const BeamLight& light, const RangeShares& shares)
 {
-  const std::size_t direct = samples.size();
   this->Sums.clear();
   // Neighbouring paths mostly meet the same surface: their energies are summed before they are
   // added to the list.
@@ -86,15 +84,16 @@ void EchoLabels::findLargest(
     }
     run += energy;
   };
-  auto surface = samples.surfaces.begin();
+  auto surface = light.samples()->surfaces.begin();
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t c = shares.contribution[s];
-    while (c < direct && c >= surface->end)
+    const std::uint32_t c = shares.contribution[s];
+    const SecondaryPath* const path = light.pathOf(c);
+    while (!path && c >= surface->end)
     {
       ++surface;
     }
-    book(c < direct ? surface->triangle : paths[c - direct].triangle, shares.energies[s]);
+    book(path ? path->triangle : surface->triangle, shares.energies[s]);
   }
   this->Sums.add(object, material, run);
 }
@@ -102,19 +101,18 @@ void EchoLabels::findLargest(
 void EchoLabels::label(const BeamLight& light, const RangeShares& shares, Echo& echo)
 {
   const BeamSamples* const samples = light.samples();
-  const std::vector<SecondaryPath>& paths = light.paths;
   echo.incidenceAngle = std::numeric_limits<double>::quiet_NaN();
   if (!samples)
   {
     return;
   }
-  this->findAngles(shares, *samples, paths);
+  this->findAngles(light, shares);
   const WeightedSum sum = sumShares(shares, [&](std::size_t s) { return this->Angles[s]; });
   if (!(sum.energy > 0.0))
   {
     return; // a false alarm
   }
-  if (this->meetsOneThing(*samples, paths))
+  if (this->meetsOneThing(light))
   {
     echo.objectId = this->Setup.objectId(samples->surfaces[0].triangle);
     echo.materialId = this->Setup.materialId(samples->surfaces[0].triangle);
@@ -122,7 +120,7 @@ void EchoLabels::label(const BeamLight& light, const RangeShares& shares, Echo& 
   }
   else
   {
-    this->findLargest(shares, *samples, paths);
+    this->findLargest(light, shares);
     const LabelSums::Sum& largest = this->Sums.largest();
     echo.objectId = largest.object;
     echo.materialId = largest.material;
@@ -130,7 +128,7 @@ void EchoLabels::label(const BeamLight& light, const RangeShares& shares, Echo& 
   }
   echo.incidenceAngle = sum.moment / sum.energy;
   const WeightedSum ofPaths = sumShares(
-    shares, [&](std::size_t s) { return shares.contribution[s] < samples->size() ? 0.0 : 1.0; });
+    shares, [&](std::size_t s) { return light.pathOf(shares.contribution[s]) ? 1.0 : 0.0; });
   echo.secondaryShare = ofPaths.moment / sum.energy;
 }
 }

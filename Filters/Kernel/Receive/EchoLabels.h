@@ -99,16 +99,13 @@ public:
   {
   }
 
-  /// Set the labels of an echo. @param shares shares of the light's contributions in the return:
-  /// first the samples, then the paths with two reflections
+  /// Set the labels of an echo. @param shares shares of the light's contributions in the return
   void label(const BeamLight& light, const RangeShares& shares, Echo& echo);
 
 private:
-  void findAngles(
-    const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths);
-  bool meetsOneThing(const BeamSamples& samples, const std::vector<SecondaryPath>& paths) const;
-  void findLargest(
-    const RangeShares& shares, const BeamSamples& samples, const std::vector<SecondaryPath>& paths);
+  void findAngles(const BeamLight& light, const RangeShares& shares);
+  bool meetsOneThing(const BeamLight& light) const;
+  void findLargest(const BeamLight& light, const RangeShares& shares);
 
   const ScanSetup& Setup;
   LabelSums Sums;

@@ -61,13 +61,11 @@ double errorOfCells(const CellSamples& cells, const RangeShares& shares, const S
 /// Error of the energy that mirror paths put into a unit, by the width of the mirrors' lobes, J.
 double errorOfLobes(const BeamLight& light, const RangeShares& shares)
 {
-  const std::size_t direct = light.samples()->size();
   double sum = 0.0;
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t contribution = shares.contribution[s];
-    sum +=
-      contribution < direct ? 0.0 : shares.energies[s] * light.paths[contribution - direct].unsure;
+    const SecondaryPath* const path = light.pathOf(shares.contribution[s]);
+    sum += path ? shares.energies[s] * path->unsure : 0.0;
   }
   return sum;
 }
@@ -77,14 +75,12 @@ double errorOfLobes(const BeamLight& light, const RangeShares& shares)
 /// every sample would arrive, so the square of the largest energy is added, as in StandardError.h.
 double errorOfMirrors(const BeamLight& light, const RangeShares& shares)
 {
-  const std::size_t direct = light.samples()->size();
   const auto isMirror = [&](std::size_t s)
   {
-    const std::size_t contribution = shares.contribution[s];
-    return contribution >= direct && light.paths[contribution - direct].one == NoSample;
+    const SecondaryPath* const path = light.pathOf(shares.contribution[s]);
+    return path && path->one == NoSample;
   };
-  const auto sampleOf = [&](std::size_t s)
-  { return light.paths[shares.contribution[s] - direct].two; };
+  const auto sampleOf = [&](std::size_t s) { return light.pathOf(shares.contribution[s])->two; };
   double variance = 0.0;
   double most = 0.0; // largest energy of a sample, J
   std::uint32_t last = NoSample;
@@ -156,14 +152,14 @@ double EnergyErrors::ofSamples(
 /// unit and one plane fills the beam, so that no ray puts less
 double EnergyErrors::ofRays(const BeamLight& light, const RangeShares& shares, bool filled) const
 {
-  const std::size_t direct = light.samples()->size();
   const std::vector<std::uint32_t>& rays = light.starts->ray;
   StandardErrorEstimator& error = this->OfRays;
   error.begin();
   for (std::size_t s = 0; s < shares.count; ++s)
   {
-    const std::size_t contribution = shares.contribution[s];
-    if (contribution < direct)
+    const std::uint32_t contribution = shares.contribution[s];
+    const SecondaryPath* const path = light.pathOf(contribution);
+    if (!path)
     {
       if (light.raysAreLit())
       {
@@ -172,15 +168,14 @@ double EnergyErrors::ofRays(const BeamLight& light, const RangeShares& shares, b
       continue;
     }
     // A connection depends on both its rays.
-    const SecondaryPath& path = light.paths[contribution - direct];
-    if (path.one == NoSample)
+    if (path->one == NoSample)
     {
       continue;
     }
-    error.add(rays[path.one], shares.energies[s]);
-    if (path.two != NoSample)
+    error.add(rays[path->one], shares.energies[s]);
+    if (path->two != NoSample)
     {
-      error.add(rays[path.two], shares.energies[s]);
+      error.add(rays[path->two], shares.energies[s]);
     }
   }
   return error.estimate({ filled ? error.smallest() : 0.0, error.largest() });
