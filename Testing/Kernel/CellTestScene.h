@@ -111,12 +111,6 @@ private:
   const SceneTriangles Scene;
   PolygonFinder Finder;
 };
-
-/// Of a beam along x.
-inline double received(const Scene& scene, const Sensor& sensor, const EchoSettings& settings)
-{
-  return receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
-}
 }
 
 #endif

@@ -88,21 +88,12 @@ inline std::vector<CoincidentPlates> pairs(int parts)
   return all;
 }
 
-inline void moveBy(Scene& scene, const Vec3& by)
+inline double receivedAt(const Vec3& place, const Scene& scene, const EchoSettings& settings,
+  const TreeOptions& options = {})
 {
-  scene.mesh = std::make_shared<TriangleMesh>(*scene.mesh); // copies of a scene share it
-  for (Vec3& p : scene.mesh->points)
-  {
-    p += by;
-  }
-}
-
-inline double receivedAt(
-  const Vec3& place, Scene scene, const EchoSettings& settings, const TreeOptions& options = {})
-{
-  moveBy(scene, place);
+  const Scene there = changed(scene, [&](const Vec3& p) { return p + place; });
   return receivedFrom(runScan(
-    makeSetup(scene, openSensor(), settings, options), oneBeam(Vec3(1.0, 0.0, 0.0), place)));
+    makeSetup(there, openSensor(), settings, options), oneBeam(Vec3(1.0, 0.0, 0.0), place)));
 }
 }
 

@@ -50,6 +50,12 @@ struct Scene
     this->triangle(center - u - v, center + u + v, center - u + v, m, object);
   }
 
+  /// Square across the direction x.
+  void square(const Vec3& center, double half, const Material& m, int object = 0)
+  {
+    this->plate(center, Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), m, object);
+  }
+
   void box(const Vec3& center, const Vec3& half, const Material& m, int object)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -66,6 +72,33 @@ struct Scene
   }
 };
 
+/// A square across the axis x, `range` metres from the lidar.
+inline Scene squareAt(double range, double half, const Material& m, int object = 0)
+{
+  Scene scene;
+  scene.square(Vec3(range, 0.0, 0.0), half, m, object);
+  return scene;
+}
+
+/// A scene with a mesh of its own: other copies of a scene share it.
+inline Scene copyOf(Scene scene)
+{
+  scene.mesh = std::make_shared<TriangleMesh>(*scene.mesh);
+  return scene;
+}
+
+/// A scene with other points.
+template <class Change>
+Scene changed(const Scene& scene, Change change)
+{
+  Scene result = copyOf(scene);
+  for (Vec3& p : result.mesh->points)
+  {
+    p = change(p);
+  }
+  return result;
+}
+
 /// The sensor of the closed forms: everything falls into one range unit, and nothing is cut off.
 inline Sensor openSensor(double halfBeamwidth = 5.6e-3)
 {
@@ -78,6 +111,9 @@ inline Sensor openSensor(double halfBeamwidth = 5.6e-3)
   sensor.upperEnergyLimit = 1.0;
   return sensor;
 }
+
+/// Where the samples of a beam come from.
+constexpr BeamSampleSource BothSources[] = { BeamSampleSource::Cells, BeamSampleSource::Rays };
 
 /// Rays without anything else.
 inline EchoSettings directSettings(int rays)
@@ -194,6 +230,13 @@ inline double receivedFrom(const ScanResult& result)
     sum += echo.returnEnergy;
   }
   return sum;
+}
+
+/// The same, of a scene that is scanned by the given beams.
+inline double received(const Scene& scene, const Sensor& sensor, const EchoSettings& settings,
+  const ScanBeams& beams = oneBeam())
+{
+  return receivedFrom(runScan(makeSetup(scene, sensor, settings), beams));
 }
 
 /// The one echo of one beam.

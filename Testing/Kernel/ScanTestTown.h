@@ -61,18 +61,6 @@ inline ScanBeams horizon(int columns, int channels, const Vec3& origin = Vec3(0.
   return beams;
 }
 
-/// A scene whose points are multiplied by a factor.
-inline Scene scaled(const Scene& scene, double factor)
-{
-  Scene result = scene;
-  result.mesh = std::make_shared<TriangleMesh>(*scene.mesh);
-  for (Vec3& p : result.mesh->points)
-  {
-    p *= factor;
-  }
-  return result;
-}
-
 inline bool sameBits(double a, double b)
 {
   return std::memcmp(&a, &b, sizeof(double)) == 0;

@@ -209,8 +209,7 @@ TEST_P(BirdBeforeAWall, IsFoundWithItsArea)
         };
         alone.triangle(corner(0), corner(1), corner(2), { 0.5, 0.0, 1.0 }, 7);
       }
-      Scene scene = alone;
-      scene.mesh = std::make_shared<TriangleMesh>(*alone.mesh);
+      Scene scene = copyOf(alone);
       const int parts = GetParam();
       for (int i = 0; i < parts * parts; ++i)
       {

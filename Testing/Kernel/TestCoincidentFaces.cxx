@@ -14,16 +14,15 @@ using namespace coincidenttest;
 
 namespace
 {
-void roundToSingle(Scene& scene)
+Scene roundedToSingle(const Scene& scene)
 {
-  for (Vec3& p : scene.mesh->points)
+  const auto rounded = [](double x)
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      volatile float single = static_cast<float>(p[axis]); // else GCC 12 does not round
-      p[axis] = static_cast<double>(single);
-    }
-  }
+    volatile float single = static_cast<float>(x); // else GCC 12 does not round
+    return static_cast<double>(single);
+  };
+  return changed(
+    scene, [&](const Vec3& p) { return Vec3(rounded(p.x), rounded(p.y), rounded(p.z)); });
 }
 }
 
@@ -69,8 +68,7 @@ TEST(CoincidentFaces, CornersInSinglePrecisionCoincide)
   {
     for (const bool wallFirst : { true, false })
     {
-      Scene scene = pair.scene(wallFirst);
-      roundToSingle(scene);
+      const Scene scene = roundedToSingle(pair.scene(wallFirst));
       const double right = received(pair.seen(wallFirst), openSensor(), inCells());
       EXPECT_NEAR(received(scene, openSensor(), inCells()) / right, 1.0, 3e-3);
       EXPECT_NEAR(received(scene, openSensor(), directSettings(1000)) / right, 1.0, 1e-2);
@@ -90,10 +88,7 @@ TEST(CoincidentFaces, LightOfSecondReflectionsIsNotStoppedByTheHiddenFace)
       const auto secondary = [&](Scene scene, bool single)
       {
         scene.plate(Vec3(97.0, 0.0, -0.3), Vec3(3.4, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Matt, 3);
-        if (single)
-        {
-          roundToSingle(scene);
-        }
+        scene = single ? roundedToSingle(scene) : scene;
         EchoSettings settings = directSettings(1000);
         const double direct = received(scene, sensor, settings);
         settings.numberOfReflections = 2;
@@ -112,8 +107,8 @@ TEST(CoincidentFaces, NeighboursAndCloseSurfacesKeepTheirPlanes)
   scene.box(Vec3(50.1, 0.1, 0.0), Vec3(1.0, 2.0, 3.0), Wall, 3);
   scene.box(Vec3(50.1, 4.1, 0.0), Vec3(1.0, 1.999999, 3.0), Wall, 4);
   EXPECT_TRUE(buildCollisionTree(scene.mesh, {})->planeOwners.empty());
-  moveBy(scene, Utm);
-  EXPECT_TRUE(buildCollisionTree(scene.mesh, {})->planeOwners.empty());
+  const Scene there = changed(scene, [](const Vec3& p) { return p + Utm; });
+  EXPECT_TRUE(buildCollisionTree(there.mesh, {})->planeOwners.empty());
 }
 
 TEST(CoincidentFaces, OwnersDependOnTheMeshAlone)

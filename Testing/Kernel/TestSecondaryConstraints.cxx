@@ -353,11 +353,8 @@ TEST(SecondaryConstraints, LightEnergyConstraintHoldsThroughAnAperture)
   // Through an aperture a narrow lobe returns far more than ks at P2.
   for (double distance : { 0.5, 2.0, 10.0 })
   {
-    Scene scene = groove(45.0 * Degree, { 5e-4, 0.01, 1e4 });
-    for (Vec3& point : scene.mesh->points)
-    {
-      point.x += distance - 100.0;
-    }
+    const Scene scene = changed(groove(45.0 * Degree, { 5e-4, 0.01, 1e4 }),
+      [=](const Vec3& p) { return p + Vec3(distance - 100.0, 0.0, 0.0); });
     Sensor sensor = openSensor();
     sensor.receiverAperture = 0.01;
     EchoSettings settings = secondarySettings(100);

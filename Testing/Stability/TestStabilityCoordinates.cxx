@@ -4,6 +4,7 @@
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "ScanTestTown.h"
+#include "StabilityScenes.h"
 #include "StabilityTable.h"
 
 #include <gtest/gtest.h>
@@ -28,6 +29,7 @@ struct Comparison
   std::size_t undecided = 0; ///< rays so near an edge that rounding decides
   std::size_t wrong = 0;     ///< another triangle, or none, or one too many
   std::size_t otherBits = 0; ///< one descent per ray differs from the batch
+  std::size_t paper = 0;     ///< the preset Paper's tree and descent do
 };
 
 /// Angle within which rounding may decide whether a ray passes an edge, rad.
@@ -62,18 +64,23 @@ void compareRay(const TriangleMesh& mesh, const BeamFrame& frame, double x, doub
 }
 
 /// Trace the rays of one beam and compare all of them.
-void compareBeam(
-  const CollisionTree& tree, const BeamFrame& frame, const BeamRays& rays, Comparison& sum)
+void compareBeam(const CollisionTree& tree, const CollisionTree& paperTree, const BeamFrame& frame,
+  const BeamRays& rays, Comparison& sum)
 {
   OneBeamTracer tracer(tree);
+  OneBeamTracer paperTracer(paperTree);
   std::vector<Hit> hits;
   std::vector<Hit> singly;
+  std::vector<Hit> paperHits;
   tracer.setBeam(frame);
   tracer.trace(rays, TraceMode::Automatic, hits);
   tracer.trace(rays, TraceMode::SingleRays, singly);
+  paperTracer.setBeam(frame);
+  paperTracer.trace(rays, TraceMode::Beams, paperHits);
   for (std::size_t i = 0; i < rays.size(); ++i)
   {
     sum.otherBits += !sameBits(hits[i], singly[i]);
+    sum.paper += !sameBits(hits[i], paperHits[i]);
     compareRay(*tree.mesh, frame, rays.x[i], rays.y[i], hits[i], sum);
   }
 }
@@ -83,6 +90,7 @@ void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& a
   Numbers& random, int beams, Comparison& sum)
 {
   const auto tree = buildCollisionTree(mesh, TreeOptions());
+  const auto paperTree = buildVolumeTree(mesh, PaperTree);
   const double widths[] = { 1e-6, 1e-4, 5.6e-3, 0.1, 1.0 };
   for (int i = 0; i < beams; ++i)
   {
@@ -98,7 +106,7 @@ void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& a
     {
       continue; // the lidar is that point
     }
-    compareBeam(*tree, avianlidar::makeBeamFrame(apex, target, width), rays, sum);
+    compareBeam(*tree, *paperTree, avianlidar::makeBeamFrame(apex, target, width), rays, sum);
   }
 }
 
@@ -113,6 +121,7 @@ void recordComparison(const std::string& extreme, const std::string& range, cons
     "error of range, in 2^-53 times the triangle's farthest corner / cos(incidence)", RangeBar,
     sum.rangeError.value() });
 }
+
 Vec3 farAway(double distance)
 {
   return distance * glm::normalize(Vec3(0.6, -0.5, 0.62));
@@ -127,6 +136,35 @@ TriangleMesh moved(TriangleMesh mesh, const Vec3& offset)
   return mesh;
 }
 
+/// Scenes, pulses and energies that are multiplied by powers of two.
+struct Scaling
+{
+  Row row; ///< receives the number of echoes that change by a bit but for the power of two
+  echotest::Scene scene;
+  avianlidar::ScanBeams beams;
+  avianlidar::Sensor sensor;
+  std::vector<avianlidar::EchoSettings> settings;
+  TreeOptions tree;
+  std::vector<int> exponents;
+  bool ofLengths, ofEnergies; ///< what is multiplied
+};
+
+/// Number of echoes whose bits are not those of the plain ones times the factors.
+std::size_t echoesNotScaled(const avianlidar::ScanResult& plain,
+  const avianlidar::ScanResult& result, double lengths, double energies)
+{
+  std::size_t differing = result.echoes.size() != plain.echoes.size();
+  for (std::size_t i = 0; i < std::min(result.echoes.size(), plain.echoes.size()); ++i)
+  {
+    const avianlidar::Echo& a = plain.echoes[i];
+    const avianlidar::Echo& b = result.echoes[i];
+    differing +=
+      !(a.energy * energies == b.energy && a.energyReceived * energies == b.energyReceived &&
+        a.returnEnergy * energies == b.returnEnergy && a.range * lengths == b.range &&
+        a.energyStdError * energies == b.energyStdError && a.secondaryShare == b.secondaryShare);
+  }
+  return differing;
+}
 }
 
 TEST(StabilityCoordinates, HitsAreThoseOfBruteForce)
@@ -176,6 +214,10 @@ TEST(StabilityCoordinates, HitsAreThoseOfBruteForce)
   }
   recordComparison("Sizes", "triangles of 1e-6 to 1e5 m in one scene", sizes);
   recordComparison("Aspect ratio", "1 to 1e8, needles and flat ones", needles);
+  record(
+    { "Preset Paper: coordinates", "1e-3 to 1e8 m from the origin, sizes 1e-6 to 1e5 m, needles",
+      "paper", "hits unlike brute force in long double", 0.0,
+      static_cast<double>(far.paper + tiny.paper + sizes.paper + needles.paper) });
   for (const Comparison* sum : { &far, &tiny, &sizes, &needles })
   {
     EXPECT_GT(sum->hits, 400u);
@@ -202,39 +244,60 @@ TEST(StabilityCoordinates, SceneMovedByWhatRoundsNothingKeepsItsBits)
     "echoes that change by a bit", 0.0, static_cast<double>(differing) });
 }
 
-TEST(StabilityCoordinates, SceneScaledByPowersOfTwoKeepsItsBits)
+TEST(StabilityCoordinates, PowersOfTwoKeepBits)
 {
   using namespace echotest;
-  EchoSettings settings = usual();
-  settings.attenuationCoefficient = 0.0;
-  settings.noise = false;
-  const ScanBeams beams = horizon(90, 4);
-  const Scene scene = town();
-  std::size_t differing = 0;
-  for (const bool integrated : { true, false })
+  std::vector<EchoSettings> ways(2, usual());
+  for (std::size_t i = 0; i < 2; ++i)
   {
-    settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
-    const ScanResult plain = runScan(makeSetup(scene, Sensor(), settings), beams);
-    ASSERT_GT(plain.echoes.size(), 50u);
-    for (const int exponent : { -30, -20, -10, -1, 1, 10, 20 })
+    ways[i].beamSamples = BothSources[i];
+    ways[i].attenuationCoefficient = 0.0;
+    ways[i].noise = false;
+  }
+  std::vector<EchoSettings> papers = { paper(Readings[0]), paper(Readings[1]) };
+  papers[0].attenuationCoefficient = papers[1].attenuationCoefficient = 0.0;
+  std::vector<int> ofEnergies;
+  for (int exponent = -88; exponent <= 22; exponent += 5)
+  {
+    ofEnergies.push_back(exponent);
+  }
+  const Scaling scalings[] = {
+    { { "Energies", "pulse and limits times 2^-88 to 2^22 (1e-30 to 1.5e3 J), two reflections",
+        "both", "echoes that change by a bit but for the power of two", 0.0, 0.0 },
+      corner(), oneBeam(), intoTheCorner(), ways, {}, ofEnergies, false, true },
+    { { "Scale", "scene, pulse and gate times 2^-30 to 2^20", "both",
+        "echoes whose scaled range or whose energy changes by a bit", 0.0, 0.0 },
+      town(), horizon(90, 4), Sensor(), ways, {}, { -30, -20, -10, -1, 1, 10, 20 }, true, false },
+    { { "Preset Paper: scale", "scene, pulse, gate and energies times 2^-20 to 2^20", "paper",
+        "echoes that change other than by the power of two", 0.0, 0.0 },
+      town(), horizon(90, 4), Sensor(), papers, PaperTree, { -20, -10, -1, 1, 10, 20 }, true, true }
+  };
+  for (const Scaling& of : scalings)
+  {
+    Row row = of.row;
+    for (const EchoSettings& settings : of.settings)
     {
-      const double factor = std::ldexp(1.0, exponent);
-      Sensor sensor;
-      sensor.samplingInterval *= factor;
-      sensor.pulseWidth *= factor;
-      sensor.rangeGate *= factor;
-      const ScanResult result = runScan(makeSetup(scaled(scene, factor), sensor, settings), beams);
-      differing += plain.echoes.size() != result.echoes.size();
-      for (std::size_t i = 0; i < std::min(plain.echoes.size(), result.echoes.size()); ++i)
+      const ScanResult plain = runScan(makeSetup(of.scene, of.sensor, settings, of.tree), of.beams);
+      ASSERT_GE(plain.echoes.size(), of.ofLengths ? 50u : 1u);
+      ASSERT_TRUE(of.ofLengths || plain.echoes[0].secondaryShare > 0.0);
+      for (const int exponent : of.exponents)
       {
-        differing += !(echotest::sameBits(plain.echoes[i].range * factor, result.echoes[i].range) &&
-          echotest::sameBits(plain.echoes[i].returnEnergy, result.echoes[i].returnEnergy));
+        const double lengths = std::ldexp(1.0, of.ofLengths ? exponent : 0);
+        const double energies = std::ldexp(1.0, of.ofEnergies ? exponent : 0);
+        Sensor sensor = of.sensor;
+        sensor.samplingInterval *= lengths;
+        sensor.pulseWidth *= lengths;
+        sensor.rangeGate *= lengths;
+        sensor.pulseEnergy *= energies;
+        sensor.lowerEnergyLimit *= energies;
+        sensor.upperEnergyLimit *= energies;
+        const Scene scene = changed(of.scene, [=](const Vec3& p) { return lengths * p; });
+        row.worst += static_cast<double>(echoesNotScaled(plain,
+          runScan(makeSetup(scene, sensor, settings, of.tree), of.beams), lengths, energies));
       }
     }
+    record(row);
   }
-  record({ "Scale", "scene, pulse and gate times 2^-30 to 2^20", "both",
-    "echoes whose scaled range or whose energy changes by a bit", 0.0,
-    static_cast<double>(differing) });
 }
 
 TEST(StabilityCoordinates, SceneTurnedKeepsRangesAndEnergies)

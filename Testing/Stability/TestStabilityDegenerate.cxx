@@ -5,18 +5,16 @@
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
 #include "ScanTestTown.h"
+#include "StabilityScenes.h"
 #include "StabilityTable.h"
 
 #include <gtest/gtest.h>
 
 using namespace echotest;
-using stability::record;
-using stability::Worst;
+using namespace stability;
 
 namespace
 {
-const Material Diffuse{ 0.146, 0.0, 0.0 };
-
 /// Two reflections; without noise, which alarms where the limit is 0.
 EchoSettings quiet()
 {
@@ -52,7 +50,7 @@ std::size_t echoesThatDisagree(const ScanResult& a, const ScanResult& b, double 
 double energyAlongAPlane(double t)
 {
   const double half = std::sin(0.5 * t);
-  return 3.6e-4 * 0.146 * (t - std::sin(t) * std::cos(t)) / (4.0 * Pi * half * half);
+  return Qs * Diffuse.kd * (t - std::sin(t) * std::cos(t)) / (4.0 * Pi * half * half);
 }
 }
 
@@ -88,10 +86,10 @@ TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
     direction[axis] = 0.0;
     for (const double t : { 1e-6, 5.6e-3, 0.5 })
     {
-      for (const bool integrated : { true, false })
+      for (const BeamSampleSource source : BothSources)
       {
         EchoSettings settings = quiet();
-        settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
+        settings.beamSamples = source;
         echoes += runScan(makeSetup(scene, openSensor(t), settings), oneBeam(direction, apex))
                     .echoes.size();
       }
@@ -137,8 +135,7 @@ TEST(StabilityDegenerate, PlanesNearlyThroughTheLidar)
 TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
 {
   const Scene plain = town();
-  Scene more = plain;
-  more.mesh = std::make_shared<TriangleMesh>(*plain.mesh);
+  Scene more = copyOf(plain);
   const auto add = [&more](const std::array<std::uint32_t, 3>& t, std::size_t like)
   {
     more.mesh->triangles.push_back(t);
@@ -157,8 +154,7 @@ TEST(StabilityDegenerate, DuplicatesAndTrianglesWithoutArea)
     add({ t[0], static_cast<std::uint32_t>(more.mesh->points.size()), t[1] }, i); // a middle
     more.mesh->points.push_back(0.5 * (more.mesh->points[t[0]] + more.mesh->points[t[1]]));
   }
-  Scene turned = plain;
-  turned.mesh = std::make_shared<TriangleMesh>(*plain.mesh);
+  Scene turned = copyOf(plain);
   for (auto& t : turned.mesh->triangles)
   {
     std::swap(t[1], t[2]);
@@ -266,8 +262,7 @@ TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
     const Scene bare = town(at, grid);
     for (int kind = 0; kind < 3; ++kind)
     {
-      Scene scene = bare;
-      scene.mesh = std::make_shared<TriangleMesh>(*bare.mesh);
+      Scene scene = copyOf(bare);
       // Triangles in planes through the lidar: it lies inside, on a side, on a corner.
       const Vec3 corner[3][3] = { { { -1, -1, 0 }, { 3, -1, 0 }, { -1, 3, 0 } },
         { { -1, 0, 0 }, { 1, 0, 0 }, { 0, 0, 5 } }, { { 0, 0, 0 }, { 2, 0, 1 }, { 0, 2, 1 } } };
@@ -286,9 +281,9 @@ TEST(StabilityDegenerate, LidarOnASurfaceAnEdgeOrAVertex)
       EchoSettings settings = usual();
       settings.numberOfReflections = 1;
       const ScanBeams beams = horizon(90, 4, at);
-      for (const bool integrated : { true, false })
+      for (const BeamSampleSource source : BothSources)
       {
-        settings.beamSamples = integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
+        settings.beamSamples = source;
         const ScanResult without = runScan(makeSetup(bare, Sensor(), settings), beams);
         echoes += without.echoes.size();
         differing += differingEchoes(without, runScan(makeSetup(scene, Sensor(), settings), beams));
@@ -311,7 +306,7 @@ TEST(StabilityDegenerate, LidarALittleAboveASurface)
     Sensor sensor = openSensor(1e-4);
     sensor.samplingInterval = 4.0 * height / SpeedOfLight;
     const Echo echo = onlyEcho(scene, sensor, directSettings(1000), { 0.0, 0.6, -0.8 });
-    error.see(std::fabs(echo.returnEnergy / (3.6e-4 * 0.146 * 0.8) - 1.0));
+    error.see(std::fabs(echo.returnEnergy / (Qs * Diffuse.kd * 0.8) - 1.0));
     error.see(std::fabs(echo.range / (1.25 * height) - 1.0));
   }
   record({ "Lidar above a surface", "1e-12 to 1e3 m", "rays",
@@ -335,7 +330,7 @@ TEST(StabilityDegenerate, GrazingIncidence)
     Sensor sensor = openSensor(t);
     sensor.samplingInterval = 1e-6;
     const Echo echo = onlyEcho(scene, sensor, settings);
-    const double right = 3.6e-4 * 0.146 * cosine * std::pow(std::cos(0.5 * t), 2);
+    const double right = Qs * Diffuse.kd * cosine * std::pow(std::cos(0.5 * t), 2);
     energy.see(std::fabs(echo.returnEnergy / right - 1.0));
     range.see(std::fabs(echo.range / distance - 1.0));
   }

@@ -224,10 +224,9 @@ TEST(StabilitySweep, OneNumberAfterTheOther)
            exponent += exponent == -8 || exponent == -4 ? 4 : 8)
       {
         number.of(world) = std::pow(10.0, exponent);
-        for (const bool integrated : { true, false })
+        for (const BeamSampleSource source : BothSources)
         {
-          world.settings.beamSamples =
-            integrated ? BeamSampleSource::Cells : BeamSampleSource::Rays;
+          world.settings.beamSamples = source;
           const Outcome outcome = outcomeOf(world);
           accepted += outcome.refused.empty();
           const bool named =
@@ -235,8 +234,9 @@ TEST(StabilitySweep, OneNumberAfterTheOther)
           const bool good = named && outcome.fault.empty();
           bad += !good;
           EXPECT_TRUE(good) << number.name << " 1e" << exponent << ", usually " << usual
-                            << (integrated ? ", integrated: " : ", sampled: ") << outcome.refused
-                            << outcome.fault;
+                            << (source == BeamSampleSource::Cells ? ", integrated: "
+                                                                  : ", sampled: ")
+                            << outcome.refused << outcome.fault;
         }
       }
     }
