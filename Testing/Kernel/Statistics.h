@@ -21,6 +21,18 @@ inline double meanOf(const std::vector<double>& values)
   return sumOf(values) / static_cast<double>(values.size());
 }
 
+/// Integral of a function, by midpoints.
+template <class Function>
+double byMidpoints(double from, double to, int steps, Function&& function)
+{
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i)
+  {
+    sum += function(from + (i + 0.5) / steps * (to - from));
+  }
+  return sum * (to - from) / steps;
+}
+
 /// Numbers that come one after the other.
 struct Moments
 {

@@ -36,7 +36,7 @@ Sensor noonSensor()
 Scene plateFrom(double y, double kd)
 {
   Scene scene;
-  scene.plate({ Far, y + 50.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, { kd, 0.0, 0.0 });
+  scene.square(Vec3(Far, y + 50.0, 0.0), 50.0, { kd, 0.0, 0.0 });
   return scene;
 }
 
@@ -91,12 +91,11 @@ TEST(Background, SurfacesBehindTheGateCount)
   // A near plate fills one half of the beam, and a plate behind the gate the other half.
   const double lit = 0.4 * (Sky + Sun * std::cos(30.0 * RadiansPerDegree) / Pi);
   Scene scene = plateFrom(0.0, 0.4);
-  scene.plate({ 600.0, -50.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, { 0.4, 0.0, 0.0 });
+  scene.square(Vec3(600.0, -50.0, 0.0), 50.0, { 0.4, 0.0, 0.0 });
   const Sensor sensor = noonSensor();
   EXPECT_NEAR(radianceOf(scene, sensor, BeamSampleSource::Cells), lit, 0.02 * lit);
   // Also for a beam without near surfaces that was seen at night before.
-  Scene far;
-  far.plate({ 600.0, 0.0, 0.0 }, { 0.0, 50.0, 0.0 }, { 0.0, 0.0, 50.0 }, { 0.4, 0.0, 0.0 });
+  Scene far = squareAt(600.0, 50.0, { 0.4, 0.0, 0.0 });
   Sensor night = sensor;
   night.sunlight = 0.0;
   TraceCache cache;

@@ -5,6 +5,7 @@
 #include "MediumTestScene.h"
 #include "ScanTestTown.h"
 #include "SecondaryTestScene.h"
+#include "Statistics.h"
 
 #include <cmath>
 #include <limits>
@@ -277,15 +278,13 @@ TEST(BeamAir, FarAndDenseMediaReturnLight)
       air.begin(makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), sensor.halfBeamwidth));
       const auto unit = static_cast<std::int64_t>((from + 1.0) / sensor.rangeUnitLength());
       const double begin = sensor.rangeUnitLength() * static_cast<double>(unit);
-      double truth = 0.0;
-      constexpr int steps = 20000;
-      for (int i = 0; i < steps; ++i)
-      {
-        const double r = begin + (i + 0.5) / steps * sensor.rangeUnitLength();
-        truth += r < from ? 0.0
+      const double truth = statistics::byMidpoints(begin, begin + sensor.rangeUnitLength(), 20000,
+        [&](double r)
+        {
+          return r < from ? 0.0
                           : sensor.pulseEnergy * extinction / 10.5 * sensor.receiverAperture /
-            (r * r) * std::exp(-extinction * (r - from)) * sensor.rangeUnitLength() / steps;
-      }
+              (r * r) * std::exp(-extinction * (r - from));
+        });
       ASSERT_EQ(air.sharesOf(unit).size(), 1u);
       EXPECT_NEAR(air.sharesOf(unit)[0].mean / truth, 1.0, extinction > 10.0 ? 0.3 : 5e-3);
     }

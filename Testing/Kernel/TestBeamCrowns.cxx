@@ -220,8 +220,7 @@ TEST(BeamCrowns, LeavesHideSmallObjectsOrDoNot)
         Vec3(0.0, 0.0, of.halfHeight), Wall, 7);
       if (wall)
       {
-        scene.plate(
-          Vec3(of.plate + 8.0, 0.0, 0.0), Vec3(0.0, 50.0, 0.0), Vec3(0.0, 0.0, 50.0), Wall, 8);
+        scene.square(Vec3(of.plate + 8.0, 0.0, 0.0), 50.0, Wall, 8);
       }
       Sensor wide = sensor;
       wide.rangeGate = 130.0;

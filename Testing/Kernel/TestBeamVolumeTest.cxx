@@ -2,6 +2,7 @@
 // The beam test never rejects a volume that a ray of the cone meets.
 #include "BeamVolumeTest.h"
 #include "GeometryTestScene.h"
+#include "Sanitized.h"
 #include "TriangleTest.h"
 
 #include <gtest/gtest.h>
@@ -13,11 +14,7 @@ using namespace geometrytest;
 
 namespace
 {
-#ifdef AVIANLIDAR_SANITIZED
-constexpr int Cases = 50000;
-#else
-constexpr int Cases = 1000000;
-#endif
+constexpr int Cases = IsSanitized ? 50000 : 1000000;
 
 struct Case
 {

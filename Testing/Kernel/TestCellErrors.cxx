@@ -108,11 +108,10 @@ TEST(CellErrors, TheGaussianProfileOfAPlateHasAnError)
 {
   // One surface fills the beam in one range unit: weights differ by where the rays fall.
   Scene scene = fineWall(40);
-  scene.plate(Vec3(90.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  scene.square(Vec3(90.0, 0.0, 0.0), 2.0, Matt, 1);
   Sensor sensor = openSensor();
   sensor.beamProfile = BeamProfile::Gaussian;
-  Scene plate;
-  plate.plate(Vec3(90.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  Scene plate = squareAt(90.0, 2.0, Matt, 1);
   const double truth = received(plate, sensor, inCells());
   for (const int rays : { 10, 100, 400 })
   {
@@ -129,8 +128,7 @@ TEST(CellErrors, WhatNoRayMeetsIsPartOfTheStandardError)
   // wall.
   const Sensor sensor = openSensor();
   const double half = 0.002;
-  Scene plain;
-  plain.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
+  Scene plain = squareAt(100.0, 2.0, Matt, 1);
   const double bright = received(plain, sensor, inCells());
   const double lost = sensor.pulseEnergy * Matt.kd * 4.0 * half * half * 4.0 /
     (100.0 * 100.0 * 2.0 * Pi * (1.0 - std::cos(sensor.halfBeamwidth)));
@@ -141,9 +139,8 @@ TEST(CellErrors, WhatNoRayMeetsIsPartOfTheStandardError)
   for (int k = 0; k < beams; ++k)
   {
     Scene scene = fineWall(30); // one plate hides what makes cells of the beam
-    scene.plate(Vec3(99.0, 0.0, 0.0), Vec3(0.0, 2.0, 0.0), Vec3(0.0, 0.0, 2.0), Matt, 1);
-    scene.plate(Vec3(50.0, random(-0.15, 0.15), random(-0.15, 0.15)), Vec3(0.0, half, 0.0),
-      Vec3(0.0, 0.0, half), { 0.0, 0.0, 1.0 }, 1);
+    scene.square(Vec3(99.0, 0.0, 0.0), 2.0, Matt, 1);
+    scene.square(Vec3(50.0, random(-0.15, 0.15), random(-0.15, 0.15)), half, { 0.0, 0.0, 1.0 }, 1);
     const Echo echo = onlyEcho(scene, sensor, inCells());
     const double off = std::fabs(echo.energyReceived - (bright - lost));
     missed += echo.energyReceived > bright - 0.1 * lost;

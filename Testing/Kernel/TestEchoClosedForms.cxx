@@ -44,7 +44,7 @@ Scene smallTarget(double range)
 {
   Scene scene;
   const double half = 0.5 * std::sqrt(0.15);
-  scene.plate(Vec3(range, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), diffuse(0.146));
+  scene.square(Vec3(range, 0.0, 0.0), half, diffuse(0.146));
   return scene;
 }
 }

@@ -2,12 +2,12 @@
 // What must hold of any geometry, over scenes drawn with the seeds 0, 1, 2, ... A failure prints
 // the seed and the scene. AVIANLIDAR_PROPERTY_SEEDS asks for another number of scenes.
 #include "GeometryCase.h"
+#include "Sanitized.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -29,22 +29,13 @@ std::vector<std::uint8_t> bytesOf(std::uint64_t seed)
   }
   return bytes;
 }
-
-std::uint64_t seeds(std::uint64_t usually)
-{
-  const char* text = std::getenv("AVIANLIDAR_PROPERTY_SEEDS");
-#ifdef AVIANLIDAR_SANITIZED
-  usually /= 20;
-#endif
-  return text ? std::strtoull(text, nullptr, 10) : usually;
-}
 }
 
 TEST(GeometryProperties, HoldOfNastyScenes)
 {
   std::size_t triangles = 0;
   int failures = 0;
-  const std::uint64_t count = seeds(10000);
+  const std::uint64_t count = casesAskedFor("AVIANLIDAR_PROPERTY_SEEDS", IsSanitized ? 500 : 10000);
   for (std::uint64_t seed = 0; seed < count && failures < 3; ++seed)
   {
     const auto bytes = bytesOf(seed);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Volumes of media: crossings against midpoints, volumes that move, bad ones.
 #include "MediumTestScene.h"
+#include "Statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,11 +79,8 @@ TEST(MediumVolume, CrossingsAreIntegralsOfTheDensity)
       crosser.find(volume, origin, direction, far, 0.0, parts);
       for (const double to : { 7.0, far })
       {
-        double sum = 0.0;
-        for (int i = 0; i < steps; ++i)
-        {
-          sum += densityAt(volume, origin + (i + 0.5) / steps * to * direction) * to / steps;
-        }
+        const double sum = statistics::byMidpoints(
+          0.0, to, steps, [&](double r) { return densityAt(volume, origin + r * direction); });
         double ours = 0.0;
         for (const MediumCrossing& part : parts)
         {

@@ -174,7 +174,7 @@ TEST(MovedBeams, TrianglesThatAreNotNeighboursInTheSceneAreNotJoined)
   scene.triangle(Vec3(-50, -5, -5), Vec3(-50, 5, -5), Vec3(-50, 5, 5), Wall, 0);
   scene.triangle(Vec3(50, -5, -5), Vec3(50, 5, 5), Vec3(50, -5, 5), Wall, 0);
   Scene plate;
-  plate.plate(Vec3(30, 0, 0.2), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1), Glass, 1);
+  plate.square(Vec3(30, 0, 0.2), 0.1, Glass, 1);
   ScanBeams beams = timed(oneBeam(Vec3(1, 0.004, 0.006)), 0.0);
   const ScanResult wanted = runScan(makeSetup(joined(scene, plate), {}, {}), beams);
   ScanSetup setup = makeSetup(scene, {}, {});
@@ -194,8 +194,7 @@ TEST(MovedBeams, APlateThatCrossesIsSeenByTheBeamsOfThoseTimes)
   }
   Scene plate;
   plate.plate(Vec3(0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0), Wall, 1);
-  Scene wall;
-  wall.plate(Vec3(200.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 0);
+  Scene wall = squareAt(200.0, 9.0, Wall, 0);
   Sensor sensor;
   sensor.halfBeamwidth = 1e-3;
   ScanSetup setup = makeSetup(wall, sensor, {});
@@ -229,8 +228,7 @@ TEST(MovedBeams, APlateThatCrossesIsSeenByTheBeamsOfThoseTimes)
 
 TEST(MovedBeams, AUnitAtTheLimitIsNoEchoAndNotProbable)
 {
-  Scene plate;
-  plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 0.2, 0.0), Vec3(0.0, 0.0, 0.2), Wall, 1);
+  Scene plate = squareAt(100.0, 0.2, Wall, 1);
   Sensor sensor;
   sensor.pulseWidth = 0.0; // all in one range unit
   sensor.lowerEnergyLimit = 1e-9;
@@ -258,11 +256,8 @@ TEST(MovedBeams, AUnitAtTheLimitIsNoEchoAndNotProbable)
 TEST(MovedBeams, ASunlitWallBehindAMoverMakesItLessProbable)
 {
   // A plate in front of the sky, or of a white wall in the sun: the same light, more noise.
-  Scene plate;
-  plate.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), Wall, 1);
-  Scene wall;
-  wall.plate(
-    Vec3(200.0, 0.0, 0.0), Vec3(0.0, 50.0, 0.0), Vec3(0.0, 0.0, 50.0), { 0.9, 0.0, 1.0 }, 2);
+  Scene plate = squareAt(100.0, 0.1, Wall, 1);
+  Scene wall = squareAt(200.0, 50.0, { 0.9, 0.0, 1.0 }, 2);
   Sensor sensor;
   sensor.receiverModel = ReceiverModel::Photons;
   sensor.receiverAperture = 0.00785;
@@ -426,9 +421,8 @@ TEST(MovedBeams, AMoverMayHaveManyTriangles)
 
 TEST(MovedBeams, KeptBeamsDoNotChangeWhichObjectsCoincide)
 {
-  Scene walls;
-  walls.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall, 1);
-  walls.plate(Vec3(100.0, 1.0, 0.0), Vec3(0.0, 3.0, 0.0), Vec3(0.0, 0.0, 3.0), Wood, 2);
+  Scene walls = squareAt(100.0, 5.0, Wall, 1);
+  walls.square(Vec3(100.0, 1.0, 0.0), 3.0, Wood, 2);
   const ScanBeams beams = timed(oneBeam(), 0.0);
   for (const BeamSampleSource source : { BeamSampleSource::Cells, BeamSampleSource::Rays })
   {
@@ -446,8 +440,7 @@ TEST(MovedBeams, KeptBeamsDoNotChangeWhichObjectsCoincide)
     EXPECT_EQ(pairs(), 1u);
     for (const double half : { 5.0, 0.05 }) // hides the beam, or a part of it
     {
-      Scene lid;
-      lid.plate(Vec3(50.0, 0.0, 0.0), Vec3(0.0, half, 0.0), Vec3(0.0, 0.0, half), Wall, 3);
+      Scene lid = squareAt(50.0, half, Wall, 3);
       setMovers(setup, { moverOf(lid) });
       EXPECT_EQ(pairs(), half < 1.0 ? 1u : 0u);
     }

@@ -3,6 +3,8 @@
 #include "BeamNoise.h"
 #include "Distributions.h"
 #include "RangeUnits.h"
+#include "Sanitized.h"
+#include "Search905.h"
 
 #include <gtest/gtest.h>
 
@@ -135,28 +137,43 @@ TEST(NoiseBeam, EveryUnitIsPoissonAndAlarmsAreItsTail)
 
 TEST(NoiseBeam, RareAlarmsComeAtTheirRate)
 {
-  // P(b > 8) = 1.1e-6 per unit at a mean of 1, in a thousand units of each of 1e6 beams.
-  const Sensor sensor = photonCounter(1.0, 8.0);
-  const NoisePlan plan = planNoise(sensor, true);
-  EXPECT_NEAR(plan.alarmProbability / poissonTail(1.0, 8.0), 1.0, 1e-12);
-  BeamNoise noise;
-  double alarms = 0.0;
-  double place = 0.0;
-  constexpr std::uint64_t beams = 1000000;
-  for (std::uint64_t beam = 0; beam < beams; ++beam)
+  // Photons: P(b > 8) = 1.1e-6 per unit at a mean of 1, in a thousand units of each beam. Gaussian
+  // noise: one alarm in a scan of 15,360 beams.
+  for (const bool gaussian : { false, true })
   {
-    noise.begin(plan, { 0, static_cast<std::uint64_t>(beam) });
-    for (const std::int64_t unit : noise.alarms())
+    const Sensor sensor = gaussian ? echotest::search905() : photonCounter(1.0, 8.0);
+    const NoisePlan plan = planNoise(sensor, true);
+    const double rate =
+      gaussian ? 1.0 / 15360.0 / static_cast<double>(plan.gateUnits) : poissonTail(1.0, 8.0);
+    EXPECT_NEAR(plan.falseAlarmsPerBeam / (rate * plan.gateUnits), 1.0, 1e-9);
+    BeamNoise noise;
+    double alarms = 0.0;
+    double place = 0.0;
+    double excess = 0.0;
+    const std::uint64_t beams = IsSanitized || !gaussian ? 1000000 : 15360000;
+    for (std::uint64_t beam = 0; beam < beams; ++beam)
     {
-      alarms += 1.0;
-      place += (static_cast<double>(unit) + 0.5) / static_cast<double>(plan.gateUnits);
-      ASSERT_GE(std::llround(noise.energy(unit) / plan.photonEnergy), 9);
+      noise.begin(plan, { 5, beam });
+      for (const std::int64_t unit : noise.alarms())
+      {
+        alarms += 1.0;
+        place += (static_cast<double>(unit) + 0.5) / static_cast<double>(plan.gateUnits);
+        excess += noise.energy(unit) / sensor.lowerEnergyLimit;
+        ASSERT_GT(noise.energy(unit), sensor.lowerEnergyLimit);
+      }
+    }
+    const double expected = plan.falseAlarmsPerBeam * static_cast<double>(beams);
+    EXPECT_NEAR(alarms, expected, 4.0 * std::sqrt(expected));
+    EXPECT_NEAR(place / alarms, 0.5, 4.0 / std::sqrt(12.0 * alarms));
+    if (gaussian)
+    {
+      // The mean of a Gaussian tail beyond k is density over probability, its variance about 1/k^2.
+      const double k = 5.57752;
+      const double beyond =
+        std::exp(-0.5 * k * k) / std::sqrt(2.0 * Pi) / (0.5 * std::erfc(k / std::sqrt(2.0)));
+      EXPECT_NEAR(k * excess / alarms, beyond, 3.0 / k / std::sqrt(alarms));
     }
   }
-  const double expected = plan.falseAlarmsPerBeam * beams;
-  EXPECT_GT(expected, 1000.0);
-  EXPECT_NEAR(alarms, expected, 4.5 * std::sqrt(expected));
-  EXPECT_NEAR(place / alarms, 0.5, 4.5 / std::sqrt(12.0 * alarms));
 }
 
 TEST(NoiseBeam, AlmostEveryUnitAlarms)

@@ -4,62 +4,41 @@
 #include "BeamReceiver.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
-#include "PhotonReceiver.h"
 #include "RangeUnits.h"
+#include "Search905.h"
 #include "Statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 using namespace echotest;
 
 namespace
 {
-constexpr double Infinite = std::numeric_limits<double>::infinity();
-
 /// A receiver whose numbers were calculated by hand. Ranges where the mean signal of a target of
 /// reflectance 0.3 is at the threshold, in air of 8.9e-5/m.
 struct Row
 {
-  double energy, wavelength, halfBeamwidth, diameter, efficiency, radiance, bandwidth;
-  double beams, gate;
+  Instrument of;
   double background, deviation, factor, threshold;
   double ranges[6]; ///< ranges of the areas below
 };
 
-constexpr double Areas[] = { 0.0052, 0.011, 0.018, 0.030, 0.067, Infinite };
+constexpr double Areas[] = { 0.0052, 0.011, 0.018, 0.030, 0.067, Infinity };
 
-const Row Rows[] = { { 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.05, 10.0, 15360.0, 4000.0, 3525.22,
-                       119.062, 5.57752, 664.069,
+constexpr Instrument AtNight{ 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.0, 10.0, 15360.0, 4000.0 };
+
+const Row Rows[] = { { Search905, 3525.22, 119.062, 5.57752, 664.069,
                        { 436.15, 523.95, 590.83, 668.98, 812.60, 10598.0 } },
-  { 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.0, 10.0, 15360.0, 4000.0, 0.0, 60.0, 5.57752, 334.651,
-    { 515.82, 619.23, 697.91, 789.75, 958.23, 12550.0 } },
-  { 1e-3, 1550e-9, 3e-3, 0.15, 0.3, 0.01, 10.0, 53000.0, 4000.0, 584.804, 73.1739, 5.78924, 423.621,
+  { AtNight, 0.0, 60.0, 5.57752, 334.651, { 515.82, 619.23, 697.91, 789.75, 958.23, 12550.0 } },
+  { Search1550, 584.804, 73.1739, 5.78924, 423.621,
     { 1090.17, 1302.39, 1462.56, 1648.13, 1984.83, 18542.0 } },
-  { 4e-7, 905e-9, 1.5e-3, 0.025, 0.4, 0.05, 20.0, 64000.0, 300.0, 31.6158, 60.7853, 5.37153,
-    326.510, { 93.28, 112.40, 127.05, 144.24, 176.08, 315.0 } } };
+  { Automotive16, 31.6158, 60.7853, 5.37153, 326.510,
+    { 93.28, 112.40, 127.05, 144.24, 176.08, 315.0 } } };
 
 constexpr double Plumage = 0.3; // reflectance
 constexpr double Haze = 8.9e-5; // 1/m
-
-Sensor sensorOf(const Row& row)
-{
-  Sensor sensor;
-  sensor.receiverModel = ReceiverModel::Photons;
-  sensor.pulseEnergy = row.energy;
-  sensor.frequency = SpeedOfLight / row.wavelength;
-  sensor.halfBeamwidth = row.halfBeamwidth;
-  sensor.receiverAperture = 0.25 * Pi * row.diameter * row.diameter;
-  sensor.receiverEfficiency = row.efficiency;
-  sensor.backgroundRadiance = row.radiance;
-  sensor.filterBandwidth = row.bandwidth;
-  sensor.rangeGate = row.gate;
-  EXPECT_EQ(setPhotonLimits(sensor, 1.0, 40.0, row.beams), "");
-  EXPECT_EQ(checkSensor(sensor), "");
-  return sensor;
-}
 
 /// Where the mean signal falls to the threshold, m.
 double detectionRange(const Sensor& sensor, double area)
@@ -76,9 +55,8 @@ double detectionRange(const Sensor& sensor, double area)
   return near;
 }
 
-/// Targets that send so many electrons at random ranges within a unit: how many are perceived
-/// there, and moments of what is received.
-/// How many of so many scans perceive a target.
+/// How many of so many scans perceive a target that sends so many electrons, at random ranges
+/// within a unit.
 int countTargets(const Sensor& sensor, double electrons, int scans)
 {
   const PhotonReceiver receiver(sensor);
@@ -122,12 +100,12 @@ TEST(PhotonReceiver, HasTheNumbersOfTheTable)
 {
   for (const Row& row : Rows)
   {
-    const Sensor sensor = sensorOf(row);
+    const Sensor sensor = sensorOf(row.of);
     const PhotonReceiver receiver(sensor);
     EXPECT_NEAR(receiver.background, row.background, 1e-4 * row.background);
     EXPECT_NEAR(receiver.deviation(0.0), row.deviation, 1e-4 * row.deviation);
     EXPECT_NEAR(
-      thresholdFactor(1.0, rangeUnitsOf(sensor, row.beams)), row.factor, 1e-4 * row.factor);
+      thresholdFactor(1.0, rangeUnitsOf(sensor, row.of.beams)), row.factor, 1e-4 * row.factor);
     EXPECT_NEAR(
       sensor.lowerEnergyLimit * receiver.electronsPerJoule, row.threshold, 1e-4 * row.threshold);
     EXPECT_NEAR(sensor.upperEnergyLimit / sensor.lowerEnergyLimit, 1e4, 1e-6);
@@ -142,7 +120,7 @@ TEST(PhotonReceiver, HasTheNumbersOfTheTable)
 
 TEST(PhotonReceiver, DetectsAsOftenAsItsProbabilitySays)
 {
-  Sensor sensor = sensorOf(Rows[0]);
+  Sensor sensor = sensorOf(Search905);
   sensor.pulseWidth = 0.0;
   const PhotonReceiver receiver(sensor);
   const double threshold = sensor.lowerEnergyLimit * receiver.electronsPerJoule;
@@ -164,14 +142,14 @@ TEST(PhotonReceiver, DetectsAsOftenAsItsProbabilitySays)
 
 TEST(PhotonReceiver, LosesWhatAPulseSharesBetweenTwoUnits)
 {
-  const Sensor sensor = sensorOf(Rows[0]); // the pulse is as long as a unit
+  const Sensor sensor = sensorOf(Search905); // the pulse is as long as a unit
   expectShare(countTargets(sensor, 1038.97, Scans), Scans, 0.7154);
   expectShare(countTargets(sensor, 550.918, Scans), Scans, 0.0449);
 }
 
 TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
 {
-  Sensor sensor = sensorOf(Rows[0]);
+  Sensor sensor = sensorOf(Search905);
   sensor.pulseWidth = 0.0;
   const PhotonReceiver receiver(sensor);
   const NoisePlan plan = planNoise(sensor, true);
@@ -194,7 +172,7 @@ TEST(PhotonReceiver, HasNoiseThatGrowsWithTheSignal)
 
 TEST(PhotonReceiver, FaintLightIsPerceivedWithRareDeviatesAlone)
 {
-  const Sensor sensor = sensorOf(Rows[0]);
+  const Sensor sensor = sensorOf(Search905);
   const NoisePlan plan = planNoise(sensor, true);
   const double limit = sensor.lowerEnergyLimit;
   BeamNoise noise;
@@ -223,48 +201,9 @@ TEST(PhotonReceiver, FaintLightIsPerceivedWithRareDeviatesAlone)
   expectShare(rare, 400000, 1.0 - 0.9986);
 }
 
-TEST(PhotonReceiver, RaisesAsManyFalseAlarmsAsAllowed)
-{
-  const Sensor sensor = sensorOf(Rows[0]);
-  const NoisePlan plan = planNoise(sensor, true);
-  const double limit = sensor.lowerEnergyLimit;
-  constexpr int beams = 15360;
-#if defined(AVIANLIDAR_SANITIZED)
-  constexpr int scans = 100;
-#else
-  constexpr int scans = 1000;
-#endif
-  EXPECT_NEAR(beams * plan.falseAlarmsPerBeam, 1.0, 1e-9);
-  BeamNoise noise;
-  int alarms = 0;
-  double place = 0.0;
-  double excess = 0.0;
-  for (int scan = 0; scan < scans; ++scan)
-  {
-    for (int beam = 0; beam < beams; ++beam)
-    {
-      noise.begin(plan, { 5, static_cast<std::uint64_t>(beam), scan });
-      for (const std::int64_t unit : noise.alarms())
-      {
-        ++alarms;
-        place += static_cast<double>(unit) / plan.gateUnits;
-        excess += noise.energy(unit) / limit;
-        EXPECT_GT(noise.energy(unit), limit);
-      }
-    }
-  }
-  EXPECT_NEAR(alarms, scans, 3.0 * std::sqrt(scans));
-  EXPECT_NEAR(place / alarms, 0.5, 3.0 * std::sqrt(1.0 / 12.0 / alarms));
-  // The mean of a Gaussian tail beyond k is density over probability, its variance about 1/k^2.
-  const double k = 5.57752;
-  const double beyond =
-    std::exp(-0.5 * k * k) / std::sqrt(2.0 * Pi) / (0.5 * std::erfc(k / std::sqrt(2.0)));
-  EXPECT_NEAR(k * excess / alarms, beyond, 3.0 / k / std::sqrt(alarms));
-}
-
 TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourthPower)
 {
-  Sensor sensor = sensorOf(Rows[0]);
+  Sensor sensor = sensorOf(Search905);
   sensor.samplingInterval = 1e-3; // all in one unit
   sensor.pulseWidth = 0.0;
   sensor.rangeGate = 1e6;
@@ -273,8 +212,7 @@ TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourth
   const Material matt{ Plumage, 0.0, 1.0 };
   const auto energyOf = [&](double range, double size)
   {
-    Scene scene;
-    scene.plate({ range, 0.0, 0.0 }, { 0.0, size, 0.0 }, { 0.0, 0.0, size }, matt);
+    Scene scene = squareAt(range, size, matt);
     const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
     return result.echoes.empty() ? 0.0 : result.echoes[0].energyReceived;
   };
@@ -284,7 +222,7 @@ TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourth
   EXPECT_NEAR(target, -4.0, 0.01);
   // And as much as the closed form says.
   EXPECT_NEAR(
-    energyOf(1000.0, 100.0) / energyFromTarget(sensor, 1000.0, Infinite, Plumage, 0.0), 1.0, 1e-3);
+    energyOf(1000.0, 100.0) / energyFromTarget(sensor, 1000.0, Infinity, Plumage, 0.0), 1.0, 1e-3);
   EXPECT_NEAR(
     energyOf(1000.0, 0.05) / energyFromTarget(sensor, 1000.0, 0.01, Plumage, 0.0), 1.0, 1e-3);
 }
@@ -305,7 +243,7 @@ TEST(PhotonReceiver, SaysHowManyFalseAlarmsSingleElectronsWouldRaise)
     { 0.18, 1.0, 0.0, 5.57752, 69417.0, 9.0 }, { 0.07, 1.0, 0.0, 5.57752, 190000.0, 9.0 } };
   for (const auto& c : cases)
   {
-    Sensor sensor = sensorOf(Rows[0]);
+    Sensor sensor = sensorOf(Search905);
     sensor.backgroundRadiance *= c.background / PhotonReceiver(sensor).background;
     sensor.excessNoiseFactor = c.excess;
     sensor.amplifierNoise = c.amplifier;
@@ -315,8 +253,8 @@ TEST(PhotonReceiver, SaysHowManyFalseAlarmsSingleElectronsWouldRaise)
     EXPECT_EQ(warningOnElectrons(sensor).empty(), c.times < 10.0) << c.background;
   }
   // None is added to the noise of the amplifier alone, nor where there are ever so many electrons.
-  EXPECT_EQ(falseAlarmsOfElectrons(sensorOf(Rows[1])), 1.0);
-  Sensor bright = sensorOf(Rows[0]);
+  EXPECT_EQ(falseAlarmsOfElectrons(sensorOf(AtNight)), 1.0);
+  Sensor bright = sensorOf(Search905);
   for (double radiance = 1.0; radiance < 1e10; radiance *= 10.0)
   {
     bright.backgroundRadiance = radiance;
@@ -325,7 +263,7 @@ TEST(PhotonReceiver, SaysHowManyFalseAlarmsSingleElectronsWouldRaise)
     EXPECT_GE(falseAlarmsOfElectrons(bright), 1.0 - 1e-9) << radiance;
   }
   // A receiver of given limits counts its photons.
-  Sensor given = sensorOf(Rows[0]);
+  Sensor given = sensorOf(Search905);
   given.receiverModel = ReceiverModel::EnergyLimits;
   given.backgroundRadiance = 0.0;
   EXPECT_EQ(warningOnElectrons(given), "");
@@ -333,7 +271,7 @@ TEST(PhotonReceiver, SaysHowManyFalseAlarmsSingleElectronsWouldRaise)
 
 TEST(PhotonReceiver, NamesWhatIsWrong)
 {
-  const Sensor good = sensorOf(Rows[0]);
+  const Sensor good = sensorOf(Search905);
   Sensor dark = good;
   dark.backgroundRadiance = 0.0;
   dark.amplifierNoise = 0.0;

@@ -2,6 +2,7 @@
 // Integrated beams that see two reflections: whose echoes those are, and what is left out of them.
 #include "CellTestScene.h"
 #include "IntegrationTestScene.h"
+#include "Sanitized.h"
 #include "SecondaryTestScene.h"
 #include "Statistics.h"
 
@@ -34,8 +35,7 @@ Sensor sensorOfShortUnits()
 /// groove has the objects 7 and 9, each with its material.
 Scene grooveOfMirrors()
 {
-  Scene scene;
-  scene.plate(Vec3(-50.0, 0.0, 0.0), Vec3(0.0, 9.0, 0.0), Vec3(0.0, 0.0, 9.0), Wall, 3);
+  Scene scene = squareAt(-50.0, 9.0, Wall, 3);
   const Scene mirrors = groove(45.0 * Degree, Mirror);
   for (std::size_t t = 0; t < mirrors.mesh->triangles.size(); ++t)
   {
@@ -118,7 +118,7 @@ Scene cornerWithThings(int parts)
   celltest::fine(scene, edge + Vec3(-2.5, 2.5, 0.0), Vec3(2.5, -2.5, 0.0), up, parts, Metal, 1);
   celltest::fine(scene, edge + Vec3(-2.5, -2.5, 0.0), Vec3(2.5, 2.5, 0.0), up, parts, matt, 2);
   scene.plate(Vec3(97.0, 0.6, 0.2), Vec3(0.1, 0.09, 0.0), Vec3(0.0, 0.0, 0.1), Metal, 3);
-  scene.plate(Vec3(98.0, -0.6, 0.2), Vec3(0.0, 0.1, 0.0), Vec3(0.0, 0.0, 0.1), matt, 4);
+  scene.square(Vec3(98.0, -0.6, 0.2), 0.1, matt, 4);
   return scene;
 }
 }
@@ -134,11 +134,7 @@ TEST(PolygonPaths, TheirMeanIsThatOfRaysFromPolygonsAndInCells)
   const Way ways[] = { { BeamSampleSource::Rays, 1, DirectEcho::Rays },
     { BeamSampleSource::Cells, 1, DirectEcho::Polygons },
     { BeamSampleSource::Cells, 12, DirectEcho::Cells } };
-#if defined(AVIANLIDAR_SANITIZED)
-  constexpr int seeds = 100;
-#else
-  constexpr int seeds = 1000;
-#endif
+  constexpr int seeds = IsSanitized ? 100 : 1000;
   statistics::Moments energies[3][2]; // of all, and of what came after two reflections
   for (int way = 0; way < 3; ++way)
   {

@@ -4,6 +4,7 @@
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
 #include "PlaneOracle.h"
+#include "Sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -65,11 +66,7 @@ void check(const Case& c, const Scene& scene, Numbers& random, Errors& errors)
 TEST(PolygonUnits, EveryRangeUnitIsRightToItsBound)
 {
   Numbers random(6);
-#if defined(AVIANLIDAR_SANITIZED)
-  constexpr int cases = 40;
-#else
-  constexpr int cases = 200;
-#endif
+  constexpr int cases = IsSanitized ? 40 : 200;
   Errors errors;
   for (int k = 0; k < cases; ++k)
   {

@@ -33,11 +33,10 @@ TEST(ScanReport, TheLabelIsThatOfTheLargestShare)
 TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
 {
   Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall); // near
+  scene.square(Vec3(100.0, 0.0, 0.0), 5.0, Wall); // near
   scene.plate(
     Vec3(0.0, 5000.0, 0.0), Vec3(300.0, 0.0, 0.0), Vec3(0.0, 0.0, 300.0), Wall); // beyond the gate
-  scene.plate(
-    Vec3(-100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 1e-4, 0, 0 }); // dark
+  scene.square(Vec3(-100.0, 0.0, 0.0), 5.0, { 1e-4, 0, 0 });                     // dark
   scene.plate(
     Vec3(0.0, -100.0, 0.0), Vec3(5.0, 0.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.9, 0, 0 }); // bright
   ScanBeams beams;
@@ -61,7 +60,7 @@ TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
   EXPECT_TRUE(std::isnan(unclamped.reports[1].range));
   // What is nearer than the minimum range hides what is behind, and is no echo.
   wide.minimumRange = 100.1;
-  scene.plate(Vec3(150.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), Wall);
+  scene.square(Vec3(150.0, 0.0, 0.0), 5.0, Wall);
   const ScanResult gated = runScan(makeSetup(scene, wide, usual()), beams);
   EXPECT_EQ(gated.reports[0].status, BeamStatus::OutsideGate);
   EXPECT_TRUE(gated.echoes.empty());
@@ -70,9 +69,8 @@ TEST(ScanReport, StatusOfABeamTellsWhatBecameOfIt)
 TEST(ScanReport, StatusAndRangeOfTheReportDoNotDependOnWhatIsShown)
 {
   // A small bright plate before a large wall: two returns, the second stronger and saturated.
-  Scene scene;
-  scene.plate(Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.12, 0.0), Vec3(0.0, 0.0, 0.12), { 0.3, 0, 0 });
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 5.0, 0.0), Vec3(0.0, 0.0, 5.0), { 0.3, 0, 0 });
+  Scene scene = squareAt(50.0, 0.12, { 0.3, 0, 0 });
+  scene.square(Vec3(100.0, 0.0, 0.0), 5.0, { 0.3, 0, 0 });
   Sensor sensor;
   sensor.upperEnergyLimit = 3e-5;
   for (ReturnMode mode :

@@ -2,6 +2,7 @@
 // Paths with two reflections: the known ones, and the bound on what a ray returns.
 #include "GivenHits.h"
 #include "MediumTestScene.h"
+#include "Sanitized.h"
 #include "SecondaryTestScene.h"
 
 #include "OneBeamTracer.h"
@@ -62,11 +63,7 @@ TEST(SecondaryReflection, DiffuseConnectionsOfAnOpenV)
   const Scene scene = groove(45.0 * Degree, { 0.146, 0.0, 0.0 }, 0.1, 300.0);
   // The same mean for few rays, where a stratum's own partner is a large part of all, for odd N,
   // and for few connections.
-#if defined(AVIANLIDAR_SANITIZED)
-  constexpr int fewer = 16; // seeds, and so four times the spread
-#else
-  constexpr int fewer = 1;
-#endif
+  constexpr int fewer = IsSanitized ? 16 : 1; // seeds, and so four times the spread
   const std::tuple<int, int, int, double> cases[] = { { 1000, 999, 40, 0.005 },
     { 100, 8, 1000, 0.01 }, { 7, 2, 20000, 0.01 }, { 6, 5, 20000, 0.01 }, { 2, 1, 20000, 0.02 } };
   for (Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })

@@ -4,12 +4,12 @@
 #include "DiscPolygon.h"
 #include "EchoTestScene.h"
 #include "GeometryTestScene.h"
+#include "Sanitized.h"
 #include "VisiblePolygons.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 using namespace echotest;
 using geometrytest::Numbers;
@@ -82,7 +82,7 @@ AwkwardCase drawCase(Numbers& random)
   c.covered = random() < 0.6;
   if (c.covered)
   {
-    c.scene.plate(Vec3(1000.0, 0.0, 0.0), Vec3(0.0, 3e3, 0.0), Vec3(0.0, 0.0, 3e3), Metal, 100);
+    c.scene.square(Vec3(1000.0, 0.0, 0.0), 3e3, Metal, 100);
   }
   return c;
 }
@@ -165,17 +165,12 @@ BruteForce bruteForce(const TriangleMesh& mesh, const BeamFrame& frame, const Pl
 
 TEST(VisiblePolygons, PartitionTheDiscAndShowWhatBruteForceFinds)
 {
-  const char* const asked = std::getenv("AVIANLIDAR_POLYGON_BEAMS");
-#if defined(AVIANLIDAR_SANITIZED)
-  const long beams = asked ? std::stol(asked) : 2000;
-#else
-  const long beams = asked ? std::stol(asked) : 20000;
-#endif
+  const std::uint64_t beams = casesAskedFor("AVIANLIDAR_POLYGON_BEAMS", IsSanitized ? 2000 : 20000);
   Numbers random(31);
-  long seen = 0;
-  long points = 0;
+  std::uint64_t seen = 0;
+  std::uint64_t points = 0;
   std::size_t most = 0;
-  for (long k = 0; k < beams; ++k)
+  for (std::uint64_t k = 0; k < beams; ++k)
   {
     const AwkwardCase c = drawCase(random);
     ScanSetup setup;

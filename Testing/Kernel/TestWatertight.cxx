@@ -4,6 +4,7 @@
 #include "BeamTracer.h"
 #include "CollisionTreeBuilder.h"
 #include "GeometryTestScene.h"
+#include "Sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -15,11 +16,7 @@ using namespace geometrytest;
 
 namespace
 {
-#ifdef AVIANLIDAR_SANITIZED
-constexpr std::size_t Share = 50;
-#else
-constexpr std::size_t Share = 1;
-#endif
+constexpr std::size_t Share = IsSanitized ? 50 : 1;
 
 struct ClosedScene
 {

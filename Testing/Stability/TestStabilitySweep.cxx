@@ -3,6 +3,7 @@
 // error that names what is wrong and what was expected, or echoes that are numbers. And the limits.
 #include "Distributions.h"
 #include "EchoTestScene.h"
+#include "Sanitized.h"
 #include "ScanPattern.h"
 #include "StabilityTable.h"
 
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <random>
@@ -68,8 +68,7 @@ const std::vector<Number>& numbers()
 /// A wall, a corner that sends light from plate to plate, and something small before it.
 Scene sceneOf(const Material& material)
 {
-  Scene scene;
-  scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.0, 20.0, 0.0), Vec3(0.0, 0.0, 20.0), material, 0);
+  Scene scene = squareAt(100.0, 20.0, material, 0);
   scene.plate(Vec3(80.0, -20.0, 0.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), material, 1);
   scene.box(Vec3(60.0, 0.0, 0.0), Vec3(0.01), material, 2);
   return scene;
@@ -362,8 +361,7 @@ TEST(StabilitySweep, AllNumbersAtOnce)
   std::size_t bad = 0;
   std::size_t scans = 0;
   std::size_t echoes = 0;
-  const char* const text = std::getenv("AVIANLIDAR_PROPERTY_SEEDS");
-  const std::uint64_t seeds = text ? std::strtoull(text, nullptr, 10) : 1500;
+  const std::uint64_t seeds = casesAskedFor("AVIANLIDAR_PROPERTY_SEEDS", 1500);
   for (std::uint64_t seed = 0; seed < seeds; ++seed)
   {
     std::mt19937_64 random(seed);
