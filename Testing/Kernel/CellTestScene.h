@@ -5,12 +5,12 @@
 
 #include "BeamCells.h"
 #include "EchoTestScene.h"
+#include "FoundPolygons.h"
 #include "GeometryTestScene.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <numeric>
 #include <vector>
 
 namespace celltest
@@ -70,18 +70,12 @@ public:
 
   SeenInCells(const ScanSetup& setup, const BeamFrame& frame)
     : Setup(setup)
-    , Scene(*setup.tree)
-    , Finder(this->Scene, 0, MostTrianglesOfCells)
+    , Found(*setup.tree, 0, MostTrianglesOfCells)
   {
-    std::vector<std::uint32_t> all(setup.tree->mesh->triangles.size());
-    std::iota(all.begin(), all.end(), 0u);
-    this->Finder.begin(frame);
-    this->Finder.add(all.data(), all.size());
-    std::unique_ptr<VisiblePolygons> none;
-    EXPECT_EQ(this->Finder.find(none), SeenByBeam::TooMuch);
-    this->shares.resize(all.size(), 0.0);
+    EXPECT_EQ(this->Found.find(frame), SeenByBeam::TooMuch);
+    this->shares.resize(setup.tree->mesh->size(), 0.0);
     const std::unique_ptr<CellSamples> found =
-      BeamCells(setup, this->Scene).find(0, frame, this->Finder.candidates());
+      BeamCells(setup, this->Found.scene()).find(0, frame, this->Found.candidates());
     found->samples.forEachSurface(
       [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
       {
@@ -91,8 +85,6 @@ public:
         }
       });
   }
-
-  const std::vector<const BeamSurface*>& candidates() const { return this->Finder.candidates(); }
 
   double ofObject(int id) const
   {
@@ -108,8 +100,7 @@ public:
 
 private:
   const ScanSetup& Setup;
-  const SceneTriangles Scene;
-  PolygonFinder Finder;
+  FoundPolygons Found;
 };
 }
 

@@ -10,9 +10,11 @@
 namespace echotest
 {
 /// Two reflections, without anything else.
-inline EchoSettings secondarySettings(int rays, int connections = 8)
+inline EchoSettings secondarySettings(
+  int rays, int connections = 8, BeamSampleSource source = BeamSampleSource::Rays)
 {
   EchoSettings settings = directSettings(rays);
+  settings.beamSamples = source;
   settings.numberOfReflections = 2;
   settings.numberOfConnections = connections;
   return settings;

@@ -205,11 +205,8 @@ TEST(BeamAir, PathsOverTwoReflectionsPassTheMediumToo)
   MediumVolume all = boxOf(Vec3(0.0), Vec3(1e4));
   for (const int connections : { 0, 4 })
   {
-    EchoSettings settings = directSettings(100);
-    settings.beamSamples = BeamSampleSource::Cells;
-    settings.numberOfReflections = 2;
-    settings.numberOfConnections = connections;
-    ScanSetup clear = makeSetup(scene, sensor, settings);
+    ScanSetup clear =
+      makeSetup(scene, sensor, secondarySettings(100, connections, BeamSampleSource::Cells));
     ScanSetup uniform = clear;
     uniform.settings.attenuationCoefficient = fog.extinction;
     planModel(uniform);

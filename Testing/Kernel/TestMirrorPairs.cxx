@@ -10,9 +10,10 @@ using namespace echotest;
 namespace
 {
 /// Rays traced of one beam that meets a scene of metal.
-std::uint64_t tracedOf(const Scene& scene, bool beamConstraint, double& received, int rays = 100)
+std::uint64_t tracedOf(const Scene& scene, bool beamConstraint, double& received,
+  BeamSampleSource source = BeamSampleSource::Rays)
 {
-  EchoSettings settings = secondarySettings(rays, 0);
+  EchoSettings settings = secondarySettings(100, 0, source);
   settings.beamConstraint = beamConstraint;
   const ScanResult result = runScan(makeSetup(scene, openSensor(), settings), oneBeam());
   received = secondaryOf(result);
@@ -30,8 +31,7 @@ TEST(MirrorPairs, NothingArrivesFromSurfacesWithoutPairs)
     const Scene scene = room(seed);
     const ScanBeams beams = around(seed, 40);
     Sensor sensor = openSensor(Numbers(seed)() < 0.5 ? 5.6e-3 : 0.1);
-    EchoSettings settings = secondarySettings(30);
-    settings.beamSamples = BeamSampleSource::Rays;
+    EchoSettings settings = secondarySettings(30, 8, BeamSampleSource::Rays);
     settings.lightEnergyConstraint = false;
     const ScanResult pairs = runScan(makeSetup(scene, sensor, settings), beams);
     settings.beamConstraint = false; // every path is traced
@@ -56,16 +56,20 @@ TEST(MirrorPairs, AWallAloneIsNotSearched)
   scene.plate(Vec3(10.0, 0.0, -3.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 20.0, 0.0), Metal);
   scene.plate(Vec3(10.0, 4.0, 0.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), Metal);
   EXPECT_EQ(tracedOf(scene, true, received), 100u);
+  // By regions nothing is traced but what may arrive.
+  EXPECT_EQ(tracedOf(scene, true, received, BeamSampleSource::Cells), 0u);
 }
 
 TEST(MirrorPairs, ACornerIsOneOnlyOnItsInside)
 {
-  // A right angle, seen from within and from without.
-  const Scene within = groove(45.0 * Degree, Metal);
-  const Scene without = groove(135.0 * Degree, Metal);
-  double received = 0.0;
-  EXPECT_GT(tracedOf(within, true, received), 200u); // the ends are looked at from the apex, too
-  EXPECT_GT(received, 0.0);
-  EXPECT_EQ(tracedOf(without, true, received), 100u);
-  EXPECT_EQ(received, 0.0);
+  // A right angle, seen from within and from without. The ends are looked at from the apex, too.
+  for (const BeamSampleSource source : BothSources)
+  {
+    const std::uint64_t starts = source == BeamSampleSource::Rays ? 100 : 0;
+    double received = 0.0;
+    EXPECT_GT(tracedOf(groove(45.0 * Degree, Metal), true, received, source), 2 * starts);
+    EXPECT_GT(received, 0.0);
+    EXPECT_EQ(tracedOf(groove(135.0 * Degree, Metal), true, received, source), starts);
+    EXPECT_EQ(received, 0.0);
+  }
 }

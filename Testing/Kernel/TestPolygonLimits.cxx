@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams that would need too many samples are divided into cells instead.
+#include "FoundPolygons.h"
 #include "GeometryTestScene.h"
 #include "IntegrationTestScene.h"
 #include "PolygonQuadrature.h"
-#include "VisiblePolygons.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <numeric>
-#include <vector>
 
 using namespace echotest;
 using geometrytest::Numbers;
@@ -29,26 +26,16 @@ Nodes nodesOf(const ScanSetup& setup)
 {
   const BeamFrame frame =
     makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
-  const SceneTriangles finderScene(*setup.tree);
-  PolygonFinder finder(finderScene, mostTrianglesIntegrated(setup.settings));
-  finder.begin(frame);
-  std::vector<std::uint32_t> triangles(setup.tree->mesh->size());
-  std::iota(triangles.begin(), triangles.end(), 0u);
-  std::unique_ptr<VisiblePolygons> found;
+  FoundPolygons found(*setup.tree, mostTrianglesIntegrated(setup.settings));
+  if (found.find(frame) != SeenByBeam::Polygons || !PolygonRule(setup).fits(*found.polygons))
+  {
+    return { false, 0 };
+  }
   PolygonQuadrature quadrature(setup);
-  finder.add(triangles.data(), triangles.size());
-  if (finder.find(found) != SeenByBeam::Polygons)
-  {
-    return { false, 0 };
-  }
-  if (!PolygonRule(setup).fits(*found))
-  {
-    return { false, 0 };
-  }
   PolygonBounds bounds;
   PolygonNodes nodes;
-  quadrature.bound(*found, bounds);
-  quadrature.place(frame, *found, bounds, nodes);
+  quadrature.bound(*found.polygons, bounds);
+  quadrature.place(frame, *found.polygons, bounds, nodes);
   return { true, nodes.samples.size() };
 }
 

@@ -74,8 +74,7 @@ void expectMirrors(const Echo& echo)
 
 TEST(PolygonPaths, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
 {
-  EchoSettings settings = secondarySettings(100);
-  settings.beamSamples = BeamSampleSource::Cells;
+  EchoSettings settings = secondarySettings(100, 8, BeamSampleSource::Cells);
   ScanSetup setup = withMaterialIds(grooveOfMirrors(), sensorOfShortUnits(), settings);
   // As the first beam of a scan, and after another of which something may be left.
   for (const bool after : { false, true })
@@ -264,8 +263,7 @@ TEST(PolygonPaths, NoUnitLosesMoreByPathsThanTheReportSays)
     sensor.lowerEnergyLimit = 0.0;
     sensor.upperEnergyLimit = 1.0;
     sensor.pulseEnergy = 1.0;
-    EchoSettings settings = secondarySettings(100);
-    settings.beamSamples = BeamSampleSource::Cells;
+    EchoSettings settings = secondarySettings(100, 8, BeamSampleSource::Cells);
     settings.returnMode = ReturnMode::RangeUnits;
     settings.lightEnergyConstraint = false;
     settings.attenuationCoefficient = k % 2 ? 1e-3 : 0.0;
@@ -312,8 +310,7 @@ TEST(PolygonPaths, FewMirrorPathsStateTheirError)
   int within = 0;
   for (int k = 0; k < 60; ++k)
   {
-    EchoSettings settings = secondarySettings(20000, 0);
-    settings.beamSamples = BeamSampleSource::Cells;
+    EchoSettings settings = secondarySettings(20000, 0, BeamSampleSource::Cells);
     settings.returnMode = ReturnMode::RangeUnits;
     settings.lightEnergyConstraint = false;
     Sensor sensor;

@@ -202,33 +202,15 @@ TEST(Scan, ACacheThatIsTooSmallChangesNothing)
   }
 }
 
-TEST(Scan, AbortIsHeardWithinABeamOfManyRays)
+TEST(Scan, AbortIsHeardWithinABeamOfManyRaysAndWithinNoise)
 {
-  // One beam, all on the ground: between blocks nothing is asked before it is done.
+  // Between blocks of beams nothing is asked before they are done. One beam, all on the ground;
+  // then empty sky with some 90,000 false alarms, in one beam or in one block of beams.
   EchoSettings settings = usual();
   settings.raysPerBeam = 100000;
   settings.beamSamples = BeamSampleSource::Rays;
-  const ScanBeams beams = oneBeam(Vec3(0.0, 0.0, -1.0));
-  const ScanSetup setup = makeSetup(town(), Sensor{}, settings);
-  TraceCache cache;
-  ScanResult result;
-  int calls = 0;
-  const auto go = [&calls](double) { return ++calls > 0; };
-  ASSERT_TRUE(simulateScan(setup, beams, 1, cache, 0, go, result));
-  const int all = calls;
-  EXPECT_GT(all, 20);
-  calls = 0;
-  const auto stop = [&calls](double) { return ++calls < 5; };
-  EXPECT_FALSE(simulateScan(setup, beams, 1, cache, 0, stop, result));
-  EXPECT_EQ(calls, 5);
-  EXPECT_TRUE(result.echoes.empty());
-  EXPECT_TRUE(cache.beams.empty());
-}
-
-TEST(Scan, AbortIsHeardWithinNoise)
-{
-  // Empty sky with some 90,000 false alarms, in one beam or in one block of beams: between blocks
-  // nothing is asked before they are drawn.
+  std::vector<std::pair<ScanSetup, ScanBeams>> scans = { { makeSetup(town(), Sensor{}, settings),
+    oneBeam(Vec3(0.0, 0.0, -1.0)) } };
   for (const int count : { 1, 100 })
   {
     Sensor sensor;
@@ -237,10 +219,12 @@ TEST(Scan, AbortIsHeardWithinNoise)
     sensor.rangeGate = 15000.0 / count;
     sensor.noisePhotonRate = 2e9; // 2 photons in a range unit
     sensor.lowerEnergyLimit = 0.0;
-    EchoSettings settings = usual();
+    settings = usual();
     settings.returnMode = ReturnMode::Strongest;
-    const ScanSetup setup = makeSetup(Scene(), sensor, settings);
-    const ScanBeams beams = horizon(count, 1);
+    scans.emplace_back(makeSetup(Scene(), sensor, settings), horizon(count, 1));
+  }
+  for (const auto& [setup, beams] : scans)
+  {
     TraceCache cache;
     ScanResult result;
     int calls = 0;
@@ -258,5 +242,6 @@ TEST(Scan, AbortIsHeardWithinNoise)
     EXPECT_FALSE(simulateScan(setup, beams, 1, cache, 0, stop, result));
     EXPECT_EQ(calls, 5);
     EXPECT_TRUE(result.echoes.empty());
+    EXPECT_TRUE(cache.beams.empty());
   }
 }

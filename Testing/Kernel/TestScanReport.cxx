@@ -179,8 +179,7 @@ TEST(ScanReport, ABeamWhoseRaysMissWhatEntersItMeetsNothing)
     for (const double limit : { 0.0, 25.0, 12.0 }) // photons, of 5 that are noise; 0: no noise
     {
       SCOPED_TRACE(testing::Message() << static_cast<int>(source) << ' ' << limit);
-      EchoSettings settings = secondarySettings(40);
-      settings.beamSamples = source;
+      EchoSettings settings = secondarySettings(40, 8, source);
       settings.noise = limit > 0.0;
       Sensor sensor;
       sensor.noisePhotonRate = 1e9;

@@ -119,8 +119,7 @@ TEST(SecondaryConstraints, ABeamWhosePathsTogetherStayBelowTheLimitTracesNone)
     { std::make_pair(dark, BeamSampleSource::Rays), std::make_pair(dark, BeamSampleSource::Cells),
       std::make_pair(mirror, BeamSampleSource::Cells) })
   {
-    EchoSettings settings = secondarySettings(100, material.kd > 0.0 ? 2 : 0);
-    settings.beamSamples = samples;
+    EchoSettings settings = secondarySettings(100, material.kd > 0.0 ? 2 : 0, samples);
     const Scene scene = groove(45.0 * Degree, material);
     const auto scanWith = [&](double limit, int reflections)
     {
@@ -169,8 +168,8 @@ TEST(SecondaryConstraints, ABeamWithoutAnyUnitAboveTheLimitTracesNoPath)
   // Direct echoes reach 12 times the limit together, and a third of the limit in each unit.
   for (const Material& material : { Material{ 0.2, 0.0, 1.0 }, Material{ 0.05, 0.3, 1e4 } })
   {
-    EchoSettings settings = secondarySettings(100, material.ks > 0.0 ? 0 : 2);
-    settings.beamSamples = BeamSampleSource::Cells;
+    EchoSettings settings =
+      secondarySettings(100, material.ks > 0.0 ? 0 : 2, BeamSampleSource::Cells);
     settings.returnMode = ReturnMode::RangeUnits;
     Sensor sensor;
     sensor.lowerEnergyLimit = 1e-14;
@@ -197,8 +196,7 @@ TEST(SecondaryConstraints, ABeamWithoutAnyUnitAboveTheLimitTracesNoPath)
 
 TEST(SecondaryConstraints, BeyondTheGateNoPathIsTraced)
 {
-  EchoSettings settings = secondarySettings(100);
-  settings.beamSamples = BeamSampleSource::Cells;
+  EchoSettings settings = secondarySettings(100, 8, BeamSampleSource::Cells);
   Sensor sensor;
   const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 }); // 99 to 100 m away
   ASSERT_GT(raysOfPaths(makeSetup(scene, sensor, settings), oneBeam()), 0u);
@@ -224,8 +222,7 @@ TEST(SecondaryConstraints, EchoesKeepTheirBitsWhateverIsLeftOut)
     {
       Sensor sensor;
       sensor.receiverAperture = aperture;
-      EchoSettings settings = secondarySettings(60, connections);
-      settings.beamSamples = BeamSampleSource::Cells;
+      EchoSettings settings = secondarySettings(60, connections, BeamSampleSource::Cells);
       settings.lightEnergyFraction = 0.0;
       sensor.lowerEnergyLimit = 1e-14;
       const double all = receivedFrom(runScan(makeSetup(scene, sensor, settings), fan()));
@@ -276,8 +273,7 @@ TEST(SecondaryConstraints, TheLimitPerRayIsTheLimitDividedByTheRays)
 {
   const Scene scene = groove(45.0 * Degree, { 0.4, 0.25, 1e4 });
   Sensor sensor = openSensor();
-  EchoSettings settings = secondarySettings(100, 2);
-  settings.beamSamples = BeamSampleSource::Rays;
+  EchoSettings settings = secondarySettings(100, 2, BeamSampleSource::Rays);
   sensor.lowerEnergyLimit = 0.0;
   const double full = secondaryOf(runScan(makeSetup(scene, sensor, settings), oneBeam()));
   double least = full;

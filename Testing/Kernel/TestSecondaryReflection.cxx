@@ -223,8 +223,7 @@ TEST(SecondaryReflection, ThroughAnApertureLightComesBackBothWays)
     SCOPED_TRACE(c.name);
     Sensor sensor = gatheringSensor();
     sensor.beamProfile = c.gaussian ? BeamProfile::Gaussian : BeamProfile::Uniform;
-    EchoSettings settings = secondarySettings(100, 2);
-    settings.beamSamples = BeamSampleSource::Cells;
+    EchoSettings settings = secondarySettings(100, 2, BeamSampleSource::Cells);
     settings.reflectanceModel = ReflectanceModel::OrenNayar; // Lambert's and Phong's, not rough
     settings.numberOfReflections = 1;
     ScanSetup setup = makeSetup(c.scene, sensor, settings);

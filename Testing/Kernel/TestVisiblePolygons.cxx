@@ -3,9 +3,9 @@
 // force finds there.
 #include "DiscPolygon.h"
 #include "EchoTestScene.h"
+#include "FoundPolygons.h"
 #include "GeometryTestScene.h"
 #include "Sanitized.h"
-#include "VisiblePolygons.h"
 
 #include <gtest/gtest.h>
 
@@ -87,19 +87,6 @@ AwkwardCase drawCase(Numbers& random)
   return c;
 }
 
-SeenByBeam findAll(const ScanSetup& setup, const BeamFrame& frame, PolygonFinder& finder,
-  bool reversed, std::unique_ptr<VisiblePolygons>& found)
-{
-  std::vector<std::uint32_t> order(setup.tree->mesh->size());
-  for (std::uint32_t i = 0; i < order.size(); ++i)
-  {
-    order[i] = reversed ? static_cast<std::uint32_t>(order.size()) - 1 - i : i;
-  }
-  finder.begin(frame);
-  finder.add(order.data(), order.size()); // find() knows if they were too many
-  return finder.find(found);
-}
-
 double areaInDisc(const VisiblePolygons& found)
 {
   double sum = 0.0;
@@ -173,27 +160,23 @@ TEST(VisiblePolygons, PartitionTheDiscAndShowWhatBruteForceFinds)
   for (std::uint64_t k = 0; k < beams; ++k)
   {
     const AwkwardCase c = drawCase(random);
-    ScanSetup setup;
-    auto tree = std::make_shared<CollisionTree>();
-    tree->mesh = c.scene.mesh;
-    setup.tree = tree;
+    CollisionTree tree;
+    tree.mesh = c.scene.mesh;
     const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), c.half);
-    const SceneTriangles finderScene(*tree);
-    PolygonFinder finder(finderScene, 100);
-    std::unique_ptr<VisiblePolygons> found;
-    const SeenByBeam outcome = findAll(setup, frame, finder, false, found);
-    std::unique_ptr<VisiblePolygons> again;
-    ASSERT_EQ(findAll(setup, frame, finder, true, again), outcome) << k;
+    FoundPolygons beam(tree);
+    const SeenByBeam outcome = beam.find(frame);
+    const std::unique_ptr<VisiblePolygons> found = std::move(beam.polygons);
+    ASSERT_EQ(beam.find(frame, true), outcome) << k;
     if (outcome != SeenByBeam::Polygons)
     {
       continue;
     }
     ++seen;
     most = std::max(most, found->polygons.size());
-    ASSERT_EQ(found->corners.size(), again->corners.size()) << k;
+    ASSERT_EQ(found->corners.size(), beam.polygons->corners.size()) << k;
     for (std::size_t i = 0; i < found->corners.size(); ++i)
     {
-      ASSERT_EQ(found->corners[i].x, again->corners[i].x) << k;
+      ASSERT_EQ(found->corners[i].x, beam.polygons->corners[i].x) << k;
     }
     const double area = areaInDisc(*found);
     if (c.covered)
@@ -243,11 +226,9 @@ TEST(VisiblePolygons, SurfacesThatFaceEachOtherAreToldFromThoseThatDoNot)
     }
     const ScanSetup setup = makeSetup(scene, openSensor(), directSettings(100));
     const BeamFrame frame = makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), 5.6e-3);
-    const SceneTriangles finderScene(*setup.tree);
-    PolygonFinder finder(finderScene, 100);
-    std::unique_ptr<VisiblePolygons> found;
-    ASSERT_EQ(findAll(setup, frame, finder, false, found), SeenByBeam::Polygons);
-    EXPECT_EQ(found->facing, x < 20.0);
+    FoundPolygons found(*setup.tree);
+    ASSERT_EQ(found.find(frame), SeenByBeam::Polygons);
+    EXPECT_EQ(found.polygons->facing, x < 20.0);
   }
 }
 
@@ -268,14 +249,9 @@ TEST(VisiblePolygons, TheHalvesOfAPlateStayOneSurfaceInCoordinatesFarAway)
       scene.triangle(corner(-1.0, -1.0), corner(1.0, 1.1), corner(-0.8, 1.2), Wall, 0);
       CollisionTree tree;
       tree.mesh = scene.mesh;
-      const SceneTriangles finderScene(tree);
-      PolygonFinder finder(finderScene, 100);
-      finder.begin(makeBeamFrame(there, Vec3(1.0, 0.0, 0.0), 0.05));
-      const std::uint32_t both[] = { 0, 1 };
-      finder.add(both, 2);
-      std::unique_ptr<VisiblePolygons> seen;
-      ASSERT_EQ(finder.find(seen), SeenByBeam::Polygons);
-      EXPECT_EQ(seen->surfaces.size(), 1u) << i << ", " << there.x;
+      FoundPolygons seen(tree);
+      ASSERT_EQ(seen.find(makeBeamFrame(there, Vec3(1.0, 0.0, 0.0), 0.05)), SeenByBeam::Polygons);
+      EXPECT_EQ(seen.polygons->surfaces.size(), 1u) << i << ", " << there.x;
     }
   }
 }
