@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <random>
 #include <sstream>
 
 namespace geometrycase
@@ -247,6 +248,17 @@ private:
 GeometryCase fromBytes(const std::uint8_t* data, std::size_t size)
 {
   return Maker(data, size).make();
+}
+
+GeometryCase fromSeed(std::uint64_t seed)
+{
+  std::mt19937_64 random(seed);
+  std::vector<std::uint8_t> bytes(40 + random() % 600);
+  for (std::uint8_t& byte : bytes)
+  {
+    byte = static_cast<std::uint8_t>(random() >> 56);
+  }
+  return fromBytes(bytes.data(), bytes.size());
 }
 
 std::string describe(const GeometryCase& one)

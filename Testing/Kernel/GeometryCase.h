@@ -34,6 +34,9 @@ struct GeometryCase
 /// rays aimed at corners and edges. The same case with every compiler.
 GeometryCase fromBytes(const std::uint8_t* data, std::size_t size);
 
+/// The case of bytes that are drawn with this seed.
+GeometryCase fromSeed(std::uint64_t seed);
+
 /// Empty, or the first thing that does not hold:
 /// - every way down every kind of tree, single beams and blocks of them, gives the bits of a loop
 ///   over all triangles;

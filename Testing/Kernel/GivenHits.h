@@ -7,7 +7,10 @@
 
 #include "SecondaryReflection.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace echotest
 {
@@ -17,13 +20,18 @@ constexpr double Cosine45 = 0.5 * Root2;
 class GivenHits
 {
 public:
-  explicit GivenHits(std::uint32_t rays) { this->Samples.rays = rays; }
+  GivenHits(ScanSetup setup, std::uint32_t rays)
+    : Setup(std::move(setup))
+  {
+    this->Samples.rays = rays;
+  }
 
-  /// One after the other.
+  /// One after the other, on the side that looks towards the lidar.
   void hit(std::uint32_t ray, std::uint32_t triangle, const Vec3& point, const Vec3& normal)
   {
     const double range = glm::length(point);
     const Vec3 direction = point / range;
+    ASSERT_LT(glm::dot(point, normal), 0.0);
     this->Samples.ray.push_back(ray);
     this->Samples.range.push_back(range);
     this->Samples.cosine.push_back(-glm::dot(direction, normal));
@@ -42,9 +50,11 @@ public:
     this->Geometry.surfaces.push_back({ triangle, normal, -glm::dot(normal, point) });
   }
 
-  /// @param direct whether the direct echoes take their share of what the hits can return
-  std::vector<SecondaryPath> collect(const ScanSetup& setup, double& lost, bool direct) const
+  /// @param lost receives what paths that are left out would return, J @param direct whether the
+  /// direct echoes take their share of what the hits can return
+  std::vector<SecondaryPath> collect(double* lost = nullptr, bool direct = false) const
   {
+    const ScanSetup& setup = this->Setup;
     const BeamFrame frame =
       makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), setup.sensor.halfBeamwidth);
     const SceneTriangles tracerScene(*setup.tree);
@@ -60,13 +70,15 @@ public:
     SecondaryTrace trace;
     SecondaryReflection secondary(setup, tracerScene);
     std::vector<SecondaryPath> paths;
+    double left = 0.0;
     secondary.collect({ 0, tracerScene, frame, tracer, none, this->Samples, this->Geometry,
                         throughput, nullptr, trace, this->Samples.nearest },
-      paths, lost);
+      paths, lost ? *lost : left);
     return paths;
   }
 
 private:
+  ScanSetup Setup;
   BeamSamples Samples;
   SampleGeometry Geometry;
 };

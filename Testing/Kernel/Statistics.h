@@ -3,6 +3,8 @@
 #ifndef Statistics_h
 #define Statistics_h
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <exception>
 #include <numeric>
@@ -52,6 +54,12 @@ struct Moments
   /// Standard error of the mean.
   double error() const { return std::sqrt(this->variance() / (this->count - 1.0)); }
 };
+
+/// A message has these words.
+inline void expectSays(const std::string& message, const std::string& words)
+{
+  EXPECT_NE(message.find(words), std::string::npos) << message << "\nexpected: " << words;
+}
 
 /// What the exception says that a call throws; empty without one.
 template <class Call>

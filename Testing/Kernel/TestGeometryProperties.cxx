@@ -12,24 +12,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <vector>
 
 using namespace geometrycase;
-
-namespace
-{
-std::vector<std::uint8_t> bytesOf(std::uint64_t seed)
-{
-  std::mt19937_64 random(seed);
-  std::vector<std::uint8_t> bytes(40 + random() % 600);
-  for (std::uint8_t& byte : bytes)
-  {
-    byte = static_cast<std::uint8_t>(random() >> 56);
-  }
-  return bytes;
-}
-}
 
 TEST(GeometryProperties, HoldOfNastyScenes)
 {
@@ -38,8 +23,7 @@ TEST(GeometryProperties, HoldOfNastyScenes)
   const std::uint64_t count = casesAskedFor("AVIANLIDAR_PROPERTY_SEEDS", IsSanitized ? 500 : 10000);
   for (std::uint64_t seed = 0; seed < count && failures < 3; ++seed)
   {
-    const auto bytes = bytesOf(seed);
-    const GeometryCase one = fromBytes(bytes.data(), bytes.size());
+    const GeometryCase one = fromSeed(seed);
     triangles += one.mesh.size();
     const std::string fault = findFault(one);
     if (!fault.empty())

@@ -3,6 +3,7 @@
 #include "ScanClock.h"
 #include "ScanPattern.h"
 #include "Sensor.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -78,50 +79,40 @@ TEST(ScanPattern, ColumnsThenChannels)
     beam.direction, std::cos(el) * std::sin(az), std::cos(el) * std::cos(az), std::sin(el));
 }
 
-TEST(ScanPattern, CardinalDirectionsAreExact)
+TEST(ScanPattern, OrientationsTurnBeams)
 {
-  const double axes[4][2] = { { 0, 1 }, { 1, 0 }, { 0, -1 }, { -1, 0 } };
-  for (int quadrant = 0; quadrant < 4; ++quadrant)
+  // Cardinal directions are exact. Yaw turns clockwise, pitch lifts the nose, roll lowers the right
+  // side. Roll is applied first and yaw last: roll by 90 degrees turns right to down, pitch by 90
+  // turns down to forward, yaw by 90 turns forward to right.
+  const double c = std::cos(10.0 * Radian), s = std::sin(10.0 * Radian);
+  const struct
   {
-    const ScanBeam beam = ScanGenerator(single(90.0 * quadrant, 0.0)).beam(0);
-    EXPECT_EQ(beam.direction[0], axes[quadrant][0]);
-    EXPECT_EQ(beam.direction[1], axes[quadrant][1]);
-    EXPECT_EQ(beam.direction[2], 0.0);
+    double azimuth, elevation;
+    double yaw, pitch, roll;
+    Vec3 direction;
+    double azimuthThen, elevationThen;
+    double tolerance;
+  } cases[] = { { 0.0, 0.0, 0.0, 0.0, 0.0, { 0.0, 1.0, 0.0 }, 0.0, 0.0, 0.0 },
+    { 90.0, 0.0, 0.0, 0.0, 0.0, { 1.0, 0.0, 0.0 }, 90.0, 0.0, 0.0 },
+    { 180.0, 0.0, 0.0, 0.0, 0.0, { 0.0, -1.0, 0.0 }, 180.0, 0.0, 0.0 },
+    { 270.0, 0.0, 0.0, 0.0, 0.0, { -1.0, 0.0, 0.0 }, 270.0, 0.0, 0.0 },
+    { 0.0, 90.0, 0.0, 0.0, 0.0, { 0.0, 0.0, 1.0 }, 0.0, 90.0, 1e-15 },
+    { 350.0, 0.0, 100.0, 0.0, 0.0, { 1.0, 0.0, 0.0 }, 90.0, 0.0, 1e-15 },
+    { 0.0, 0.0, 0.0, 10.0, 0.0, { 0.0, c, s }, 0.0, 10.0, 1e-15 },
+    { 90.0, 0.0, 0.0, 0.0, 10.0, { c, 0.0, -s }, 90.0, -10.0, 1e-15 },
+    { 90.0, 0.0, 90.0, 90.0, 90.0, { 1.0, 0.0, 0.0 }, 90.0, 0.0, 1e-15 } };
+  for (const auto& of : cases)
+  {
+    SCOPED_TRACE(testing::Message() << of.azimuth << ' ' << of.yaw << ' ' << of.pitch);
+    ScanPattern p = single(of.azimuth, of.elevation);
+    p.yaw = of.yaw;
+    p.pitch = of.pitch;
+    p.roll = of.roll;
+    const ScanBeam beam = ScanGenerator(p).beam(0);
+    expectVector(beam.direction, of.direction.x, of.direction.y, of.direction.z, of.tolerance);
+    EXPECT_NEAR(beam.azimuth, of.azimuthThen, 1e-13);
+    EXPECT_NEAR(beam.elevation, of.elevationThen, 1e-13);
   }
-  EXPECT_EQ(ScanGenerator(single(0.0, 90.0)).beam(0).direction[2], 1.0);
-}
-
-TEST(ScanPattern, YawTurnsClockwise)
-{
-  ScanPattern p = single(350.0, 0.0);
-  p.yaw = 100.0;
-  const ScanBeam beam = ScanGenerator(p).beam(0);
-  EXPECT_EQ(beam.azimuth, 90.0);
-  expectVector(beam.direction, 1.0, 0.0, 0.0);
-}
-
-TEST(ScanPattern, PitchLiftsTheNoseAndRollLowersTheRightSide)
-{
-  ScanPattern nose = single(0.0, 0.0);
-  nose.pitch = 10.0;
-  const ScanBeam forward = ScanGenerator(nose).beam(0);
-  expectVector(forward.direction, 0.0, std::cos(10.0 * Radian), std::sin(10.0 * Radian));
-  EXPECT_NEAR(forward.elevation, 10.0, 1e-13);
-
-  ScanPattern side = single(90.0, 0.0);
-  side.roll = 10.0;
-  const ScanBeam right = ScanGenerator(side).beam(0);
-  expectVector(right.direction, std::cos(10.0 * Radian), 0.0, -std::sin(10.0 * Radian));
-  EXPECT_NEAR(right.elevation, -10.0, 1e-13);
-}
-
-TEST(ScanPattern, RotationsApplyRollFirstYawLast)
-{
-  // Roll by 90 degrees turns right to down, pitch by 90 turns down to forward, yaw by 90 turns
-  // forward to right.
-  ScanPattern p = single(90.0, 0.0);
-  p.yaw = p.pitch = p.roll = 90.0;
-  expectVector(ScanGenerator(p).beam(0).direction, 1.0, 0.0, 0.0);
 }
 
 TEST(ScanPattern, DirectionsAreUnitAndAgreeWithTheirAngles)
@@ -234,8 +225,7 @@ TEST(ScanPattern, BadValuesAreNamed)
   {
     ScanPattern p;
     c.spoil(p);
-    EXPECT_NE(checkPattern(p).find(c.names), std::string::npos)
-      << c.names << ": " << checkPattern(p);
+    statistics::expectSays(checkPattern(p), c.names);
   }
 }
 
@@ -280,10 +270,7 @@ TEST(ScanPattern, BadTablesAreNamed)
     return checkPattern(pattern);
   };
   const auto says = [&](auto table, std::vector<double> values, const char* words)
-  {
-    EXPECT_NE(errorOf(table, values).find(words), std::string::npos)
-      << errorOf(table, values) << ", not " << words;
-  };
+  { statistics::expectSays(errorOf(table, values), words); };
   says(&ScanPattern::azimuthOffsets, { 1.0 },
     "ChannelAzimuthOffsets has 1 values, expected one for each of the 2 channels");
   says(&ScanPattern::azimuthOffsets, { 1.0, 181.0 }, "ChannelAzimuthOffsets is 181");
@@ -322,6 +309,5 @@ TEST(ScanPattern, ATableOfBeamsIsTurnedAndTimed)
   EXPECT_EQ(beamsOf(p, { 0, 1, 1, 2 }), (std::vector<std::int64_t>{ 0, 1, 2 }));
   // The last may fire as the scan ends, not later.
   p.rotationRate = 11.0;
-  EXPECT_NE(checkPattern(p).find("the time of beam 2 is 0.1"), std::string::npos)
-    << checkPattern(p);
+  statistics::expectSays(checkPattern(p), "the time of beam 2 is 0.1");
 }

@@ -2,6 +2,7 @@
 // Single paths with two reflections, for hits that are given and not drawn: lengths, energies, and
 // each of the rules by which a path does not count.
 #include "GivenHits.h"
+#include "SecondaryTestScene.h"
 
 #include <gtest/gtest.h>
 
@@ -11,42 +12,13 @@ namespace
 {
 EchoSettings pathSettings(int connections, double attenuation = 0.0)
 {
-  EchoSettings settings = directSettings(2);
-  settings.numberOfReflections = 2;
-  settings.numberOfConnections = connections;
+  EchoSettings settings = secondarySettings(2, connections);
   settings.attenuationCoefficient = attenuation;
   return settings;
 }
 
-/// A beam of two rays from the origin along x, whose hits a test gives.
-class TwoRays
-{
-public:
-  TwoRays(const Scene& scene, const EchoSettings& settings, const Sensor& sensor = openSensor())
-    : Setup(makeSetup(scene, sensor, settings))
-    , Hits(2)
-  {
-  }
-
-  /// Ray n hits a plate: the triangles of plate p are 2p and 2p + 1.
-  void hit(int n, int plate, const Vec3& point, const Vec3& normal)
-  {
-    ASSERT_LT(glm::dot(point, normal), 0.0); // the side that looks towards the lidar
-    this->Hits.hit(n, 2 * plate, point, normal);
-  }
-
-  std::vector<SecondaryPath> collect() const
-  {
-    double lost = 0.0;
-    return this->Hits.collect(this->Setup, lost, false);
-  }
-
-private:
-  ScanSetup Setup;
-  GivenHits Hits;
-};
-
-/// Small square plate in space with a normal in the plane z = 0.
+/// Small square plate in space with a normal in the plane z = 0. The triangles of plate p are 2p
+/// and 2p + 1.
 void square(Scene& scene, const Vec3& center, const Vec3& normal, const Material& m, double half)
 {
   const Vec3 along(-normal.y, normal.x, 0.0);
@@ -74,7 +46,7 @@ std::vector<SecondaryPath> mirrorPaths(const Vec3& p1, const Vec3& p2, const Vec
   }
   EchoSettings settings = pathSettings(0);
   settings.beamConstraint = beamConstraint;
-  TwoRays beam(scene, settings);
+  GivenHits beam(makeSetup(scene, openSensor(), settings), 2);
   beam.hit(0, 0, p1, normal1);
   return beam.collect();
 }
@@ -94,9 +66,9 @@ TEST(SecondaryPaths, TwoConnectionsBetweenTwoPoints)
   Scene scene;
   square(scene, p1, n1, { kd1, 0.0, 0.0 }, 0.1);
   square(scene, p2, n2, { kd2, 0.0, 0.0 }, 0.1);
-  TwoRays beam(scene, pathSettings(1, mu));
+  GivenHits beam(makeSetup(scene, openSensor(), pathSettings(1, mu)), 2);
   beam.hit(0, 0, p1, n1);
-  beam.hit(1, 1, p2, n2);
+  beam.hit(1, 2, p2, n2);
   const std::vector<SecondaryPath> paths = beam.collect();
   ASSERT_EQ(paths.size(), 2u);
   const double length = 100.0 + std::hypot(0.2, 0.5) + std::hypot(99.8, 0.5);
@@ -170,9 +142,9 @@ TEST(SecondaryPaths, AConnectionEndsOnASideThatLooksToTheLidar)
     Scene scene;
     square(scene, Behind, normal1, { 0.2, 0.0, 0.0 }, 0.1);
     square(scene, Before, normal2, WideLobe, 0.05);
-    TwoRays beam(scene, pathSettings(1));
+    GivenHits beam(makeSetup(scene, openSensor(), pathSettings(1)), 2);
     beam.hit(0, 0, Behind, normal1);
-    beam.hit(1, 1, Before, normal2);
+    beam.hit(1, 2, Before, normal2);
     // Nothing comes from the diffuse component that the second plate does not have.
     EXPECT_EQ(beam.collect().size(), facing ? 1u : 0u);
   }
@@ -191,9 +163,9 @@ double throughApertureEnergy(const Vec3& p1, const Vec3& n1, const Vec3& p2, con
   sensor.receiverAperture = aperture;
   EchoSettings settings = pathSettings(1);
   settings.reflectanceModel = ReflectanceModel::OrenNayar; // Lambert's, not rough
-  TwoRays beam(scene, settings, sensor);
+  GivenHits beam(makeSetup(scene, sensor, settings), 2);
   beam.hit(0, 0, p1, n1);
-  beam.hit(1, 1, p2, n2);
+  beam.hit(1, 2, p2, n2);
   for (const SecondaryPath& path : beam.collect())
   {
     if (path.triangle == 2u || path.triangle == 3u)

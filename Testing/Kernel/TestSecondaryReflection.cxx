@@ -26,13 +26,11 @@ TEST(SecondaryReflection, OneSpecularPath)
   scene.plate(Vec3(100.0, 0.5, 0.0), 0.1 * Vec3(-1.0, 1.0, 0.0), Vec3(0.0, 0.0, 0.1), Metal, 1);
   EchoSettings settings = secondarySettings(100, 0);
   settings.attenuationCoefficient = 3.5e-5;
-  const ScanSetup setup = makeSetup(scene, openSensor(), settings);
-
   // The ray on the axis alone, 1 of 100: its energy is 3.6e-6 J.
-  GivenHits hits(100);
+  GivenHits hits(makeSetup(scene, openSensor(), settings), 100);
   hits.hit(7, 0, Vec3(100.0, 0.0, 0.0), Vec3(-1.0, 1.0, 0.0) / std::sqrt(2.0));
   double lost = 0.0;
-  const std::vector<SecondaryPath> paths = hits.collect(setup, lost, true);
+  const std::vector<SecondaryPath> paths = hits.collect(&lost, true);
   ASSERT_EQ(paths.size(), 1u);
   EXPECT_NEAR(paths[0].length, 200.50125, 1e-6);
   EXPECT_NEAR(paths[0].energy, 1.439978941e-6, 1e-15);

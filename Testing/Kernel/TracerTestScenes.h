@@ -115,6 +115,8 @@ inline std::vector<MadeScene> tracerScenes()
   return { { "random", [](Numbers& r) { return randomTriangles(r, 300, 100.0, 20.0); } },
     { "coplanar", coplanar }, { "slivers", slivers },
     { "huge", [](Numbers& r) { return randomTriangles(r, 200, 1e6, 3e6); } },
+    { "as huge as may be", [](Numbers& r) { return randomTriangles(r, 200, 1e29, 3e28); } },
+    { "as tiny as may be", [](Numbers& r) { return randomTriangles(r, 200, 1e-30, 3e-31); } },
     { "tiny", [](Numbers& r) { return randomTriangles(r, 400, 100.0, r.logUniform(1e-6, 1e-3)); } },
     { "tiny and huge",
       [](Numbers& r)

@@ -2,7 +2,7 @@
 // Coordinates and sizes: far from the origin, near it, large and small triangles in one scene,
 // needles; the same scene moved, scaled and turned.
 #include "CollisionTreeBuilder.h"
-#include "GeometryTestScene.h"
+#include "HitComparison.h"
 #include "ScanTestTown.h"
 #include "StabilityScenes.h"
 #include "StabilityTable.h"
@@ -11,9 +11,6 @@
 
 using namespace stability;
 using namespace geometrytest;
-using avianlidar::NoTriangle;
-using avianlidar::OneBeamTracer;
-using avianlidar::TraceMode;
 using echotest::Degree;
 
 namespace
@@ -21,105 +18,26 @@ namespace
 /// Bound of a range's error in units of RangeUnit(): the tracer's own statement is "a few".
 constexpr double RangeBar = 32.0;
 
-struct Comparison
+/// Beams through the default tree and that of the preset Paper.
+void compareBeams(
+  const TriangleMesh& triangles, const Vec3& apex, Numbers& random, int beams, HitComparison& sum)
 {
-  Worst rangeError; ///< in units of round-off of double times farthest corner / cosine
-  std::size_t compared = 0;
-  std::size_t hits = 0;
-  std::size_t undecided = 0; ///< rays so near an edge that rounding decides
-  std::size_t wrong = 0;     ///< another triangle, or none, or one too many
-  std::size_t otherBits = 0; ///< one descent per ray differs from the batch
-  std::size_t paper = 0;     ///< the preset Paper's tree and descent do
-};
-
-/// Angle within which rounding may decide whether a ray passes an edge, rad.
-constexpr long double EdgeTolerance = 32.0L * 0x1p-53L;
-
-void compareRay(const TriangleMesh& mesh, const BeamFrame& frame, double x, double y,
-  const Hit& hit, Comparison& sum)
-{
-  const Vec3L d = rayDirection(frame, x, y);
-  const OracleHit oracle = bruteForce(mesh, frame.origin, d, EdgeTolerance);
-  sum.hits += hit.valid();
-  if (oracle.nearEdge)
-  {
-    ++sum.undecided;
-    return;
-  }
-  ++sum.compared;
-  if (hit.valid() != (oracle.triangle != NoTriangle))
-  {
-    ++sum.wrong;
-    return;
-  }
-  if (!hit.valid())
-  {
-    return;
-  }
-  // Of coplanar triangles another one may be as near.
-  const PairResult pair = testPair(mesh, hit.triangle, frame.origin, d);
-  sum.wrong += !pair.hit;
-  const long double unit = 0x1p-53L * std::fmax(pair.size, oracle.range) / pair.cosine;
-  sum.rangeError.see(static_cast<double>(std::fabs(hit.range - oracle.range) / unit));
-}
-
-/// Trace the rays of one beam and compare all of them.
-void compareBeam(const CollisionTree& tree, const CollisionTree& paperTree, const BeamFrame& frame,
-  const BeamRays& rays, Comparison& sum)
-{
-  OneBeamTracer tracer(tree);
-  OneBeamTracer paperTracer(paperTree);
-  std::vector<Hit> hits;
-  std::vector<Hit> singly;
-  std::vector<Hit> paperHits;
-  tracer.setBeam(frame);
-  tracer.trace(rays, TraceMode::Automatic, hits);
-  tracer.trace(rays, TraceMode::SingleRays, singly);
-  paperTracer.setBeam(frame);
-  paperTracer.trace(rays, TraceMode::Beams, paperHits);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-  {
-    sum.otherBits += !sameBits(hits[i], singly[i]);
-    sum.paper += !sameBits(hits[i], paperHits[i]);
-    compareRay(*tree.mesh, frame, rays.x[i], rays.y[i], hits[i], sum);
-  }
-}
-
-/// Beams of several widths aimed at points of random triangles.
-void compareBeams(const std::shared_ptr<const TriangleMesh>& mesh, const Vec3& apex,
-  Numbers& random, int beams, Comparison& sum)
-{
-  const auto tree = buildCollisionTree(mesh, TreeOptions());
-  const auto paperTree = buildVolumeTree(mesh, PaperTree);
-  const double widths[] = { 1e-6, 1e-4, 5.6e-3, 0.1, 1.0 };
-  for (int i = 0; i < beams; ++i)
-  {
-    const auto t = static_cast<std::uint32_t>(random.index(mesh->size()));
-    const double u = random();
-    const double v = random() * (1.0 - u);
-    const Vec3 a = mesh->corner(t, 0) - apex;
-    const Vec3 target = a + u * (mesh->corner(t, 1) - mesh->corner(t, 0)) +
-      v * (mesh->corner(t, 2) - mesh->corner(t, 0));
-    const double width = widths[i % 5];
-    const BeamRays rays = raysInDisc(random, 20);
-    if (glm::dot(target, target) == 0.0)
-    {
-      continue; // the lidar is that point
-    }
-    compareBeam(*tree, *paperTree, avianlidar::makeBeamFrame(apex, target, width), rays, sum);
-  }
+  const auto mesh = std::make_shared<TriangleMesh>(triangles);
+  compareBeams({ buildCollisionTree(mesh, TreeOptions()), buildVolumeTree(mesh, PaperTree) }, apex,
+    random, beams, 20, sum);
 }
 
 /// The rows that every comparison gives.
-void recordComparison(const std::string& extreme, const std::string& range, const Comparison& sum)
+void recordComparison(
+  const std::string& extreme, const std::string& range, const HitComparison& sum)
 {
   record({ extreme, range, "rays",
     "hits unlike brute force in long double, or unlike one descent per ray, of " +
       std::to_string(sum.compared) + " rays",
-    0.0, static_cast<double>(sum.wrong + sum.otherBits) });
+    0.0, static_cast<double>(sum.wrong + sum.otherBits[0]) });
   record({ extreme, range, "rays",
     "error of range, in 2^-53 times the triangle's farthest corner / cos(incidence)", RangeBar,
-    sum.rangeError.value() });
+    sum.rangeError });
 }
 
 Vec3 farAway(double distance)
@@ -170,44 +88,40 @@ std::size_t echoesNotScaled(const avianlidar::ScanResult& plain,
 TEST(StabilityCoordinates, HitsAreThoseOfBruteForce)
 {
   Numbers random(101);
-  Comparison far;
+  HitComparison far;
   for (int decade = -3; decade <= 8; ++decade)
   {
     const Vec3 apex = farAway(std::pow(10.0, decade));
-    compareBeams(
-      std::make_shared<TriangleMesh>(moved(randomTriangles(random, 200, 100.0, 20.0), apex)), apex,
-      random, 25, far);
+    compareBeams(moved(randomTriangles(random, 200, 100.0, 20.0), apex), apex, random, 25, far);
   }
   recordComparison("Coordinates", "scene of 200 m, 1e-3 to 1e8 m from the origin", far);
-  Comparison tiny;
+  HitComparison tiny;
   for (const double distance : { 0.0, 1e-3, 1.0, 1e3, 1e6 })
   {
     const Vec3 apex = farAway(distance); // a millimetre across, seen from its middle
-    compareBeams(
-      std::make_shared<TriangleMesh>(moved(randomTriangles(random, 200, 1e-3, 1e-6), apex)), apex,
-      random, 40, tiny);
+    compareBeams(moved(randomTriangles(random, 200, 1e-3, 1e-6), apex), apex, random, 40, tiny);
   }
   recordComparison("Coordinates", "triangles of 1e-6 m, up to 1e6 m from the origin", tiny);
-  Comparison sizes;
-  Comparison needles;
+  HitComparison sizes;
+  HitComparison needles;
   for (int round = 0; round < 4; ++round)
   {
-    const auto mixed = std::make_shared<TriangleMesh>();
-    const auto thin = std::make_shared<TriangleMesh>();
+    TriangleMesh mixed;
+    TriangleMesh thin;
     for (int i = 0; i < 200; ++i)
     {
       const double size = random.logUniform(1e-6, 1e5);
       const Vec3 center = 3.0 * size * random.direction() * (1.0 + random());
       const Vec3 a = center + random.inCube(size);
       const Vec3 b = center + random.inCube(size);
-      addTriangle(*mixed, a, b, center + random.inCube(size));
+      addTriangle(mixed, a, b, center + random.inCube(size));
       // Needles (third corner beside an end) and flat ones (beside the middle).
       const double length = random.logUniform(0.1, 100.0);
       const Vec3 from = random.inCube(50.0);
       const Vec3 along = length * random.direction();
       const Vec3 aside = glm::normalize(glm::cross(along, random.direction()));
       const Vec3 foot = from + (i % 2 ? 1.0 : random()) * along;
-      addTriangle(*thin, from, from + along, foot + length / random.logUniform(1.0, 1e8) * aside);
+      addTriangle(thin, from, from + along, foot + length / random.logUniform(1.0, 1e8) * aside);
     }
     compareBeams(mixed, Vec3(0.0), random, 60, sizes);
     compareBeams(thin, Vec3(0.0), random, 60, needles);
@@ -217,8 +131,9 @@ TEST(StabilityCoordinates, HitsAreThoseOfBruteForce)
   record(
     { "Preset Paper: coordinates", "1e-3 to 1e8 m from the origin, sizes 1e-6 to 1e5 m, needles",
       "paper", "hits unlike brute force in long double", 0.0,
-      static_cast<double>(far.paper + tiny.paper + sizes.paper + needles.paper) });
-  for (const Comparison* sum : { &far, &tiny, &sizes, &needles })
+      static_cast<double>(
+        far.otherBits[1] + tiny.otherBits[1] + sizes.otherBits[1] + needles.otherBits[1]) });
+  for (const HitComparison* sum : { &far, &tiny, &sizes, &needles })
   {
     EXPECT_GT(sum->hits, 400u);
     EXPECT_LT(sum->undecided, sum->compared / 50);

@@ -5,24 +5,12 @@
 #include "StabilityTable.h"
 
 #include "SameEchoes.h"
+#include "SecondaryTestScene.h"
 
 #include <gtest/gtest.h>
 
 using namespace echotest;
 using namespace stability;
-
-namespace
-{
-double secondEnergy(const ScanResult& result)
-{
-  double sum = 0.0;
-  for (const Echo& echo : result.echoes)
-  {
-    sum += echo.energyReceived * echo.secondaryShare;
-  }
-  return sum;
-}
-}
 
 TEST(StabilityPaper, ThresholdsOfAnySize)
 {
@@ -43,13 +31,13 @@ TEST(StabilityPaper, ThresholdsOfAnySize)
       const ScanResult all = runScan(makeSetup(corner(), sensor, without, PaperTree), oneBeam());
       unlike +=
         differingEchoes(all, runScan(makeSetup(corner(), sensor, settings, PaperTree), oneBeam()));
-      double before = secondEnergy(all);
+      double before = secondaryOf(all);
       ASSERT_TRUE(before > 0.0 || rays < 100);
       for (double limit = 1e-40; limit < 1e-3; limit *= 10.0)
       {
         sensor.lowerEnergyLimit = limit;
         const double now =
-          secondEnergy(runScan(makeSetup(corner(), sensor, settings, PaperTree), oneBeam()));
+          secondaryOf(runScan(makeSetup(corner(), sensor, settings, PaperTree), oneBeam()));
         gained.see(now - before * (1.0 + 1e-12));
         before = now;
       }
