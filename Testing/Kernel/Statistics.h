@@ -35,6 +35,13 @@ double byMidpoints(double from, double to, int steps, Function&& function)
   return sum * (to - from) / steps;
 }
 
+/// Share of the unit disc beyond a line at a distance from its middle.
+inline double shareBeyond(double distance)
+{
+  const double d = std::fmin(1.0, std::fmax(-1.0, distance));
+  return (std::acos(d) - d * std::sqrt(1.0 - d * d)) / std::acos(-1.0);
+}
+
 /// Numbers that come one after the other.
 struct Moments
 {

@@ -354,7 +354,7 @@ TEST(BeamAir, BordersAnywhereInABeam)
         *v = Vec3(v->x, cosine * v->y + sine * v->z, cosine * v->z - sine * v->y);
       }
       const double left = isLayer && offset < 0.0 ? -offset : offset; // the layer is below the beam
-      const double truth = 1.0 - (std::acos(left) - left * std::sqrt(1.0 - left * left)) / Pi;
+      const double truth = 1.0 - statistics::shareBeyond(left);
       FollowedAir& air = offset < 0.0 ? low : high;
       air.begin(frame);
       const double error = air.transmission(range + 0.1) - truth;

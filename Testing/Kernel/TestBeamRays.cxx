@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rays of a beam: distribution, place in the cone, cells, and estimates without bias.
 #include "BeamSampler.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -178,7 +179,7 @@ TEST(BeamRays, StratifiedBeatsMonteCarloSixfoldAtAnEdge)
       const auto place = uniformPair(1, beam, 0, RandomPurpose::Connections);
       const double edge = 2.0 * place[0] - 1.0;
       const double turn = 2.0 * Pi * place[1];
-      const double share = (std::acos(edge) - edge * std::sqrt(1.0 - edge * edge)) / Pi;
+      const double share = statistics::shareBeyond(edge);
       sampleBeam(1, beam, 100, { 1e-3, BeamProfile::Uniform }, sampling, &strata, rays);
       int beyond = 0;
       for (std::size_t n = 0; n < 100; ++n)
@@ -239,7 +240,6 @@ TEST(BeamRays, PatternsTogetherFillEveryCellEvenly)
   constexpr double half = 0.3;
   const StrataPartition strata(count);
   std::vector<std::vector<int>> places(count, std::vector<int>(PatternsOfRays, 0));
-  const double quarter = std::pow(std::sin(0.5 * half), 2);
   for (std::size_t p = 0; p < PatternsOfRays; ++p)
   {
     BeamRays pattern;
@@ -248,19 +248,16 @@ TEST(BeamRays, PatternsTogetherFillEveryCellEvenly)
     for (std::size_t n = 0; n < count; ++n)
     {
       // Back from the place to the share of the cone's solid angle that lies inside.
-      const double radius = std::hypot(pattern.x[n], pattern.y[n]);
-      const double theta = std::atan(radius * std::tan(half));
-      const double share = std::pow(std::sin(0.5 * theta), 2) / quarter;
+      const Polar ray = polar(pattern, n, half);
+      const double share = cumulativeShare(ray.theta, half, BeamProfile::Uniform);
       const StrataPartition::Cell& cell = strata.cells()[strata.cellOfRay(n)];
       const double place = (share - cell.v0) / (cell.v1 - cell.v0);
       ASSERT_GT(place, -1e-9);
       ASSERT_LT(place, 1.0 + 1e-9);
       ++places[n][std::min<std::size_t>(
         PatternsOfRays - 1, static_cast<std::size_t>(std::max(0.0, place) * PatternsOfRays))];
-      double phi = std::atan2(pattern.y[n], pattern.x[n]);
-      phi += phi < 0.0 ? 2.0 * Pi : 0.0;
-      ASSERT_GE(phi, cell.phi0 - 1e-9);
-      ASSERT_LE(phi, cell.phi1 + 1e-9);
+      ASSERT_GE(ray.phi, cell.phi0 - 1e-9);
+      ASSERT_LE(ray.phi, cell.phi1 + 1e-9);
     }
   }
   for (const std::vector<int>& ofRay : places)

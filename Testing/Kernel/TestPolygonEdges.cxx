@@ -2,6 +2,7 @@
 // Integrated beams: nothing wrong at an edge, and what very many rays see.
 #include "GeometryTestScene.h"
 #include "IntegrationTestScene.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -26,8 +27,7 @@ TEST(PolygonEdges, AWallWhoseEdgeJustEntersTheBeam)
     ASSERT_TRUE(isIntegrated(result));
     ASSERT_EQ(result.echoes.size(), 1u);
     // The segment beyond the edge.
-    const double angle = std::acos(std::min(1.0, 1.0 - depth));
-    const double outside = (angle - std::sin(angle) * std::cos(angle)) / Pi;
+    const double outside = statistics::shareBeyond(1.0 - depth);
     const double energy = result.echoes[0].energyReceived;
     whole = whole > 0.0 ? whole : energy;
     EXPECT_NEAR(energy / whole, 1.0 - outside, 1e-5) << depth;

@@ -24,8 +24,7 @@ TEST(ScanReport, TheLabelIsThatOfTheLargestShare)
     scene.plate(Vec3(100.0, edge - 5.0, 0.0), Vec3(0.0, 5.0, 0.0), up, { 0.3, 0.0, 1.0 }, 2);
     const Echo echo = onlyEcho(scene, openSensor(), directSettings(2000));
     EXPECT_EQ(echo.objectId, edge > 0.0 ? 2 : 1);
-    const double x = std::min(1.0, std::abs(edge) / 0.56);
-    const double smaller = (std::acos(x) - x * std::sqrt(1.0 - x * x)) / Pi;
+    const double smaller = statistics::shareBeyond(std::abs(edge) / 0.56);
     EXPECT_NEAR(echo.labelShare, 1.0 - smaller, 0.01) << edge;
     EXPECT_EQ(echo.labelShare == 1.0, smaller == 0.0);
   }

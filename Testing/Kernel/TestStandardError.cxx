@@ -4,6 +4,7 @@
 
 #include "Random.h"
 #include "StandardError.h"
+#include "Statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -16,81 +17,81 @@ using namespace echotest;
 
 namespace
 {
-constexpr std::size_t RayCount = 100;
-
-/// Share of 4,000 beams of 100 rays whose estimate +-1.96 standard errors holds the truth.
-/// `covered` says whether a point of the unit disc is covered in a beam; `truth` is its share.
-double coverage(Sampling sampling,
-  const std::function<bool(std::uint64_t beam, double x, double y)>& covered,
-  const std::function<double(std::uint64_t beam)>& truth)
+/// Energy that a beam receives of a point of the unit disc, and in all.
+struct LitDisc
 {
-  const StrataPartition strata(RayCount);
-  StandardErrorEstimator estimator(sampling, RayCount, &strata);
-  BeamRays rays;
+  std::function<double(std::uint64_t beam, double x, double y)> energyOf;
+  std::function<double(std::uint64_t beam)> truth;
+  bool filling = false; ///< fills the beam: what rays see bounds what they do not see
+};
+
+/// Of the beams of which a ray sees anything, or of all: the share whose estimate +-1.96 standard
+/// errors holds the truth.
+double coverage(
+  Sampling sampling, std::size_t rays, int beams, const LitDisc& target, bool ofSeenAlone = false)
+{
+  const StrataPartition strata(rays);
+  StandardErrorEstimator estimator(sampling, rays, &strata);
+  const auto count = static_cast<double>(rays);
+  BeamRays sample;
   int held = 0;
-  constexpr int beams = 4000;
-  for (std::uint64_t beam = 0; beam < beams; ++beam)
+  int all = 0;
+  for (std::uint64_t beam = 0; beam < static_cast<std::uint64_t>(beams); ++beam)
   {
-    sampleBeam(2, beam, RayCount, { 1e-3, BeamProfile::Uniform }, sampling, &strata, rays);
+    sampleBeam(2, beam, rays, { 1e-3, BeamProfile::Uniform }, sampling, &strata, sample);
     estimator.begin();
     double sum = 0.0;
-    for (std::size_t n = 0; n < RayCount; ++n)
+    for (std::size_t n = 0; n < rays; ++n)
     {
-      const double energy = covered(beam, rays.x[n], rays.y[n]) ? 1.0 / RayCount : 0.0;
+      const double energy = target.energyOf(beam, sample.x[n], sample.y[n]) / count;
       estimator.add(n, energy);
       sum += energy;
     }
-    const double error = estimator.estimate({ 0.0, 1.0 / RayCount });
-    held += std::abs(sum - truth(beam)) <= 1.96 * error;
+    const bool counts = !ofSeenAlone || sum > 0.0;
+    const UnseenEnergy unseen = target.filling
+      ? UnseenEnergy{ estimator.smallest(), estimator.largest() }
+      : UnseenEnergy{ 0.0, 1.0 / count };
+    all += counts;
+    held += counts && std::abs(sum - target.truth(beam)) <= 1.96 * estimator.estimate(unseen);
   }
-  return static_cast<double>(held) / beams;
+  return static_cast<double>(held) / all;
 }
 
-/// An edge of random place and direction.
+/// An edge of random place and direction: how far a point is beyond it.
 double edgeOf(std::uint64_t beam)
 {
   return 2.0 * uniformPair(9, beam, 0, RandomPurpose::Connections)[0] - 1.0;
 }
 
-bool beyondEdge(std::uint64_t beam, double x, double y)
+double beyondEdge(std::uint64_t beam, double x, double y)
 {
   const double turn = 2.0 * Pi * uniformPair(9, beam, 0, RandomPurpose::Connections)[1];
-  return x * std::cos(turn) + y * std::sin(turn) > edgeOf(beam);
+  return x * std::cos(turn) + y * std::sin(turn) - edgeOf(beam);
 }
 
-double segment(double edge)
-{
-  const double e = std::min(1.0, std::max(-1.0, edge));
-  return (std::acos(e) - e * std::sqrt(1.0 - e * e)) / Pi;
-}
-
-double edgeShare(std::uint64_t beam)
-{
-  return segment(edgeOf(beam));
-}
+const LitDisc BeyondEdge{ [](std::uint64_t beam, double x, double y)
+  { return beyondEdge(beam, x, y) > 0.0 ? 1.0 : 0.0; },
+  [](std::uint64_t beam) { return statistics::shareBeyond(edgeOf(beam)); } };
 
 /// A strip half as wide as the disc's radius, at a random place.
-bool inStrip(std::uint64_t beam, double x, double y)
+const LitDisc OnStrip{ [](std::uint64_t beam, double x, double y)
+  { return std::fabs(beyondEdge(beam, x, y)) < 0.25 ? 1.0 : 0.0; },
+  [](std::uint64_t beam)
+  {
+    return statistics::shareBeyond(edgeOf(beam) - 0.25) -
+      statistics::shareBeyond(edgeOf(beam) + 0.25);
+  } };
+
+/// A disc about the axis that has a share of the beam.
+LitDisc discOf(double share)
 {
-  const double turn = 2.0 * Pi * uniformPair(9, beam, 0, RandomPurpose::Connections)[1];
-  const double place = x * std::cos(turn) + y * std::sin(turn) - edgeOf(beam);
-  return place > -0.25 && place < 0.25;
+  return { [=](std::uint64_t, double x, double y) { return x * x + y * y < share ? 1.0 : 0.0; },
+    [=](std::uint64_t) { return share; } };
 }
 
-double stripShare(std::uint64_t beam)
-{
-  return segment(edgeOf(beam) - 0.25) - segment(edgeOf(beam) + 0.25);
-}
-
-bool inAxisDisc(std::uint64_t, double x, double y)
-{
-  return x * x + y * y < 0.16;
-}
-
-double axisDiscShare(std::uint64_t)
-{
-  return 0.16;
-}
+/// A plane askew that fills the beam.
+const LitDisc OnPlane{ [](std::uint64_t, double x, double) { return 1.0 + 0.3 * x; },
+  [](std::uint64_t) { return 1.0; }, true };
 }
 
 TEST(StandardError, MonteCarloByHand)
@@ -138,43 +139,14 @@ TEST(StandardError, FewRaysHaveNone)
 
 TEST(StandardError, SmallSamplesHoldTheTruth)
 {
-  // A plane askew that fills the window: what few rays see of it says least of what they do not
-  // see. An edge: of the beams of which a ray sees anything.
+  // Of a plane that fills the window, what few rays see says least of what they do not see. Of an
+  // edge, the beams count of which a ray sees anything.
   for (std::size_t rays = 8; rays <= 16; ++rays)
   {
-    const StrataPartition strata(rays);
     for (const Sampling sampling : { Sampling::MonteCarlo, Sampling::Stratified })
     {
-      StandardErrorEstimator estimator(sampling, rays, &strata);
-      BeamRays sample;
-      int ofPlane = 0;
-      int ofEdge = 0;
-      int seen = 0;
-      constexpr int beams = 10000;
-      for (std::uint64_t beam = 0; beam < beams; ++beam)
-      {
-        sampleBeam(5, beam, rays, { 1e-3, BeamProfile::Uniform }, sampling, &strata, sample);
-        const auto holds = [&](const auto& energyOf, bool plane, double truth)
-        {
-          estimator.begin();
-          double sum = 0.0;
-          for (std::size_t n = 0; n < rays; ++n)
-          {
-            const double energy = energyOf(sample.x[n], sample.y[n]) / static_cast<double>(rays);
-            estimator.add(n, energy);
-            sum += energy;
-          }
-          seen += !plane && sum > 0.0;
-          const double least = plane ? estimator.smallest() : 0.0;
-          const double error = estimator.estimate({ least, estimator.largest() });
-          return sum > 0.0 && std::abs(sum - truth) <= 1.96 * error;
-        };
-        ofPlane += holds([](double x, double) { return 1.0 + 0.3 * x; }, true, 1.0);
-        ofEdge += holds([&](double x, double y) { return beyondEdge(beam, x, y) ? 1.0 : 0.0; },
-          false, edgeShare(beam));
-      }
-      EXPECT_GT(static_cast<double>(ofPlane) / beams, 0.955) << rays;
-      EXPECT_GT(static_cast<double>(ofEdge) / seen, 0.955) << rays;
+      EXPECT_GT(coverage(sampling, rays, 10000, OnPlane), 0.955) << rays;
+      EXPECT_GT(coverage(sampling, rays, 10000, BeyondEdge, true), 0.955) << rays;
     }
   }
 }
@@ -215,19 +187,13 @@ TEST(StandardError, IsTheSameInAnyOrderOfRays)
   }
 }
 
-TEST(StandardErrorCoverage, MonteCarlo)
+TEST(StandardError, HundredRaysHoldTheTruth)
 {
   // Offsets of the edge even over the beam's width: below 0.92 without the pseudo-rays.
-  EXPECT_NEAR(coverage(Sampling::MonteCarlo, beyondEdge, edgeShare), 0.951, 0.015);
+  EXPECT_NEAR(coverage(Sampling::MonteCarlo, 100, 4000, BeyondEdge), 0.951, 0.015);
   // A share of 0.995: 0.39 without.
-  const auto almostAll = [](std::uint64_t, double x, double y) { return x * x + y * y < 0.995; };
-  const auto share = [](std::uint64_t) { return 0.995; };
-  EXPECT_GT(coverage(Sampling::MonteCarlo, almostAll, share), 0.93);
-}
-
-TEST(StandardErrorCoverage, Stratified)
-{
-  EXPECT_NEAR(coverage(Sampling::Stratified, beyondEdge, edgeShare), 0.963, 0.02);
-  EXPECT_NEAR(coverage(Sampling::Stratified, inStrip, stripShare), 0.953, 0.02);
-  EXPECT_GT(coverage(Sampling::Stratified, inAxisDisc, axisDiscShare), 0.93);
+  EXPECT_GT(coverage(Sampling::MonteCarlo, 100, 4000, discOf(0.995)), 0.93);
+  EXPECT_NEAR(coverage(Sampling::Stratified, 100, 4000, BeyondEdge), 0.963, 0.02);
+  EXPECT_NEAR(coverage(Sampling::Stratified, 100, 4000, OnStrip), 0.953, 0.02);
+  EXPECT_GT(coverage(Sampling::Stratified, 100, 4000, discOf(0.16)), 0.93);
 }
