@@ -17,7 +17,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace

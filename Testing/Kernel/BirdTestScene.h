@@ -110,17 +110,6 @@ inline std::vector<Pixel> imageOf(const TriangleMesh& mesh, const Vec3& view, do
   }
   return pixels;
 }
-
-/// Silhouette weighted by the cosine of incidence, by an image, m^2.
-inline double areaOfImage(const TriangleMesh& mesh, const Vec3& view, double size)
-{
-  double sum = 0.0;
-  for (const Pixel& pixel : imageOf(mesh, view, size))
-  {
-    sum += pixel.cosine * size * size;
-  }
-  return sum;
-}
 }
 
 #endif

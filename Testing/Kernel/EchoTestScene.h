@@ -7,11 +7,9 @@
 #include "Scan.h"
 #include "VolumeTree.h"
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace echotest

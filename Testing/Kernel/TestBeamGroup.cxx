@@ -18,16 +18,6 @@
 using namespace avianlidar;
 using namespace geometrytest;
 
-namespace
-{
-/// Ground, far wider than high, below the beams and around them.
-void addGround(TriangleMesh& mesh, double half, double z)
-{
-  addTriangle(mesh, { -half, -half, z }, { half, -half, z }, { half, half, z });
-  addTriangle(mesh, { -half, -half, z }, { half, half, z }, { -half, half, z });
-}
-}
-
 TEST(BeamGroup, BeamsInOrderAreAllThereAndNeighbours)
 {
   Numbers random(21);
@@ -67,7 +57,9 @@ TEST(BeamGroup, ABlockOfBeamsHasTheHitsOfSingleRays)
   {
     auto mesh = std::make_shared<TriangleMesh>(
       randomTriangles(random, 400, 50.0, random.logUniform(0.05, 20.0)));
-    addGround(*mesh, 300.0, -2.0);
+    // Ground, far wider than high, below the beams and around them.
+    addTriangle(*mesh, { -300, -300, -2 }, { 300, -300, -2 }, { 300, 300, -2 });
+    addTriangle(*mesh, { -300, -300, -2 }, { 300, 300, -2 }, { -300, 300, -2 });
     const auto tree = buildCollisionTree(mesh, TreeOptions());
     const double width = random.logUniform(1e-4, 0.1);
     std::vector<BeamFrame> frames =

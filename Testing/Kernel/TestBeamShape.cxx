@@ -58,14 +58,6 @@ bool isInside(const Shape& s, double u, double v)
                                              : u * u + v * v <= 1.0;
 }
 
-/// Irradiance there, not normalised.
-double lightAt(const Shape& s, double u, double v)
-{
-  return s.profile == BeamProfile::Gaussian
-    ? std::exp(-2.0 * s.truncation * s.truncation * (u * u + v * v))
-    : 1.0;
-}
-
 /// Share of the energy where a function of the place is true.
 template <class F>
 double shareWhere(const Shape& s, F isCounted)
@@ -79,7 +71,9 @@ double shareWhere(const Shape& s, F isCounted)
     {
       const double u = (2.0 * i + 1.0) / steps - 1.0;
       const double v = (2.0 * k + 1.0) / steps - 1.0;
-      const double light = isInside(s, u, v) ? lightAt(s, u, v) : 0.0;
+      const double fall =
+        s.profile == BeamProfile::Gaussian ? 2.0 * s.truncation * s.truncation : 0.0;
+      const double light = isInside(s, u, v) ? std::exp(-fall * (u * u + v * v)) : 0.0;
       all += light;
       counted += isCounted(u, v) ? light : 0.0;
     }

@@ -9,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -58,14 +57,6 @@ double ellipsoidArea(double diameter, double length, const Vec3& towards)
     }
   }
   return sum * Pi / n * 2.0 * Pi / n;
-}
-
-/// A direction 3 degrees below the bird's plane.
-Vec3 sideView(double yaw)
-{
-  const double elevation = 3.0 * Degree;
-  return { std::cos(elevation) * std::cos(yaw), std::cos(elevation) * std::sin(yaw),
-    -std::sin(elevation) };
 }
 }
 
@@ -149,7 +140,9 @@ TEST(Bird, WingsHaveTheEffectiveAreaOfPlates)
     for (int k = 0; k < 2000; ++k)
     {
       const double angle = wingAngle(random(0.0, 1.0), false);
-      const Vec3 towards = sideView(random(0.0, 2.0 * Pi));
+      const double yaw = random(0.0, 2.0 * Pi); // 3 degrees below the bird's plane
+      const Vec3 towards(std::cos(3.0 * Degree) * std::cos(yaw),
+        std::cos(3.0 * Degree) * std::sin(yaw), -std::sin(3.0 * Degree));
       for (const double side : { -1.0, 1.0 })
       {
         // Turned by the angle of attack about x, then by that of the wing about y.

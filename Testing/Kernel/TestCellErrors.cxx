@@ -2,7 +2,6 @@
 // Standard errors of beams in cells. Oracles: one plate, polygons, many seeds.
 #include "CellTestScene.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace celltest;

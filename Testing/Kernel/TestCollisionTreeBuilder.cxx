@@ -41,22 +41,18 @@ protected:
   }
 };
 
-void expectSameWideTrees(const WideTree& a, const WideTree& b)
-{
-  EXPECT_EQ(a.depth, b.depth);
-  EXPECT_EQ(a.extent, b.extent);
-  EXPECT_EQ(a.reference, b.reference);
-  ASSERT_EQ(a.nodes.size(), b.nodes.size());
-  EXPECT_TRUE(a.nodes.empty() ||
-    std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(WideNode)) == 0);
-}
-
 void expectSameTrees(const CollisionTree& a, const CollisionTree& b)
 {
   EXPECT_EQ(a.order, b.order);
   EXPECT_EQ(a.leaves, b.leaves);
   EXPECT_EQ(a.depth, b.depth);
-  expectSameWideTrees(a.wide, b.wide);
+  EXPECT_EQ(a.wide.depth, b.wide.depth);
+  EXPECT_EQ(a.wide.extent, b.wide.extent);
+  EXPECT_EQ(a.wide.reference, b.wide.reference);
+  ASSERT_EQ(a.wide.nodes.size(), b.wide.nodes.size());
+  EXPECT_TRUE(a.wide.nodes.empty() ||
+    std::memcmp(a.wide.nodes.data(), b.wide.nodes.data(), a.wide.nodes.size() * sizeof(WideNode)) ==
+      0);
 }
 
 /// Each triangle once, in the wide tree, too, and within every volume above it in the binary tree,

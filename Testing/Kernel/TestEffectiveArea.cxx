@@ -67,7 +67,11 @@ TEST(EffectiveArea, OfABirdIsThatOfAnImage)
   {
     const auto bird = wholeBird(HerringGull, 0.6 * uniform(random));
     const Vec3 d = glm::normalize(Vec3(uniform(random), uniform(random), 0.3 * uniform(random)));
-    const double wanted = areaOfImage(bird, d, pixel);
+    double wanted = 0.0; // silhouette weighted by the cosine of incidence
+    for (const Pixel& seen : imageOf(bird, d, pixel))
+    {
+      wanted += seen.cosine * pixel * pixel;
+    }
     EXPECT_NEAR(effectiveArea(bird, d), wanted, 0.01 * wanted + 1e-5);
   }
 }

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <random>
-#include <string>
 
 using namespace echotest;
 

@@ -29,11 +29,6 @@ Sensor photonCounter(double meanPhotons, double limitPhotons)
   sensor.upperEnergyLimit = 1.0;
   return sensor;
 }
-
-double poissonProbability(double mean, int count)
-{
-  return std::exp(count * std::log(mean) - mean - std::lgamma(count + 1.0));
-}
 }
 
 // Others are TestStabilityReceiver's.
@@ -129,7 +124,7 @@ TEST(NoiseBeam, EveryUnitIsPoissonAndAlarmsAreItsTail)
     }
     for (int count = 0; count < most; ++count)
     {
-      const double p = poissonProbability(mean, count);
+      const double p = std::exp(count * std::log(mean) - mean - std::lgamma(count + 1.0));
       EXPECT_NEAR(counts[count], units * p, 4.5 * std::sqrt(units * p) + 4.0)
         << mean << ' ' << count;
     }

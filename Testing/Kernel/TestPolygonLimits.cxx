@@ -38,15 +38,6 @@ Nodes nodesOf(const ScanSetup& setup)
   quadrature.place(frame, *found.polygons, bounds, nodes);
   return { true, nodes.samples.size() };
 }
-
-/// Ground below the lidar, up to a distance.
-Scene groundUpTo(double distance)
-{
-  Scene scene;
-  scene.plate(
-    Vec3(0.0, 0.0, -3.0), Vec3(distance, 0.0, 0.0), Vec3(0.0, 100.0, 0.0), { 0.3, 0.0, 0.0 });
-  return scene;
-}
 }
 
 TEST(PolygonLimits, GroundOverMoreRangeUnitsThanNodesAllowIsDividedIntoCells)
@@ -73,7 +64,10 @@ TEST(PolygonLimits, GroundOverMoreRangeUnitsThanNodesAllowIsDividedIntoCells)
           const double last = first + units * sensor.rangeUnitLength();
           EchoSettings settings = inCells(rays);
           settings.fullModel = full;
-          const ScanSetup setup = makeSetup(groundUpTo(last), sensor, settings);
+          Scene ground;
+          ground.plate(
+            Vec3(0.0, 0.0, -3.0), Vec3(last, 0.0, 0.0), Vec3(0.0, 100.0, 0.0), { 0.3, 0.0, 0.0 });
+          const ScanSetup setup = makeSetup(ground, sensor, settings);
           EXPECT_EQ(runScan(setup, oneBeam()).reports[0].direct,
             share < 1.0 ? DirectEcho::Polygons : DirectEcho::Cells);
           const Nodes nodes = nodesOf(setup);

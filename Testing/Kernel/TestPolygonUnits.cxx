@@ -16,13 +16,6 @@ using geometrytest::Numbers;
 
 namespace
 {
-/// True if lines of equal range are curved by less than a thousandth of a range unit.
-bool isFlat(const Case& c, double range)
-{
-  const double tangent = std::tan(c.sensor.halfBeamwidth);
-  return 0.5 * tangent * tangent * range < 1e-3 * c.sensor.rangeUnitLength();
-}
-
 struct Errors
 {
   double worst = 0.0;  ///< relative, in units that hold at least 1 % of the strongest
@@ -50,7 +43,10 @@ void check(const Case& c, const Scene& scene, Numbers& random, Errors& errors)
     const double error = std::fabs(echo.energyReceived - right);
     EXPECT_LE(error, echo.energyStdError)
       << "unit " << unit << " " << right / strongest->energyReceived;
-    if (right > 0.01 * strongest->energyReceived && isFlat(c, echo.range))
+    // Lines of equal range are curved by less than a thousandth of a range unit.
+    const double tangent = std::tan(c.sensor.halfBeamwidth);
+    const bool isFlat = 0.5 * tangent * tangent * echo.range < 1e-3 * c.sensor.rangeUnitLength();
+    if (right > 0.01 * strongest->energyReceived && isFlat)
     {
       errors.worst = std::max(errors.worst, error / right);
       // Of a unit of a millionth of the range rounding of the range is a larger part.

@@ -13,11 +13,6 @@ using namespace avianlidar;
 
 namespace
 {
-std::uint64_t join(std::uint32_t low, std::uint32_t high)
-{
-  return (static_cast<std::uint64_t>(high) << 32) | low;
-}
-
 std::uint32_t low(std::uint64_t value)
 {
   return static_cast<std::uint32_t>(value);
@@ -31,7 +26,8 @@ std::uint32_t high(std::uint64_t value)
 /// The odd multiple of 2^-53 made of the upper 52 bits, by integers.
 double expected(std::uint32_t low, std::uint32_t high)
 {
-  return std::ldexp(static_cast<double>(2 * (join(low, high) >> 12) + 1), -53);
+  const std::uint64_t joined = (static_cast<std::uint64_t>(high) << 32) | low;
+  return std::ldexp(static_cast<double>(2 * (joined >> 12) + 1), -53);
 }
 }
 

@@ -11,7 +11,6 @@
 #include <map>
 #include <random>
 #include <utility>
-#include <vector>
 
 using namespace echotest;
 

@@ -25,19 +25,13 @@ void square(Scene& scene, const Vec3& center, const Vec3& normal, const Material
   scene.plate(center, half * along, Vec3(0.0, 0.0, half), m);
 }
 
-/// Normal of a mirror at P1 = (x, 0, 0) that sends the axis ray along `direction`.
-Vec3 mirrorNormal(const Vec3& direction)
-{
-  return glm::normalize(glm::normalize(direction) - Vec3(1.0, 0.0, 0.0));
-}
-
 /// Paths of the axis ray, mirrored at P1 towards a metal plate about P2; a third plate may stand in
 /// the way, square to the beam.
 std::vector<SecondaryPath> mirrorPaths(const Vec3& p1, const Vec3& p2, const Vec3& normal2,
   const Material& m2, bool beamConstraint, const Vec3* third = nullptr)
 {
   Scene scene;
-  const Vec3 normal1 = mirrorNormal(p2 - p1);
+  const Vec3 normal1 = glm::normalize(glm::normalize(p2 - p1) - Vec3(1.0, 0.0, 0.0));
   square(scene, p1, normal1, Metal, 0.1);
   square(scene, p2, normal2, m2, 0.05);
   if (third)

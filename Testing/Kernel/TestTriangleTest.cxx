@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
-#include <vector>
 
 using namespace avianlidar;
 using namespace geometrytest;

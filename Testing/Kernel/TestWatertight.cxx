@@ -26,11 +26,6 @@ struct ClosedScene
   bool starShaped = true; ///< from the apex: every ray hits exactly once
 };
 
-Vec3 rotated(const BeamFrame& frame, const Vec3& p)
-{
-  return p.x * frame.e1 + p.y * frame.e2 + p.z * frame.axis;
-}
-
 /// A hall with two steps; the apex (0, 0, 0) lies in the plane of the first tread, which is
 /// therefore seen edge-on.
 TriangleMesh stairs()
@@ -77,7 +72,7 @@ std::vector<ClosedScene> closedScenes()
   const BeamFrame turn = makeBeamFrame(Vec3(0.0), { 0.3, -0.5, 0.7 }, 0.1);
   for (Vec3& p : turned.points)
   {
-    p = rotated(turn, p);
+    p = p.x * turn.e1 + p.y * turn.e2 + p.z * turn.axis;
   }
   scenes.push_back({ "stairs turned", share(turned), Vec3(0.0), false });
   for (Vec3& p : turned.points)

@@ -44,14 +44,6 @@ std::size_t echoesThatDisagree(const ScanResult& a, const ScanResult& b, double 
   }
   return alone;
 }
-
-/// Energy that a beam along an infinite plane receives, whatever its height: Qs kd (t - sin t cos
-/// t)/Omega.
-double energyAlongAPlane(double t)
-{
-  const double half = std::sin(0.5 * t);
-  return Qs * Diffuse.kd * (t - std::sin(t) * std::cos(t)) / (4.0 * Pi * half * half);
-}
 }
 
 TEST(StabilityDegenerate, PlanesThroughTheLidarAreNotHit)
@@ -120,7 +112,10 @@ TEST(StabilityDegenerate, PlanesNearlyThroughTheLidar)
       {
         deviation += echo.energyStdError;
       }
-      const double right = energyAlongAPlane(t);
+      // Qs kd (t - sin t cos t)/Omega, whatever the height.
+      const double half = std::sin(0.5 * t);
+      const double right =
+        Qs * Diffuse.kd * (t - std::sin(t) * std::cos(t)) / (4.0 * Pi * half * half);
       error.see(std::fabs(receivedFrom(result) - right) / (deviation + 1e-7 * right));
       excess.see(receivedFrom(result) / (0.146 * sensor.pulseEnergy * std::sin(t)));
     }

@@ -17,29 +17,18 @@ using namespace echotest;
 using stability::record;
 using stability::Worst;
 
-namespace
-{
-constexpr double Farthest = 1e5; // m
-
-/// Paths of lengths up to there and back.
-std::vector<Contribution> pathsOver100Kilometres(std::size_t count)
-{
-  std::vector<Contribution> list;
-  for (std::size_t n = 0; n < count; ++n)
-  {
-    const auto u = uniformPair(11, 0, n, RandomPurpose::Rays);
-    list.push_back({ 2.0 * Farthest * u[0], 1e-6 * u[1] });
-  }
-  return list;
-}
-}
-
 TEST(StabilityReceiver, RangeUnitsOver100Kilometres)
 {
   Worst energy;
   Worst units;
   Worst bytes;
-  const auto paths = pathsOver100Kilometres(20000);
+  constexpr double Farthest = 1e5; // m
+  std::vector<Contribution> paths; // there and back
+  for (std::size_t n = 0; n < 20000; ++n)
+  {
+    const auto u = uniformPair(11, 0, n, RandomPurpose::Rays);
+    paths.push_back({ 2.0 * Farthest * u[0], 1e-6 * u[1] });
+  }
   for (int decade = -12; decade <= -3; ++decade)
   {
     const double interval = std::pow(10.0, decade);
