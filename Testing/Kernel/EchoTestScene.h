@@ -219,6 +219,18 @@ inline ScanResult runScan(const ScanSetup& setup, const ScanBeams& beams, int th
   return result;
 }
 
+/// Sums over the echoes of each beam.
+template <class Value>
+std::vector<double> sumsOfBeams(const ScanResult& result, std::size_t beams, Value&& valueOf)
+{
+  std::vector<double> sums(beams, 0.0);
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    sums[result.beamOfEcho[e]] += valueOf(result.echoes[e]);
+  }
+  return sums;
+}
+
 /// J received from all echoes.
 inline double receivedFrom(const ScanResult& result)
 {

@@ -22,13 +22,8 @@ TEST(BeamCrowns, LeavesThatStayReturnTheSameInEveryScan)
     setup.settings.noise = true;
     planModel(setup);
     setup.revolution = revolution;
-    std::vector<double> found(300, 0.0);
-    const ScanResult result = runScan(setup, alike(300));
-    for (std::size_t k = 0; k < result.echoes.size(); ++k)
-    {
-      found[result.beamOfEcho[k]] += result.echoes[k].energyReceived;
-    }
-    return found;
+    return sumsOfBeams(
+      runScan(setup, alike(300)), 300, [](const Echo& echo) { return echo.energyReceived; });
   };
   const auto correlation = [](const std::vector<double>& a, const std::vector<double>& b)
   {
@@ -146,13 +141,8 @@ TEST(BeamCrowns, ABeamMeetsLeavesWithAPartOfIt)
     CrownCase without = of;
     without.density = 1e-9;
     const double clear = receivedFrom(throughLeaves(without, false));
-    const ScanResult result = throughLeaves(of, true);
-    std::vector<double> walls(Scans, 0.0);
-    for (std::size_t k = 0; k < result.echoes.size(); ++k)
-    {
-      const Echo& echo = result.echoes[k];
-      walls[result.beamOfEcho[k]] += echo.range > of.end + 1.0 ? echo.energyReceived : 0.0;
-    }
+    const std::vector<double> walls = sumsOfBeams(throughLeaves(of, true), Scans,
+      [&](const Echo& echo) { return echo.range > of.end + 1.0 ? echo.energyReceived : 0.0; });
     const auto count = [&](double from, double to)
     {
       return static_cast<double>(std::count_if(walls.begin(), walls.end(),
@@ -192,14 +182,8 @@ std::vector<double> lightOfScans(ScanSetup setup, F isWanted)
   setup.settings.noise = true;
   setup.settings.returnMode = ReturnMode::RangeUnits;
   planModel(setup);
-  const ScanResult result = runScan(setup, alike(Scans));
-  std::vector<double> light(Scans, 0.0);
-  for (std::size_t k = 0; k < result.echoes.size(); ++k)
-  {
-    const Echo& echo = result.echoes[k];
-    light[result.beamOfEcho[k]] += isWanted(echo) ? echo.energyReceived : 0.0;
-  }
-  return light;
+  return sumsOfBeams(runScan(setup, alike(Scans)), Scans,
+    [&](const Echo& echo) { return isWanted(echo) ? echo.energyReceived : 0.0; });
 }
 }
 
@@ -234,17 +218,16 @@ TEST(BeamCrowns, LeavesHideSmallObjectsOrDoNot)
     const double clear = statistics::sumOf(seen(1e-9, false)) / static_cast<double>(Scans);
     for (const bool wall : { false, true })
     {
-      double mean = 0.0, square = 0.0, dark = 0.0;
+      statistics::Moments shares;
+      double dark = 0.0;
       for (const double energy : seen(1.0, wall))
       {
-        const double share = energy / clear;
-        mean += share / static_cast<double>(Scans);
-        square += share * share / static_cast<double>(Scans);
-        dark += share < 0.02 ? 1.0 / static_cast<double>(Scans) : 0.0;
+        shares.add(energy / clear);
+        dark += energy < 0.02 * clear ? 1.0 / static_cast<double>(Scans) : 0.0;
       }
-      const double deviation = std::sqrt(square - mean * mean);
-      const double error = std::hypot(of.mean[1], deviation / std::sqrt(Scans));
-      EXPECT_NEAR(mean, of.mean[0], 3.0 * error) << of.plate << " " << wall;
+      const double deviation = std::sqrt(shares.variance());
+      const double error = std::hypot(of.mean[1], shares.error());
+      EXPECT_NEAR(shares.mean(), of.mean[0], 3.0 * error) << of.plate << " " << wall;
       EXPECT_NEAR(deviation / of.deviation, 1.0, 0.08) << of.plate << " " << wall;
       EXPECT_NEAR(dark, of.dark, 0.045) << of.plate << " " << wall;
     }
@@ -299,16 +282,14 @@ TEST(BeamCrowns, LeavesAreDrawnWithoutNoisePhotons)
     sensor.receiverModel = ReceiverModel::EnergyLimits;
     sensor.lowerEnergyLimit = 1e-30;
     sensor.noisePhotonRate = rate;
-    const std::vector<double> walls =
+    statistics::Moments walls;
+    for (const double energy :
       lightOfScans(inMedium(wallAt(of.wall), sensor, leavesOf(of.density), crownOf(of)),
-        [&](const Echo& echo) { return echo.range > of.end + 1.0; });
-    const double mean = statistics::sumOf(walls) / static_cast<double>(Scans);
-    double square = 0.0;
-    for (const double energy : walls)
+        [&](const Echo& echo) { return echo.range > of.end + 1.0; }))
     {
-      square += (energy - mean) * (energy - mean) / static_cast<double>(Scans);
+      walls.add(energy);
     }
-    EXPECT_NEAR(std::sqrt(square) / mean, 0.99, 0.1) << rate;
+    EXPECT_NEAR(std::sqrt(walls.variance()) / walls.mean(), 0.99, 0.1) << rate;
   }
 }
 
@@ -320,37 +301,23 @@ TEST(BeamCrowns, NoiseOfLeavesLeavesTheMean)
     {
       continue;
     }
-    const auto sums = [&](bool noise)
+    CrownCase of = ThinRay;
+    of.halfBeamwidth = halfBeamwidth;
+    of.aperture = 0.05;
+    const ScanResult noisy = throughLeaves(of, true);
+    const ScanResult quiet = throughLeaves(of, false);
+    for (const bool isWall : { false, true })
     {
-      std::array<double, 4> sum{}; // leaves, wall, and squares over all beams
-      CrownCase of = ThinRay;
-      of.halfBeamwidth = halfBeamwidth;
-      of.aperture = 0.05;
-      const ScanResult result = throughLeaves(of, noise);
-      std::vector<std::array<double, 2>> beams(noise ? Scans : 1);
-      for (std::size_t k = 0; k < result.echoes.size(); ++k)
+      const auto energyOf = [=](const Echo& echo)
+      { return (echo.range > 30.0) == isWall ? echo.energyReceived : 0.0; };
+      statistics::Moments beams;
+      for (const double energy : sumsOfBeams(noisy, Scans, energyOf))
       {
-        beams[result.beamOfEcho[k]][result.echoes[k].range > 30.0] +=
-          result.echoes[k].energyReceived;
+        beams.add(energy);
       }
-      for (const auto& beam : beams)
-      {
-        for (std::size_t i = 0; i < 2; ++i)
-        {
-          sum[i] += beam[i] / static_cast<double>(beams.size());
-          sum[i + 2] += beam[i] * beam[i] / static_cast<double>(beams.size());
-        }
-      }
-      return sum;
-    };
-    const auto noisy = sums(true);
-    const auto mean = sums(false);
-    for (std::size_t i = 0; i < 2; ++i)
-    {
-      const double error =
-        std::sqrt((noisy[i + 2] - noisy[i] * noisy[i]) / static_cast<double>(Scans));
-      EXPECT_NEAR(noisy[i], mean[i], 3.5 * error + 2e-3 * mean[i])
-        << halfBeamwidth << (i == 0 ? " leaves" : " wall");
+      const double mean = sumsOfBeams(quiet, 1, energyOf)[0];
+      EXPECT_NEAR(beams.mean(), mean, 3.5 * beams.error() + 2e-3 * mean)
+        << halfBeamwidth << (isWall ? " wall" : " leaves");
     }
   }
 }

@@ -4,6 +4,7 @@
 #include "BeamSampler.h"
 #include "CellTestScene.h"
 #include "Sanitized.h"
+#include "Statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -263,17 +264,16 @@ TEST(BeamShape, AnEdgeCutsAShare)
             [=](double u, double v)
             { return std::cos(angle * Degree) * u + std::sin(angle * Degree) * v > at; });
         const ScanResult cells = runScan(makeSetup(scene, sensor, inCells(400)), alike(40));
-        double mean = 0.0;
-        double variance = 0.0;
+        statistics::Moments errors;
         for (const Echo& echo : cells.echoes)
         {
-          mean += echo.returnEnergy / 40.0;
-          variance += echo.energyStdError * echo.energyStdError / 40.0;
+          errors.add(echo.energyStdError);
         }
         const double one = sensor.pulseEnergy * Matt.kd;
-        EXPECT_NEAR(mean, truth, 1.5e-3 * one + 4.0 * std::sqrt(variance / 40.0))
+        EXPECT_NEAR(
+          receivedFrom(cells) / 40.0, truth, 1.5e-3 * one + 4.0 * errors.rms() / std::sqrt(40.0))
           << s.rotation << " " << angle << " " << at;
-        EXPECT_LT(std::sqrt(variance), 0.03 * one);
+        EXPECT_LT(errors.rms(), 0.03 * one);
         EXPECT_NEAR(received(scene, sensor, directSettings(20000)), truth, 6e-3 * one);
       }
     }

@@ -20,14 +20,8 @@ namespace
 std::vector<double> secondaryOfBeams(
   const Scene& scene, const ScanBeams& beams, const EchoSettings& settings, double width)
 {
-  const ScanResult result = runScan(makeSetup(scene, openSensor(width), settings), beams);
-  std::vector<double> energies(beams.size(), 0.0);
-  for (std::size_t e = 0; e < result.echoes.size(); ++e)
-  {
-    energies[result.beamOfEcho[e]] +=
-      result.echoes[e].returnEnergy * result.echoes[e].secondaryShare;
-  }
-  return energies;
+  return sumsOfBeams(runScan(makeSetup(scene, openSensor(width), settings), beams), beams.size(),
+    [](const Echo& echo) { return echo.returnEnergy * echo.secondaryShare; });
 }
 
 EchoSettings mirrorSettings(BeamSampleSource source, int rays)

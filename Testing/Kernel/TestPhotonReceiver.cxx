@@ -216,15 +216,15 @@ TEST(PhotonReceiver, SeesWallsFallWithTheSquareOfTheRangeAndTargetsWithTheFourth
     const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
     return result.echoes.empty() ? 0.0 : result.echoes[0].energyReceived;
   };
-  const double wall = std::log(energyOf(1000.0, 100.0) / energyOf(100.0, 100.0)) / std::log(10.0);
-  const double target = std::log(energyOf(1000.0, 0.05) / energyOf(100.0, 0.05)) / std::log(10.0);
-  EXPECT_NEAR(wall, -2.0, 0.01);
-  EXPECT_NEAR(target, -4.0, 0.01);
+  EXPECT_NEAR(energyOf(1000.0, 100.0) / energyOf(100.0, 100.0), 1e-2, 2e-4);
+  EXPECT_NEAR(energyOf(1000.0, 0.05) / energyOf(100.0, 0.05), 1e-4, 2e-6);
   // And as much as the closed form says.
-  EXPECT_NEAR(
-    energyOf(1000.0, 100.0) / energyFromTarget(sensor, 1000.0, Infinity, Plumage, 0.0), 1.0, 1e-3);
-  EXPECT_NEAR(
-    energyOf(1000.0, 0.05) / energyFromTarget(sensor, 1000.0, 0.01, Plumage, 0.0), 1.0, 1e-3);
+  for (const double half : { 100.0, 0.05 })
+  {
+    const double area = half > 1.0 ? Infinity : 4.0 * half * half;
+    EXPECT_NEAR(
+      energyOf(1000.0, half) / energyFromTarget(sensor, 1000.0, area, Plumage, 0.0), 1.0, 1e-3);
+  }
 }
 
 TEST(PhotonReceiver, SaysHowManyFalseAlarmsSingleElectronsWouldRaise)

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <vector>
@@ -20,46 +19,6 @@ using geometrytest::Numbers;
 namespace
 {
 const Material Mirror{ 0.0, 0.8, 1e4 };
-
-/// A sensor of so short range units that surfaces as steep as a groove's lie in many of them.
-Sensor sensorOfShortUnits()
-{
-  Sensor sensor = openSensor(2e-3);
-  sensor.samplingInterval = 5e-11;
-  sensor.rangeGate = 120.0;
-  sensor.lowerEnergyLimit = 1e-6;
-  return sensor;
-}
-
-/// A wall that no beam along x meets, then a groove of mirrors, which has no direct echo. The
-/// groove has the objects 7 and 9, each with its material.
-Scene grooveOfMirrors()
-{
-  Scene scene = squareAt(-50.0, 9.0, Wall, 3);
-  const Scene mirrors = groove(45.0 * Degree, Mirror);
-  for (std::size_t t = 0; t < mirrors.mesh->triangles.size(); ++t)
-  {
-    const std::array<std::uint32_t, 3>& corners = mirrors.mesh->triangles[t];
-    scene.triangle(mirrors.mesh->points[corners[0]], mirrors.mesh->points[corners[1]],
-      mirrors.mesh->points[corners[2]], Mirror, mirrors.objects[t] ? 9 : 7);
-  }
-  return scene;
-}
-
-ScanSetup withMaterialIds(const Scene& scene, const Sensor& sensor, const EchoSettings& settings)
-{
-  ScanSetup setup = makeSetup(scene, sensor, settings);
-  edit(setup.materialIds,
-    [&](std::vector<int>& ids)
-    {
-      for (std::size_t t = 0; t < ids.size(); ++t)
-      {
-        ids[t] = 10 * scene.objects[t];
-      }
-    });
-  finishSetup(setup);
-  return setup;
-}
 
 void expectMirrors(const Echo& echo)
 {
@@ -75,7 +34,19 @@ void expectMirrors(const Echo& echo)
 TEST(PolygonPaths, AnEchoOfPathsAloneIsLabelledByTheSurfacesThatTheyMeet)
 {
   EchoSettings settings = secondarySettings(100, 8, BeamSampleSource::Cells);
-  ScanSetup setup = withMaterialIds(grooveOfMirrors(), sensorOfShortUnits(), settings);
+  // Range units so short that surfaces as steep as a groove's lie in many of them.
+  Sensor sensor = openSensor(2e-3);
+  sensor.samplingInterval = 5e-11;
+  sensor.rangeGate = 120.0;
+  sensor.lowerEnergyLimit = 1e-6;
+  // Mirrors, which have no direct echo, and a wall that no beam along x meets; an object and a
+  // material each.
+  Scene scene = groove(45.0 * Degree, Mirror);
+  scene.objects = { 7, 7, 9, 9 };
+  scene.square(Vec3(-50.0, 0.0, 0.0), 9.0, Wall, 3);
+  ScanSetup setup = makeSetup(scene, sensor, settings);
+  setup.materialIds = std::vector<int>{ 70, 70, 90, 90, 30, 30 };
+  finishSetup(setup);
   // As the first beam of a scan, and after another of which something may be left.
   for (const bool after : { false, true })
   {

@@ -23,20 +23,12 @@ namespace
 constexpr double Beams = 1e6; // of a scan
 const std::string Range = "0 to 1e12 background electrons, amplifier 0 to 1e6, excess 1 to 1e3";
 
-Sensor dark()
+/// Every receiver that has noise, with limits for each number of false alarms.
+void forEachReceiver(const std::function<void(const Sensor&, double falseAlarms, int number)>& f)
 {
   Sensor sensor;
   sensor.receiverModel = ReceiverModel::Photons;
   sensor.receiverAperture = 0.25e-2 * Pi;
-  sensor.backgroundRadiance = 0.0;
-  sensor.amplifierNoise = 0.0;
-  return sensor;
-}
-
-/// Every receiver that has noise, with limits for each number of false alarms.
-void forEachReceiver(const std::function<void(const Sensor&, double falseAlarms, int number)>& f)
-{
-  Sensor sensor = dark();
   sensor.backgroundRadiance = 1.0;
   const double electronsOfRadiance = PhotonReceiver(sensor).background;
   int number = 0;
