@@ -58,50 +58,27 @@ inline Scene clutter(int seed)
   return scene;
 }
 
-/// What the cells of a beam along x show.
-class SeenInCells
+/// Share of the pulse that the cells of a beam along x show of an object.
+inline double shareInCells(const Scene& scene, const Sensor& sensor, int seed, int object)
 {
-public:
-  explicit SeenInCells(const ScanSetup& setup)
-    : SeenInCells(
-        setup, makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth)))
-  {
-  }
-
-  SeenInCells(const ScanSetup& setup, const BeamFrame& frame)
-    : Setup(setup)
-    , Found(*setup.tree, 0, MostTrianglesOfCells)
-  {
-    EXPECT_EQ(this->Found.find(frame), SeenByBeam::TooMuch);
-    this->shares.resize(setup.tree->mesh->size(), 0.0);
-    const std::unique_ptr<CellSamples> found =
-      BeamCells(setup, this->Found.scene()).find(0, frame, this->Found.candidates());
-    found->samples.forEachSurface(
-      [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
-      {
-        for (; begin < end; ++begin)
-        {
-          this->shares[triangle] += found->samples.weight[begin];
-        }
-      });
-  }
-
-  double ofObject(int id) const
-  {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < this->shares.size(); ++t)
+  const ScanSetup setup = makeSetup(scene, sensor, inCells(100, seed));
+  const BeamFrame frame =
+    makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(sensor.halfBeamwidth));
+  FoundPolygons found(*setup.tree, 0, MostTrianglesOfCells);
+  EXPECT_EQ(found.find(frame), SeenByBeam::TooMuch);
+  const std::unique_ptr<CellSamples> cells =
+    BeamCells(setup, found.scene()).find(0, frame, found.candidates());
+  double sum = 0.0;
+  cells->samples.forEachSurface(
+    [&](std::uint32_t triangle, std::uint32_t begin, std::uint32_t end)
     {
-      sum += this->Setup.objectIds[t] == id ? this->shares[t] : 0.0;
-    }
-    return sum;
-  }
-
-  std::vector<double> shares; ///< share of the pulse on each triangle
-
-private:
-  const ScanSetup& Setup;
-  FoundPolygons Found;
-};
+      for (; begin < end; ++begin)
+      {
+        sum += setup.objectIds[triangle] == object ? cells->samples.weight[begin] : 0.0;
+      }
+    });
+  return sum;
+}
 }
 
 #endif

@@ -126,10 +126,11 @@ inline EchoSettings directSettings(int rays)
 }
 
 /// The same without rays, where beams need none.
-inline EchoSettings inCells(int rays = 100)
+inline EchoSettings inCells(int rays = 100, int seed = EchoSettings().seed)
 {
   EchoSettings settings = directSettings(rays);
   settings.beamSamples = BeamSampleSource::Cells;
+  settings.seed = seed;
   return settings;
 }
 

@@ -10,6 +10,8 @@
 
 #include <cstring>
 #include <random>
+#include <string>
+#include <utility>
 
 namespace echotest
 {
@@ -79,6 +81,67 @@ inline EchoSettings usual()
   settings.numberOfConnections = 8;
   return settings;
 }
+
+/// A scan that goes on from one change to the next, beside fresh ones.
+struct ScanSeries
+{
+  ScanSetup setup;
+  ScanBeams beams;
+  TraceCache cache;
+  ScanResult result;
+
+  explicit ScanSeries(const Sensor& sensor = {}, const EchoSettings& settings = usual(),
+    const Scene& scene = town(), ScanBeams scanned = horizon(60, 2))
+    : ScanSeries(makeSetup(scene, sensor, settings), std::move(scanned))
+  {
+  }
+
+  ScanSeries(ScanSetup first, ScanBeams scanned)
+    : setup(std::move(first))
+    , beams(std::move(scanned))
+  {
+    this->check("first");
+  }
+
+  bool scan(const KeepGoing& keepGoing = {})
+  {
+    finishSetup(this->setup);
+    return simulateScan(
+      this->setup, this->beams, 2, this->cache, std::size_t(1) << 30, keepGoing, this->result);
+  }
+
+  void check(const std::string& what)
+  {
+    ASSERT_TRUE(this->scan());
+    const ScanResult fresh = runScan(this->setup, this->beams);
+    expectSame(this->result, fresh);
+    this->expectSameReports(fresh);
+    for (const KeptBeam& trace : this->cache.beams)
+    {
+      ASSERT_EQ(trace.held, trace.heldBytes());
+    }
+    ASSERT_FALSE(testing::Test::HasFailure()) << what;
+  }
+
+  /// What was left out is bounded in any state, if not by the same number.
+  void expectSameReports(const ScanResult& fresh) const
+  {
+    const double lower = this->setup.sensor.lowerEnergyLimit;
+    const EchoSettings& s = this->setup.settings;
+    const bool each = s.lightEnergyThreshold == LightEnergyThreshold::Limit; // path by itself
+    const double share = each ? Infinity : 1.001 * s.lightEnergyFraction;
+    for (std::size_t i = 0; i < fresh.reports.size(); ++i)
+    {
+      const BeamReport& now = this->result.reports[i];
+      ASSERT_EQ(now.status, fresh.reports[i].status) << "beam " << i;
+      ASSERT_TRUE(sameBits(now.range, fresh.reports[i].range)) << "beam " << i;
+      const bool isEcho = now.status == BeamStatus::Echo || now.status == BeamStatus::Saturated;
+      ASSERT_LE(now.lost, (isEcho ? share : std::max(1.0, share)) * lower) << "beam " << i;
+      ASSERT_TRUE(!isEcho || (now.skipped & SkippedBeam) == 0) << "beam " << i;
+      ASSERT_TRUE(now.skipped != 0 || now.lost == 0.0) << "beam " << i;
+    }
+  }
+};
 }
 
 #endif

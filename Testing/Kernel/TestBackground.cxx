@@ -202,17 +202,12 @@ TEST(Background, BrightWallsRaiseNoMoreFalseAlarmsThanTheSky)
 TEST(Background, WhatFollowsIsKeptAsItIs)
 {
   // Scans that keep light, and again with another seed and another sun, as fresh ones.
-  ScanSetup setup = makeSetup(plateFrom(0.0, 0.9), noonSensor(), noisySettings());
-  const ScanBeams beams = alike(300);
-  TraceCache cache;
-  ScanResult result;
+  ScanSeries series(noonSensor(), noisySettings(), plateFrom(0.0, 0.9), alike(300));
   for (int scan = 0; scan < 6; ++scan)
   {
-    setup.settings.seed = scan;
-    setup.sensor.sunAzimuth = scan < 4 ? 270.0 : 90.0;
-    finishSetup(setup);
-    ASSERT_TRUE(simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, result));
-    expectSame(result, runScan(setup, beams));
+    series.setup.settings.seed = scan;
+    series.setup.sensor.sunAzimuth = scan < 4 ? 270.0 : 90.0;
+    series.check("sun");
   }
 }
 

@@ -395,16 +395,12 @@ TEST(BeamAir, WhatIsKeptOfBeamsDoesNotDependOnTheAirBefore)
   Sensor sensor = search905();
   ScanSetup setup = makeSetup(town(), sensor, usual());
   setup.settings.attenuationCoefficient = 4e-3;
-  planModel(setup);
-  const ScanBeams beams = horizon(90, 4);
-  TraceCache cache;
-  ScanResult again;
-  simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, again);
-  setup.settings.attenuationCoefficient = 0.0;
-  setup.media = { { { 4e-3, 18.8, 0.0 }, {} } };
-  simulateScan(setup, beams, 1, cache, std::size_t(1) << 30, {}, again);
-  expectSame(runScan(setup, beams), again);
+  ScanSeries series(setup, horizon(90, 4));
+  series.setup.settings.attenuationCoefficient = 0.0;
+  series.setup.media = { { { 4e-3, 18.8, 0.0 }, {} } };
+  series.check("fog");
 }
+
 TEST(BeamAir, AnyThreadsAndPartsGiveTheSameBits)
 {
   Sensor sensor = search905();
@@ -433,15 +429,11 @@ TEST(BeamAir, AnyThreadsAndPartsGiveTheSameBits)
   EXPECT_GT(leavesSeen, 0);
   EXPECT_GT(rain, 100);
   // Lit again in other weather, and back: nothing is traced.
-  TraceCache cache;
-  ScanResult again;
-  simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, again);
-  expectSame(one, again);
-  ScanSetup other = setup;
-  other.media[0].medium.extinction = 0.05;
-  simulateScan(other, beams, 2, cache, std::size_t(1) << 30, {}, again);
-  EXPECT_EQ(again.beamsTraced, 0u);
-  expectSame(runScan(other, beams, 1), again);
-  simulateScan(setup, beams, 2, cache, std::size_t(1) << 30, {}, again);
-  expectSame(one, again);
+  ScanSeries series(setup, beams);
+  for (const double extinction : { 0.05, setup.media[0].medium.extinction })
+  {
+    series.setup.media[0].medium.extinction = extinction;
+    series.check("weather");
+    EXPECT_EQ(series.result.beamsTraced, 0u);
+  }
 }

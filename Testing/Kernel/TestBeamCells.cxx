@@ -172,9 +172,7 @@ TEST(BeamCells, ObjectsThatAreHeardOnlyTogetherHaveEnoughRays)
       std::fill(kds.begin(), kds.begin() + heard, 0.8);
       const Scene scene = cubesBeforeAWall(share, kds, random);
       sensor.lowerEnergyLimit = 0.8 * share * sensor.pulseEnergy / part;
-      EchoSettings settings = inCells();
-      settings.seed = seed;
-      const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+      const ScanResult result = runScan(makeSetup(scene, sensor, inCells(100, seed)), oneBeam());
       EXPECT_TRUE(result.reports[0].isCrowded);
       rays += static_cast<double>(result.raysTraced) / scenes;
       if (part * heard > 1.0)
@@ -213,9 +211,7 @@ TEST(BeamCells, TinyObjectsAmongManyKeepTheirRays)
       scene.box(Vec3(900.0 + half, away * std::cos(angle), away * std::sin(angle)), Vec3(half),
         { k == 0 ? 0.8 : 0.01, 0.0, 1.0 }, 100 + k);
     }
-    EchoSettings settings = inCells();
-    settings.seed = seed;
-    const ScanResult result = runScan(makeSetup(scene, sensor, settings), oneBeam());
+    const ScanResult result = runScan(makeSetup(scene, sensor, inCells(100, seed)), oneBeam());
     EXPECT_TRUE(result.reports[0].isCrowded);
     const double expected = (0.8 + (count - 1) * 0.01) * share * sensor.pulseEnergy;
     squares += std::pow(receivedFrom(result) / expected - 1.0, 2);
@@ -237,10 +233,7 @@ TEST(BeamCells, HalfOfAQuadrilateralMayBeASmallObject)
   constexpr int beams = 40;
   for (int seed = 0; seed < beams; ++seed)
   {
-    EchoSettings settings = inCells();
-    settings.seed = seed;
-    const ScanSetup setup = makeSetup(scene, openSensor(), settings);
-    const double own = SeenInCells(setup).ofObject(2);
+    const double own = shareInCells(scene, openSensor(), seed, 2);
     found += own > 0.0;
     sum += own;
   }
@@ -277,15 +270,12 @@ TEST(BeamCells, WhatReachesIntoTheBeamIsFound)
     scene.triangle(tip, tip + 3.0 * one, tip + 3.0 * two, Matt, 7);
     scene.materials.back() = { 0.9, 0.0, 1.0 };
     alone.materials.back() = { 1.0, 0.0, 1.0 };
-    EchoSettings settings = inCells();
-    settings.seed = k;
-    const double share = received(alone, sensor, settings) / sensor.pulseEnergy;
+    const double share = received(alone, sensor, inCells(100, k)) / sensor.pulseEnergy;
     if (share < 1e-5)
     {
       continue;
     }
-    const ScanSetup setup = makeSetup(scene, sensor, settings);
-    const double own = SeenInCells(setup).ofObject(7);
+    const double own = shareInCells(scene, sensor, k, 7);
     ++all;
     found += own > 0.0;
     off += std::fabs(own / share - 1.0) > 0.05;
@@ -320,9 +310,7 @@ TEST(BeamCells, WhatBeginsBehindTheLidarIsFound)
     constexpr int seeds = 20;
     for (int seed = 0; seed < seeds; ++seed)
     {
-      EchoSettings settings = inCells();
-      settings.seed = seed;
-      const double own = SeenInCells(makeSetup(scene, sensor, settings)).ofObject(7);
+      const double own = shareInCells(scene, sensor, seed, 7);
       EXPECT_NEAR(own / share, 1.0, 0.5) << half;
       mean += own / share / seeds;
     }
@@ -347,11 +335,9 @@ TEST(BeamCells, WiresAreFound)
       Scene scene = fineWall(40, Vec3(0.0, 4.0, 0.0));
       scene.plate(
         Vec3(100.0 - 1.0, 0.0, 0.0) + 0.05 * across, 3.0 * along, 0.5 * width * across, Matt, 7);
-      EchoSettings settings = inCells();
-      settings.seed = k;
       const double share = width * 2.0 * std::sqrt(std::pow(0.99 * radius, 2) - 0.05 * 0.05) /
         (Pi * std::pow(0.99 * radius, 2));
-      const double own = SeenInCells(makeSetup(scene, sensor, settings)).ofObject(7);
+      const double own = shareInCells(scene, sensor, k, 7);
       EXPECT_GT(own, 0.0) << width;
       squares += std::pow(own / share - 1.0, 2);
       ++all;

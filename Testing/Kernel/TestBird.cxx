@@ -213,10 +213,8 @@ TEST_P(BirdBeforeAWall, IsFoundWithItsArea)
             (2.0 * (i / parts) - parts + 1.0) * two,
           one, two, black, 1);
       }
-      EchoSettings settings = inCells();
-      settings.seed = k;
-      const double wanted = receivedFrom(runScan(makeSetup(alone, sensor, settings), oneBeam()));
-      const double found = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+      const double wanted = received(alone, sensor, inCells(100, k));
+      const double found = received(scene, sensor, inCells(100, k));
       if (wanted >= 1e-5 * 0.5 * sensor.pulseEnergy)
       {
         EXPECT_GT(found, 0.0) << species.name << " " << share;

@@ -71,9 +71,8 @@ TEST(CellErrors, WhatIsHiddenChangesNoMoreThanTheStatedError)
       scene.box(Vec3(60.0, random(-0.2, 0.2), random(-0.2, 0.2)),
         Vec3(0.02, random(0.003, 0.1), random(0.003, 0.1)), Matt, 2);
       scene.plate(Vec3(100.0, 0.0, 0.0), Vec3(0.9, 2.0, 0.0), Vec3(0.3, 0.0, 2.0), Wall, 1);
-      EchoSettings settings = inCells();
+      EchoSettings settings = inCells(100, k);
       settings.returnMode = ReturnMode::First;
-      settings.seed = k;
       Sensor sensor = openSensor();
       sensor.samplingInterval = 5e-8;
       const Echo before = onlyEcho(scene, sensor, settings);

@@ -224,7 +224,7 @@ TEST(SecondaryConstraints, EchoesKeepTheirBitsWhateverIsLeftOut)
       EchoSettings settings = secondarySettings(60, connections, BeamSampleSource::Cells);
       settings.lightEnergyFraction = 0.0;
       sensor.lowerEnergyLimit = 1e-14;
-      const double all = receivedFrom(runScan(makeSetup(scene, sensor, settings), fan()));
+      const double all = received(scene, sensor, settings, fan());
       for (const double limit : { 1e-4, 1e-3, 1e-2 })
       {
         sensor.lowerEnergyLimit = limit * all;
@@ -251,9 +251,9 @@ TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)
   Sensor sensor = openSensor();
   EchoSettings settings = secondarySettings(1); // one ray, so one path
   settings.lightEnergyConstraint = false;
-  const double full = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  const double full = received(scene, sensor, settings);
   settings.numberOfReflections = 1;
-  const double direct = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  const double direct = received(scene, sensor, settings);
   settings.numberOfReflections = 2;
   settings.lightEnergyConstraint = true;
   settings.lightEnergyThreshold = LightEnergyThreshold::Limit;
@@ -261,7 +261,7 @@ TEST(SecondaryConstraints, TheLimitItselfComparesEachSecondPath)
   ASSERT_GT(path, 0.1 * full);
   ASSERT_GT(direct, 1.01 * path);
   sensor.lowerEnergyLimit = 0.99 * path;
-  EXPECT_EQ(receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam())), full);
+  EXPECT_EQ(received(scene, sensor, settings), full);
   sensor.lowerEnergyLimit = 1.01 * path;
   const ScanResult left = runScan(makeSetup(scene, sensor, settings), oneBeam());
   EXPECT_EQ(receivedFrom(left), direct);
@@ -297,12 +297,12 @@ TEST(SecondaryConstraints, InThickAirWhatIsJustAboveTheLimitIsSeen)
   EchoSettings settings = secondarySettings(1);
   settings.numberOfReflections = 1;
   settings.attenuationCoefficient = 0.05;
-  const double energy = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+  const double energy = received(scene, sensor, settings);
   ASSERT_GT(energy, 0.0);
   sensor.lowerEnergyLimit = 0.99 * energy;
-  EXPECT_EQ(receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam())), energy);
+  EXPECT_EQ(received(scene, sensor, settings), energy);
   sensor.lowerEnergyLimit = 1.01 * energy;
-  EXPECT_EQ(receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam())), 0.0);
+  EXPECT_EQ(received(scene, sensor, settings), 0.0);
 }
 
 TEST(SecondaryConstraints, TheLimitItselfComparesEachConnection)
@@ -354,10 +354,10 @@ TEST(SecondaryConstraints, LightEnergyConstraintHoldsThroughAnAperture)
     sensor.receiverAperture = 0.01;
     EchoSettings settings = secondarySettings(100);
     settings.lightEnergyConstraint = false;
-    const double full = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+    const double full = received(scene, sensor, settings);
     settings.lightEnergyConstraint = true;
     sensor.lowerEnergyLimit = 0.5 * full;
-    const double fast = receivedFrom(runScan(makeSetup(scene, sensor, settings), oneBeam()));
+    const double fast = received(scene, sensor, settings);
     EXPECT_NEAR(full, fast, settings.lightEnergyFraction * sensor.lowerEnergyLimit) << distance;
   }
 }
