@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <memory>
@@ -373,24 +374,34 @@ inline bool sameBits(const Hit& a, const Hit& b)
   return a.triangle == b.triangle && std::memcmp(&a.range, &b.range, sizeof a.range) == 0;
 }
 
-/// Every split rule, volume, two sizes of leaves, and boxes in double precision.
-inline std::vector<std::shared_ptr<const CollisionTree>> allTrees(
-  const std::shared_ptr<const TriangleMesh>& mesh)
+/// Every split rule and volume, with these sizes of leaves.
+inline std::vector<TreeOptions> allTreeOptions(std::initializer_list<int> leafSizes)
 {
-  std::vector<std::shared_ptr<const CollisionTree>> trees;
-  trees.push_back(buildVolumeTree(
-    mesh, TreeOptions{ SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::BinaryAABB, 4 }));
+  std::vector<TreeOptions> all;
   for (int rule = 0; rule < 4; ++rule)
   {
     for (int volume = 0; volume < 3; ++volume)
     {
-      for (const int leafSize : { 1, 4 })
+      for (const int leafSize : leafSizes)
       {
-        trees.push_back(buildVolumeTree(mesh,
-          TreeOptions{
-            static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), leafSize }));
+        all.push_back(
+          { static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), leafSize });
       }
     }
+  }
+  return all;
+}
+
+/// Every split rule, volume, two sizes of leaves, and boxes in double precision.
+inline std::vector<std::shared_ptr<const CollisionTree>> allTrees(
+  const std::shared_ptr<const TriangleMesh>& mesh)
+{
+  std::vector<TreeOptions> all = allTreeOptions({ 1, 4 });
+  all.insert(all.begin(), { SplitRule::SurfaceAreaHeuristic, BoundingVolumeType::BinaryAABB, 4 });
+  std::vector<std::shared_ptr<const CollisionTree>> trees;
+  for (const TreeOptions& options : all)
+  {
+    trees.push_back(buildVolumeTree(mesh, options));
   }
   return trees;
 }

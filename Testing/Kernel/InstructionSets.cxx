@@ -165,20 +165,16 @@ void include(std::uint64_t& hash, const std::vector<T>& elements)
 void printTrees(const Case& c)
 {
   std::printf("section trees %s: hash\n", c.name.c_str());
-  for (int rule = 0; rule < 4; ++rule)
+  for (const TreeOptions& options : geometrytest::allTreeOptions({ 4 }))
   {
-    for (int volume = 0; volume < 3; ++volume)
-    {
-      const auto tree = buildVolumeTree(
-        c.scene.mesh, { static_cast<SplitRule>(rule), static_cast<BoundingVolumeType>(volume), 4 });
-      const auto binary = volumesOf(*tree);
-      std::uint64_t hash = 14695981039346656037u;
-      include(hash, binary->nodes);
-      include(hash, tree->order);
-      std::visit([&](const auto& volumes) { include(hash, volumes); }, binary->volumes);
-      include(hash, tree->wide.nodes);
-      printRow({ static_cast<long long>(hash) }, {});
-    }
+    const auto tree = buildVolumeTree(c.scene.mesh, options);
+    const auto binary = volumesOf(*tree);
+    std::uint64_t hash = 14695981039346656037u;
+    include(hash, binary->nodes);
+    include(hash, tree->order);
+    std::visit([&](const auto& volumes) { include(hash, volumes); }, binary->volumes);
+    include(hash, tree->wide.nodes);
+    printRow({ static_cast<long long>(hash) }, {});
   }
 }
 

@@ -6,6 +6,8 @@
 #include "EchoTestScene.h"
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace echotest
 {
@@ -33,6 +35,17 @@ inline Scene groove(double half, const Material& m, double gap = 0.0, double len
     scene.plate(center, 0.5 * length * along, Vec3(0.0, 0.0, length), m, side > 0);
   }
   return scene;
+}
+
+/// Energies of perceived range units, J, by beam and range.
+inline std::map<std::pair<std::size_t, double>, double> unitsOf(const ScanResult& result)
+{
+  std::map<std::pair<std::size_t, double>, double> units;
+  for (std::size_t e = 0; e < result.echoes.size(); ++e)
+  {
+    units[{ result.beamOfEcho[e], result.echoes[e].range }] = result.echoes[e].energyReceived;
+  }
+  return units;
 }
 
 /// J that came after two reflections, of all echoes.

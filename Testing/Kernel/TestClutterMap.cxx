@@ -22,16 +22,6 @@ Vec3 pointAt(double azimuth, double elevation, double range)
   return range * Vec3(std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e));
 }
 
-std::vector<Key> keysOf(const ClutterGrid& grid, const std::vector<Vec3>& points)
-{
-  std::vector<Key> keys;
-  for (const Vec3& point : points)
-  {
-    keys.push_back(ClutterMap::keyOf(grid, point));
-  }
-  return keys;
-}
-
 /// The sum of the weights of n scans, added one by one.
 double weights(double window, int scans)
 {
@@ -122,12 +112,13 @@ TEST(TestClutterMap, NeighboursByBruteForce)
   const auto scan = [&]()
   {
     std::uniform_real_distribution<double> side(-6.0, 6.0);
-    std::vector<Vec3> points;
+    std::vector<Key> keys;
     for (int i = 0; i < 200; ++i)
     {
-      points.emplace_back(side(random), side(random), 0.3 * side(random));
+      keys.push_back(
+        ClutterMap::keyOf(grid, Vec3{ side(random), side(random), 0.3 * side(random) }));
     }
-    return keysOf(grid, points);
+    return keys;
   };
   ClutterMap map(grid, 5.0);
   for (int i = 0; i < 4; ++i)

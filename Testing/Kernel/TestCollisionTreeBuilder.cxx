@@ -10,7 +10,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 
 using namespace avianlidar;
 using namespace geometrytest;
@@ -32,13 +31,8 @@ std::shared_ptr<TriangleMesh> someMesh(std::size_t count)
   return mesh;
 }
 
-class Trees : public testing::TestWithParam<std::tuple<SplitRule, BoundingVolumeType, int>>
+class Trees : public testing::TestWithParam<TreeOptions>
 {
-protected:
-  TreeOptions options() const
-  {
-    return { std::get<0>(GetParam()), std::get<1>(GetParam()), std::get<2>(GetParam()) };
-  }
 };
 
 void expectSameTrees(const CollisionTree& a, const CollisionTree& b)
@@ -120,7 +114,7 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
   for (const std::size_t count : { 1, 2, 3, 17, 1000 })
   {
     const auto mesh = someMesh(count);
-    const auto tree = buildVolumeTree(mesh, this->options());
+    const auto tree = buildVolumeTree(mesh, GetParam());
     ASSERT_TRUE(tree);
     EXPECT_EQ(tree->checksum, mesh->checksum());
     EXPECT_EQ(tree->order.size(), count);
@@ -132,27 +126,21 @@ TEST_P(Trees, HoldEachTriangleOnceWithinEveryVolumeAboveIt)
 TEST_P(Trees, AreTheSameForAnyNumberOfThreads)
 {
   const auto mesh = someMesh(12000);
-  const auto expected = buildVolumeTree(mesh, this->options(), {}, 1);
+  const auto expected = buildVolumeTree(mesh, GetParam(), {}, 1);
   expectWhole(*expected);
   for (const int threads : { 2, 3, 8 })
   {
-    expectSameTrees(*expected, *buildVolumeTree(mesh, this->options(), {}, threads));
+    expectSameTrees(*expected, *buildVolumeTree(mesh, GetParam(), {}, threads));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(CollisionTreeBuilder, Trees,
-  testing::Combine(testing::Values(SplitRule::Halves, SplitRule::Median, SplitRule::PrincipalPlane,
-                     SplitRule::SurfaceAreaHeuristic),
-    testing::Values(BoundingVolumeType::AABB, BoundingVolumeType::OBB, BoundingVolumeType::Sphere),
-    testing::Values(1, 4)));
+INSTANTIATE_TEST_SUITE_P(CollisionTreeBuilder, Trees, testing::ValuesIn(allTreeOptions({ 1, 4 })));
 
 TEST(CollisionTreeBuilder, HalvesOfSixTrianglesAreThePapersExample)
 {
   // S_layer: {6} -> {3, 3} -> {1, 2, 1, 2} -> {1, 1, 1, 1}; 0-based numbers.
-  TreeOptions options;
-  options.splitRule = SplitRule::Halves;
-  options.maximumLeafSize = 1;
-  const auto tree = buildVolumeTree(someMesh(6), options);
+  const auto tree =
+    buildVolumeTree(someMesh(6), { SplitRule::Halves, BoundingVolumeType::AABB, 1 });
   const auto binary = volumesOf(*tree);
   ASSERT_EQ(binary->nodes.size(), 11u);
   const std::uint32_t expected[11][4] = { { 0, 6, 0, 1 }, { 0, 3, 1, 3 }, { 3, 3, 1, 5 },
@@ -173,13 +161,9 @@ TEST(CollisionTreeBuilder, GeometricProgressionStaysShallow)
     const double s = std::ldexp(1.0, -(i % 180)) * (1.0 + i / 180);
     addTriangle(*mesh, { s, 0, 0 }, { s, 0.1 * s, 0 }, { s, 0, 0.1 * s });
   }
-  for (int rule = 0; rule < 4; ++rule)
+  for (const TreeOptions& options : allTreeOptions({ 1 }))
   {
-    TreeOptions options;
-    options.splitRule = static_cast<SplitRule>(rule);
-    options.maximumLeafSize = 1;
-    const auto tree = buildVolumeTree(mesh, options);
-    EXPECT_LE(tree->depth, 96u + 12u);
+    EXPECT_LE(buildVolumeTree(mesh, options)->depth, 96u + 12u);
   }
 }
 

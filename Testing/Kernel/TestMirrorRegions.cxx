@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mirror paths by regions bring what mirror paths of rays bring.
 #include "RoomTestScene.h"
-#include "SameEchoes.h"
+#include "ScanTestTown.h"
 #include "Statistics.h"
 
 #include <gtest/gtest.h>
@@ -150,16 +150,12 @@ TEST(MirrorRegions, BeamsOfManySurfacesFollowRays)
   }
   EXPECT_NEAR(mean, truth, 0.06 * truth);
   // Paths are kept that a scan without connections must not ask for.
-  ScanSetup setup = makeSetup(scene, openSensor(), settings);
-  TraceCache cache;
-  ScanResult result;
+  ScanSeries series(openSensor(), settings, scene, oneBeam());
   for (const int connections : { 2, 0, 2 })
   {
-    setup.settings.numberOfConnections = connections;
-    finishSetup(setup);
-    ASSERT_TRUE(simulateScan(setup, oneBeam(), 1, cache, std::size_t(1) << 30, {}, result));
-    ASSERT_GT(cache.beams[0].view.cells()->surfaces->polygons.size(), 1024u);
-    EXPECT_TRUE(sameEchoes(result, runScan(setup, oneBeam()))) << connections;
+    series.setup.settings.numberOfConnections = connections;
+    series.check(std::to_string(connections));
+    ASSERT_GT(series.cache.beams[0].view.cells()->surfaces->polygons.size(), 1024u);
   }
 }
 

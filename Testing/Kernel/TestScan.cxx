@@ -2,6 +2,7 @@
 // A scan has the same bits for any number of threads, order and parts of the beams, tree and size
 // of the cache, by rays, over polygons and in cells. TestScanAgain has changes,
 // TestStabilityCoordinates places of the scene.
+#include "GeometryTestScene.h"
 #include "ScanTestTown.h"
 
 #include <gtest/gtest.h>
@@ -121,17 +122,9 @@ TEST(Scan, AnyTreeAndWayDownGivesTheSameBits)
       EXPECT_GT(beamsIn[static_cast<int>(DirectEcho::Polygons)], 20);
       EXPECT_GT(beamsIn[static_cast<int>(DirectEcho::Cells)], 10);
     }
-    for (int rule = 0; rule < 4; ++rule)
+    for (const TreeOptions& options : geometrytest::allTreeOptions({ 1, 16 }))
     {
-      for (int volume = 0; volume < 3; ++volume)
-      {
-        for (int leaf : { 1, 16 })
-        {
-          const TreeOptions options{ static_cast<SplitRule>(rule),
-            static_cast<BoundingVolumeType>(volume), leaf };
-          expectSame(reference, runScan(makeSetup(scene, sensor, settings, options), beams));
-        }
-      }
+      expectSame(reference, runScan(makeSetup(scene, sensor, settings, options), beams));
     }
     for (const TraceMode mode : { TraceMode::SingleRays, TraceMode::Beams })
     {

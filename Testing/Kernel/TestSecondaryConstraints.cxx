@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
 #include <utility>
 
@@ -53,23 +52,6 @@ ScanBeams fan()
 }
 }
 
-namespace
-{
-/// Energies of perceived range units, J, by beam and unit.
-std::map<std::pair<std::size_t, std::int64_t>, double> unitsOf(
-  const ScanResult& result, const Sensor& sensor)
-{
-  std::map<std::pair<std::size_t, std::int64_t>, double> units;
-  for (std::size_t e = 0; e < result.echoes.size(); ++e)
-  {
-    const auto unit =
-      static_cast<std::int64_t>(std::floor(result.echoes[e].range / sensor.rangeUnitLength()));
-    units[{ result.beamOfEcho[e], unit }] = result.echoes[e].energyReceived;
-  }
-  return units;
-}
-}
-
 TEST(SecondaryConstraints, NoUnitLosesMoreThanTheFraction)
 {
   const Scene scene = rubble(2);
@@ -78,14 +60,14 @@ TEST(SecondaryConstraints, NoUnitLosesMoreThanTheFraction)
   settings.returnMode = ReturnMode::RangeUnits;
   settings.lightEnergyConstraint = false;
   const ScanResult full = runScan(makeSetup(scene, sensor, settings), fan());
-  const auto all = unitsOf(full, sensor);
+  const auto all = unitsOf(full);
   settings.lightEnergyConstraint = true;
   std::uint64_t before = full.raysTraced;
   for (const double fraction : { 0.0, 1e-6, 1e-3, 0.1, 1.0, 10.0, 600.0 })
   {
     settings.lightEnergyFraction = fraction;
     const ScanResult fast = runScan(makeSetup(scene, sensor, settings), fan());
-    const auto kept = unitsOf(fast, sensor);
+    const auto kept = unitsOf(fast);
     const double lower = sensor.lowerEnergyLimit;
     const double bound = 1.000001 * fraction * lower;
     double lost = 0.0;

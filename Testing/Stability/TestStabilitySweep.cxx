@@ -65,15 +65,6 @@ const std::vector<Number>& numbers()
   return all;
 }
 
-/// A wall, a corner that sends light from plate to plate, and something small before it.
-Scene sceneOf(const Material& material)
-{
-  Scene scene = squareAt(100.0, 20.0, material, 0);
-  scene.plate(Vec3(80.0, -20.0, 0.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), material, 1);
-  scene.box(Vec3(60.0, 0.0, 0.0), Vec3(0.01), material, 2);
-  return scene;
-}
-
 ScanBeams beamsOf(const World& world)
 {
   ScanBeams beams;
@@ -156,7 +147,11 @@ Outcome outcomeOf(const World& world)
 {
   Outcome outcome;
   // What the sensor or the settings forbid is not computed with.
-  const Scene scene = sceneOf(world.material);
+  // A wall, a corner that sends light from plate to plate, and something small before it.
+  Scene scene = squareAt(100.0, 20.0, world.material, 0);
+  scene.plate(
+    Vec3(80.0, -20.0, 0.0), Vec3(20.0, 0.0, 0.0), Vec3(0.0, 0.0, 20.0), world.material, 1);
+  scene.box(Vec3(60.0, 0.0, 0.0), Vec3(0.01), world.material, 2);
   const ScanBeams beams = beamsOf(world);
   ScanSetup setup;
   outcome.refused = refusal(world, setup, beams);
