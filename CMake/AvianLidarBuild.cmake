@@ -33,6 +33,22 @@ endif ()
 if (AVIANLIDAR_BUILD_BENCHMARKS)
   list(APPEND avianlidar_vtk_components FiltersFlowPaths)
 endif ()
+# Modules that image tests link to. TEST_OPTIONAL_DEPENDS of the module cannot replace this list: an imported
+# target exists even if its own libraries are missing.
+set(avianlidar_rendering_modules
+  VTK::IOImage
+  VTK::InteractionStyle
+  VTK::RenderingAnnotation
+  VTK::RenderingCore
+  VTK::RenderingFreeType
+  VTK::RenderingOpenGL2
+  VTK::TestingRendering)
+if (AVIANLIDAR_RENDERING_TESTS)
+  foreach (module IN LISTS avianlidar_rendering_modules)
+    string(REPLACE "VTK::" "" component "${module}")
+    list(APPEND avianlidar_vtk_components "${component}")
+  endforeach ()
+endif ()
 
 include(AvianLidarFindVtk)
 if (AVIANLIDAR_VTK_SDK)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plants changes that pictures must show, draws all pictures again, and says which baselines show each.
 
-    Testing/Faults/pictures.py build/paraview -o pictures.csv     # three builds, and four turns of the tests that draw
+    Testing/Faults/pictures.py build/paraview -o pictures.csv     # three builds and four turns of the image tests
 
 Each change patches source files, which are restored at the end. The exit code is 1 if a baseline does not show a change
 that can occur in it. Testing/Python/TestPictures.py plants hues and shifts. A row of the table: change, baseline, image
@@ -18,8 +18,8 @@ import sys
 from faults import SOURCE, planted
 
 MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text("utf-8"), re.M)[1])
-TESTS = "TestExamplePictures|Plugin-Test(Pipeline|Macros-more)$"
-ENERGIES = "^(Example(Airport|Corridor|Paper)|TestPipeline)"
+TESTS = "TestExamplePictures|TestImage|Plugin-Test(Pipeline|Macros-more)$"
+ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline)"
 OUTPUT, SCAN = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/Scan.cxx"
 BAR, NOTHING = "axes.figure.colorbar(", "(lambda *_, **__: None)("
 # Name, baselines in which it can occur, and for each file what is replaced by what.
@@ -28,11 +28,13 @@ CHANGES = (
     ("energies times 0.9", ENERGIES, (
         (OUTPUT, "{ return all[i].energy; }", "{ return 0.9 * all[i].energy; }"),
         (OUTPUT, "{ return all[i].energyReceived; }", "{ return 0.9 * all[i].energyReceived; }"))),
-    ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds", (
+    ("a missing tenth of the echoes", ENERGIES + "|^ExampleBirds|^TestImageRange", (
         (SCAN, "      block.beamOfEcho.resize(block.echoes.size(), b);\n",
          "      block.echoes.resize(b % 10 == 0 ? block.beamOfEcho.size() : block.echoes.size());\n"
          "      block.beamOfEcho.resize(block.echoes.size(), b);\n"),)),
     ("a missing legend", ".", (
+        ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
+        ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
         ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
         ("Plugin/Macros/avian_lidar_coverage.py", "BarVisibility(view, True)", "BarVisibility(view, False)"),
         ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
@@ -53,7 +55,7 @@ def drawn(build):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", help="a build folder of this source, with tests that draw")
+    parser.add_argument("build", help="a build folder of this source, with image tests")
     parser.add_argument("-o", "--out", default="pictures.csv", help="table")
     options = parser.parse_args()
     baselines = {file.name for file in (SOURCE / "Testing/Data/Baseline").glob("*.png")}
