@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Work in a child process with limits, so that a crash or a hang is an outcome like any other. The parent must not have scanned:
-a child of a process whose threads have run is another test's subject."""
+"""Work in a child process with limits, so that a crash or a hang is an outcome like any other. The parent must not have
+scanned: a child of a process whose threads have run is another test's subject."""
 
 import faulthandler
 import multiprocessing
@@ -16,8 +16,8 @@ FORK = multiprocessing.get_context("fork")
 
 
 def run(work, *arguments, seconds=60, memory=None):
-    """(value of work(tell, *arguments) or None, what ended it otherwise, all that it told). `seconds`: of the processor, and
-    twenty times as long by the clock. `memory`: of address space, bytes."""
+    """(value of work(tell, *arguments) or None, what ended it otherwise, all that it told). `seconds`: of the
+    processor, and twenty times as long by the clock. `memory`: of address space, bytes."""
     receive, send = FORK.Pipe(duplex=False)
     told, hung, until = [], False, time.monotonic() + 20 * seconds
     with tempfile.TemporaryFile() as words:
@@ -64,4 +64,5 @@ def seeds(text):
     """All of "7" or "3-9"; of "+100" so many from a free one, of "3-" and "+" all until they are stopped."""
     first, sign, last = text.partition("+" if text.startswith("+") else "-")
     begin = int(first or time.time_ns() % 10**9)
-    return range(begin, begin + 1 if not sign else 2**62 if not last else begin + int(last) if sign == "+" else int(last) + 1)
+    return range(begin, begin + 1 if not sign else 2**62 if not last else begin + int(last) if sign == "+"
+                 else int(last) + 1)

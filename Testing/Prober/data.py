@@ -132,7 +132,8 @@ def _box(r):
 
 
 def _wall(r):
-    c, along, up = place(r), np.array([r.gauss(0, 20), r.gauss(0, 20), r.gauss(0, 1)]), np.array([0, 0, r.uniform(5, 30)])
+    c, along = place(r), np.array([r.gauss(0, 20), r.gauss(0, 20), r.gauss(0, 1)])
+    up = np.array([0, 0, r.uniform(5, 30)])
     return [c - along, c + along, c + along + up, c - along + up], [[0, 1, 2, 3]]
 
 

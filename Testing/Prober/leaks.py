@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory leaks: a filter that is executed again and again must not hold more and more memory, as counted by the C library."""
+"""Memory leaks: a filter that is executed again and again must not hold more and more memory, as counted by the C
+library."""
 
 import ctypes
 import gc
@@ -13,7 +14,8 @@ from steps import World
 
 MALLINFO = type("mallinfo2", (ctypes.Structure,), {"_fields_": [(name, ctypes.c_size_t) for name in (
     "arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost")]})
-ROUNDS, MOST = 15, 1000  # MOST in bytes per execution: filters without a leak stay below 400, one polydata that leaks takes more than 1,000
+# MOST in bytes per execution: filters without a leak stay below 400, one polydata that leaks takes more than 1,000
+ROUNDS, MOST = 15, 1000
 
 
 def in_use():

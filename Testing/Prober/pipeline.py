@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pipeline that is probed: all filters whose output follows from inputs and settings alone, connected one way or another.
-What can be set, and between which values, is read from the panels (Plugin/*.xml)."""
+"""The pipeline that is probed: all filters whose output follows from inputs and settings alone, connected one way or
+another. What can be set, and between which values, is read from the panels (Plugin/*.xml)."""
 
 import glob
 import os
@@ -14,35 +14,51 @@ from data import contents, polydata
 SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.append(os.path.join(SOURCE, "Plugin"))
 import make_proxies
-# What the classes say may be another number in a filter that has run before: costs, and what is known of skipped energy, of
-# which there is less where more has been traced. Threads change nothing, and are not the same here.
+# What the classes say may be another number in a filter that has run before: costs, and what is known of skipped
+# energy, of which there is less where more has been traced. Threads change nothing, and are not the same here.
 MAY_DIFFER = ("candidates", "nodes_visited", "rays_traced", "skipped", "skipped_bound")
 ALGORITHMS = {
     "sensor": al.vtkAvianLidarBeamSource, "material": al.vtkAvianLidarMaterial, "medium": al.vtkAvianLidarMedium,
     "bird": al.vtkAvianLidarBirdSource, "tracks": al.vtkAvianLidarTracks, "group": vtk.vtkMultiBlockDataGroupFilter,
     "tree": al.vtkAvianLidarCollisionTree, "echo": al.vtkAvianLidarEchoFilter, "view": al.vtkAvianLidarBeamView,
     "coverage": al.vtkAvianLidarCoverage, "colour": al.vtkAvianLidarHSBColorMap, "image": al.vtkAvianLidarRangeImage,
-    "comparison": al.vtkAvianLidarCloudComparison, "geodetic": al.vtkAvianLidarGeodeticTransform, "units": al.vtkAvianLidarUnitNames}
+    "comparison": al.vtkAvianLidarCloudComparison, "geodetic": al.vtkAvianLidarGeodeticTransform,
+    "units": al.vtkAvianLidarUnitNames}
 WHOLE = ("comparison", "image", "tree", "coverage", "view", "tracks")  # there are no pieces of these
 # Other values than around the default: small scans of what stands near, and scenes in which a setting counts.
 VALUES = {
-    "AzimuthStep": (7.0, 10.0, 20.0), "NumberOfChannels": (1, 2, 5), "ElevationStep": (0.5, 1.0, 3.0), "MinimumElevation": (-10.0, 0.0),
-    "AzimuthRange": ((0.0, 360.0), (-20.0, 100.0), (300.0, 420.0)), "NumberOfRevolutions": (1, 2, 3), "StepsPerRevolution": (1, 2, 3),
-    "HalfBeamwidth": (5.6e-3, 0.03, 0.08, 0.1), "HalfBeamwidthAcross": (0.0, 0.0, 1e-3, 0.02), "RangeGate": (40.0, 200.0, 4000.0),
-    "LowerEnergyLimit": (0.0, 1e-12, 1e-8, 1e-7, 2e-6), "UpperEnergyLimit": (1e-5, 6.25e-5, 1e-3), "NoisePhotonRate": (0.0, 2e4, 1e12, 1e18),
+    "AzimuthStep": (7.0, 10.0, 20.0), "NumberOfChannels": (1, 2, 5), "ElevationStep": (0.5, 1.0, 3.0),
+    "MinimumElevation": (-10.0, 0.0),
+    "AzimuthRange": ((0.0, 360.0), (-20.0, 100.0), (300.0, 420.0)), "NumberOfRevolutions": (1, 2, 3),
+    "StepsPerRevolution": (1, 2, 3),
+    "HalfBeamwidth": (5.6e-3, 0.03, 0.08, 0.1), "HalfBeamwidthAcross": (0.0, 0.0, 1e-3, 0.02),
+    "RangeGate": (40.0, 200.0, 4000.0),
+    "LowerEnergyLimit": (0.0, 1e-12, 1e-8, 1e-7, 2e-6), "UpperEnergyLimit": (1e-5, 6.25e-5, 1e-3),
+    "NoisePhotonRate": (0.0, 2e4, 1e12, 1e18),
     "ReceiverAperture": (0.0, 0.0, 0.008, 10.0), "SamplingInterval": (1e-9, 5e-9), "PulseWidth": (0.0, 5e-9, 2e-8),
-    "FiringInterval": (0.0, 5e-6, 3e-3), "RotationRate": (0.5, 1.0, 10.0), "EncoderJitter": (0.0, 0.1), "SwayAmplitude": (0.0, 0.1, 3.0),
-    "RaysPerBeam": (1, 2, 7, 16, 40), "NumberOfConnections": (0, 2, 8), "AttenuationCoefficient": (0.0, 3.5e-5, 1e-3, 0.05),
-    "Preset": (0, 0, 0, 1), "NumberOfThreads": (0, 1, 2, 3), "MaximumCacheSize": (0, 1, 1024), "Seed": (0, 1, -5, 2**31 - 1),
-    "MaximumLeafSize": (1, 2, 4, 16), "DisplayLevel": (-1, 0, 2), "Material": (0, 1, 2, 3, 4, 5), "BlockNamePattern": ("*", "block 1", "inn?r *", ""),
-    "NameOfObject": ("", "thing"), "Species": ("herring gull", "starling", "no bird"), "NumberOfBirds": (0, 1, 3), "Radius": (20.0, 60.0),
-    "Heights": ((1.0, 9.0),), "TimeRange": ((-5.0, 5.0),), "Lengths": ((40.0, 40.0, 9.0), (100.0, 9.0, 20.0)), "Center": ((0.0, 0.0, 0.0), (30.0, 9.0, 1.0)),
-    "Bounds": ((-60.0, 60.0, -60.0, 60.0, 0.0, 9.0), (-9.0, 90.0, 0.0, 60.0, 0.0, 9.0)), "Spacing": ((30.0, 30.0, 9.0), (20.0, 30.0, 9.0)),
-    "Origin": ((31.0, 121.0, 3.0), (31.0, 121.0, 9.0)), "NumberOfScans": (1, 2, 3), "AllSpecies": (0,), "PoseProbabilities": (0,), "Name": ("fog", "x")}
+    "FiringInterval": (0.0, 5e-6, 3e-3), "RotationRate": (0.5, 1.0, 10.0), "EncoderJitter": (0.0, 0.1),
+    "SwayAmplitude": (0.0, 0.1, 3.0),
+    "RaysPerBeam": (1, 2, 7, 16, 40), "NumberOfConnections": (0, 2, 8),
+    "AttenuationCoefficient": (0.0, 3.5e-5, 1e-3, 0.05),
+    "Preset": (0, 0, 0, 1), "NumberOfThreads": (0, 1, 2, 3), "MaximumCacheSize": (0, 1, 1024),
+    "Seed": (0, 1, -5, 2**31 - 1),
+    "MaximumLeafSize": (1, 2, 4, 16), "DisplayLevel": (-1, 0, 2), "Material": (0, 1, 2, 3, 4, 5),
+    "BlockNamePattern": ("*", "block 1", "inn?r *", ""),
+    "NameOfObject": ("", "thing"), "Species": ("herring gull", "starling", "no bird"), "NumberOfBirds": (0, 1, 3),
+    "Radius": (20.0, 60.0),
+    "Heights": ((1.0, 9.0),), "TimeRange": ((-5.0, 5.0),), "Lengths": ((40.0, 40.0, 9.0), (100.0, 9.0, 20.0)),
+    "Center": ((0.0, 0.0, 0.0), (30.0, 9.0, 1.0)),
+    "Bounds": ((-60.0, 60.0, -60.0, 60.0, 0.0, 9.0), (-9.0, 90.0, 0.0, 60.0, 0.0, 9.0)),
+    "Spacing": ((30.0, 30.0, 9.0), (20.0, 30.0, 9.0)),
+    "Origin": ((31.0, 121.0, 3.0), (31.0, 121.0, 9.0)), "NumberOfScans": (1, 2, 3), "AllSpecies": (0,),
+    "PoseProbabilities": (0,), "Name": ("fog", "x")}
 # Columns and rows go with the table of beams; the others are other names of a setting, or need files.
-NOT_SET = {"Columns", "Rows", "BeamwidthMilliradians", "Wavelength", "ErrorsAsData", "FileName", "SpeciesFileName", "BeamId"}
-SMALL = {("coverage", "Bounds"): VALUES["Bounds"][0], ("coverage", "Spacing"): VALUES["Spacing"][0], ("coverage", "RaysPerBeam"): 9,
-         ("tracks", "NumberOfBirds"): 2, ("tracks", "Radius"): 40.0, ("tracks", "Heights"): (1.0, 9.0), ("tracks", "TimeRange"): (-5.0, 5.0)}
+NOT_SET = {"Columns", "Rows", "BeamwidthMilliradians", "Wavelength", "ErrorsAsData", "FileName", "SpeciesFileName",
+           "BeamId"}
+SMALL = {("coverage", "Bounds"): VALUES["Bounds"][0], ("coverage", "Spacing"): VALUES["Spacing"][0],
+         ("coverage", "RaysPerBeam"): 9,
+         ("tracks", "NumberOfBirds"): 2, ("tracks", "Radius"): 40.0, ("tracks", "Heights"): (1.0, 9.0),
+         ("tracks", "TimeRange"): (-5.0, 5.0)}
 
 
 def _read_panels():
@@ -52,7 +68,8 @@ def _read_panels():
         kind = getattr(al, proxy.get("class") or "", None)
         for element in proxy.iterfind("./*[@default_values]") if kind else ():
             name = (element.get("command") or "")[3:]
-            if hasattr(kind, "Set" + name) and hasattr(kind, "Get" + name) and name not in NOT_SET and name != "ChannelElevation":
+            there = hasattr(kind, "Set" + name) and hasattr(kind, "Get" + name)
+            if there and name not in NOT_SET and name != "ChannelElevation":
                 found.setdefault(proxy.get("class"), {})[name] = element, element.find("./*[@name]")
     return found
 
@@ -69,7 +86,8 @@ def value_of(name, key, r, bad=False):
     if key == "ChannelElevations":
         return [r.uniform(-10, 20) for _ in range(r.choice((0, 0, 1, 4)))] + [91.0] * bad
     element, domain = properties(name)[key]
-    whole, text, tag = element.tag.startswith("Int"), element.tag.startswith("String"), "" if domain is None else domain.tag
+    whole, text = element.tag.startswith("Int"), element.tag.startswith("String")
+    tag = "" if domain is None else domain.tag
     if tag == "EnumerationDomain":
         return 99 if bad else int(r.choice(domain).get("value"))
     if key in VALUES and not bad:
@@ -77,7 +95,8 @@ def value_of(name, key, r, bad=False):
         return list(value) if isinstance(value, tuple) else value
     if tag == "BooleanDomain" or text:
         return element.get("default_values") if text else int(r.random() < 0.5)
-    low, high = ([float(x) for x in (domain.get(side) or "").split()] if domain is not None else [] for side in ("min", "max"))
+    low, high = ([float(x) for x in (domain.get(side) or "").split()] if domain is not None else []
+                 for side in ("min", "max"))
     values = []
     for i, default in enumerate(map(float, element.get("default_values").split())):
         least, most = (side[min(i, len(side) - 1)] if side else None for side in (low, high))
@@ -85,7 +104,10 @@ def value_of(name, key, r, bad=False):
         value = max(near if least is None else max(near, least), -1e9)
         value = value if most is None else min(value, most)
         if bad:
-            value = least - 1 if least is not None and whole else r.choice((float("nan"), float("inf"), -1e31)) if not whole else value
+            if not whole:
+                value = r.choice((float("nan"), float("inf"), -1e31))
+            elif least is not None:
+                value = least - 1
         values.append(int(value) if whole else value)
     return values if len(values) > 1 else values[0]
 
@@ -102,7 +124,8 @@ class Route:
 
 class Result:
     def __init__(self, errors, by_sink, executed, data):
-        self.errors, self.by_sink, self.executed = errors, by_sink, executed  # all; the sink's own; whether it was executed
+        # all; the sink's own; whether it was executed
+        self.errors, self.by_sink, self.executed = errors, by_sink, executed
         self.found = contents(data, MAY_DIFFER)
 
 
@@ -193,7 +216,8 @@ class Pipeline:
         else:
             algorithm.UpdateTimeStep(time, piece, pieces, 0)
         own = [text for who, text in self.heard if who == name]
-        return Result([text for _, text in self.heard], own, self.executions[name] > before, algorithm.GetOutputDataObject(port))
+        return Result([text for _, text in self.heard], own, self.executions[name] > before,
+                      algorithm.GetOutputDataObject(port))
 
 
 SINKS = [(name, port) for name, kind in ALGORITHMS.items() if name not in ("group", "medium", "material", "bird")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random sequences of changes to a pipeline: after each step what has run before must give, bit by bit, what one that never ran
-gives, by another number of threads, on copies of the present data. See README.md."""
+"""Random sequences of changes to a pipeline: after each step what has run before must give, bit by bit, what one that
+never ran gives, by another number of threads, on copies of the present data. See README.md."""
 
 import argparse
 import os
@@ -25,7 +25,8 @@ class Fault(Exception):
 def sequence(seed, count):
     """The steps of a seed: (kind, its own seed)."""
     r = random.Random(seed)
-    return [(kind, r.randrange(2**32)) for kind in r.choices([*KINDS], [WEIGHTS.get(kind, 1) for kind in KINDS], k=count)]
+    return [(kind, r.randrange(2**32)) for kind in r.choices([*KINDS], [WEIGHTS.get(kind, 1) for kind in KINDS],
+                                                             k=count)]
 
 
 def run(tell, seed, steps):
@@ -56,7 +57,8 @@ def sweep(world, r):
     """Each kind of array once, in all blocks."""
     world.route.material = False
     world.used.connect(world)
-    found = [(root, leaf, *pair) for root in world.roots() for _, _, leaf in leaves(root) if leaf.GetNumberOfPoints() for pair in arrays_of(leaf)]
+    found = [(root, leaf, *pair) for root in world.roots() for _, _, leaf in leaves(root) if leaf.GetNumberOfPoints()
+             for pair in arrays_of(leaf)]
     for name in sorted({array.GetName() or "" for _, _, array, _ in found}):
         world.say(f"-- sweep: {name}")
         for root, leaf, array, holder in found:
@@ -79,7 +81,8 @@ def check(world, r, counts):
         compare(sink, found, expected)
         for (name, copy), before in zip(world.held, held):
             if difference(before, contents(copy)):
-                raise Fault(f"updating {sink} writes into {name} that somebody holds:\n{difference(before, contents(copy))}")
+                raise Fault(f"updating {sink} writes into {name} that somebody holds:\n"
+                            f"{difference(before, contents(copy))}")
         if expected.errors:
             failed = True
             fresh = world.fresh()
@@ -106,11 +109,13 @@ def scribble(world, r):
     """An output is edited in place: what follows sees it, and the next execution makes what it makes without."""
     name = r.choice(("tree", "sensor"))
     algorithm = world.used.algorithms[name]
-    world.used.algorithms["echo"].Modified()  # so that the output is the piece that echoes are made from, not one for an image
+    # so that the output is the piece that echoes are made from, not one for an image
+    world.used.algorithms["echo"].Modified()
     if world.used.update(ECHOES, world.moment).errors or not getattr(world.route, name, not world.route.table):
         return
     output = algorithm.GetOutput()
-    found = [pair for pair in arrays_of(output) if pair[0].GetName() in ("kd", "ks", "Points", "direction", "object_id")] if output.GetNumberOfPoints() else []
+    found = [pair for pair in (arrays_of(output) if output.GetNumberOfPoints() else ())
+             if pair[0].GetName() in ("kd", "ks", "Points", "direction", "object_id")]
     if found:
         array, holder = r.choice(found)
         edit_values(array, r)
@@ -135,7 +140,8 @@ def outcome_of(seed, steps, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", default="+", help="7, 3-9, 3- (until stopped), +100 from a free one, or + (until stopped)")
+    parser.add_argument("--seeds", default="+", help="7, 3-9, 3- (until stopped), +100 from a free one, or + (until "
+                                                     "stopped)")
     parser.add_argument("--steps", type=int, default=25, help="in a sequence")
     parser.add_argument("--limit", type=int, default=60, help="seconds of the processor for a sequence")
     arguments = parser.parse_args()
@@ -146,7 +152,8 @@ def main():
         total = {name: total.get(name, 0) + counts.get(name, 0) for name in total | counts}
         if wrong:
             failed.append(seed)
-            print(f"\nseed {seed} fails. Again: same_bits.py --seeds {seed} --steps {arguments.steps}\n  " + "\n  ".join(said) + f"\n{wrong}", flush=True)
+            print(f"\nseed {seed} fails. Again: same_bits.py --seeds {seed} --steps {arguments.steps}\n  "
+                  + "\n  ".join(said) + f"\n{wrong}", flush=True)
     print(f"{total}, {time.monotonic() - begin:.0f} s; failed: {failed or 'none'}")
     return 1 if failed else 0
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is done to a pipeline and to its data between two looks at its outputs. A step draws all that it does from its own numbers,
-so that a sequence keeps its meaning when others are left out, and returns how it is undone, if it can be: what is bad is mended."""
+"""What is done to a pipeline and to its data between two looks at its outputs. A step draws all that it does from its
+own numbers, so that a sequence keeps its meaning when others are left out, and returns how it is undone, if it can be:
+what is bad is mended."""
 
 import numpy as np
 import vtk
@@ -10,7 +11,8 @@ import data as surfaces
 from data import copy_of, leaves
 from pipeline import ALGORITHMS, Pipeline, Route, properties, value_of
 
-SET = {name: sorted(properties(name)) + ["ChannelElevations"] * (name == "sensor") for name in ALGORITHMS if properties(name)}
+SET = {name: sorted(properties(name)) + ["ChannelElevations"] * (name == "sensor") for name in ALGORITHMS
+       if properties(name)}
 
 
 class World:
@@ -26,7 +28,8 @@ class World:
             self.settings["sensor", key] = value_of("sensor", key, r)
         self.settings["echo", "RaysPerBeam"] = value_of("echo", "RaysPerBeam", r)
         # Beams so wide that little is between them.
-        self.settings["sensor", "HalfBeamwidth"], self.settings["sensor", "MinimumElevation"] = r.choice((0.03, 0.08)), -1.0
+        self.settings["sensor", "HalfBeamwidth"] = r.choice((0.03, 0.08))
+        self.settings["sensor", "MinimumElevation"] = -1.0
         self.settings["sensor", "LowerEnergyLimit"] = r.choice((1e-9, 1e-8, 2e-6))
         if self.settings["sensor", "ReceiverModel"]:
             self.settings["sensor", "ReceiverAperture"] = 0.008
@@ -78,8 +81,8 @@ class World:
         return (root, r.choice(full)) if full else (None, None)
 
     def modified(self, r, root, leaf, array, holder):
-        """Say that an array was edited in place by one Modified(), as people do; around a block the composite needs one of its own,
-        and cells, which VTK does not look at, need one of the data."""
+        """Say that an array was edited in place by one Modified(), as people do; around a block the composite needs one
+        of its own, and cells, which VTK does not look at, need one of the data."""
         kind = r.choice(("array", "holder", "leaf", "root"))
         {"array": array, "holder": holder, "leaf": leaf, "root": root}[kind].Modified()
         if leaf is not root or isinstance(holder, vtk.vtkCellArray):
@@ -110,7 +113,8 @@ def arrays_of(leaf):
 
 
 def edit_values(array, r):
-    """Change some values of an array in place, so that they stay what they are: coefficients, directions, ids, names, ghosts."""
+    """Change some values of an array in place, so that they stay what they are: coefficients, directions, ids, names,
+    ghosts."""
     if array.IsA("vtkStringArray"):
         return array.SetValue(r.randrange(array.GetNumberOfValues()), f"new {r.randint(0, 99)}")
     values = vtk_to_numpy(array)
@@ -134,7 +138,9 @@ def edit(world, r, bad=False):
     array, holder = r.choice(arrays_of(leaf))
     before = array.NewInstance()
     before.DeepCopy(array)
-    what = r.choice(("values",) * 9 + ("type", "type", "text", "none")) if isinstance(holder, vtk.vtkFieldData) and not bad else "values"
+    what = "values"
+    if isinstance(holder, vtk.vtkFieldData) and not bad:
+        what = r.choice(("values",) * 9 + ("type", "type", "text", "none"))
     world.say(f"{array.GetName()}: {'bad ' * bad}{what}")
 
     def restore():
@@ -157,7 +163,8 @@ def edit(world, r, bad=False):
         edit_values(array, r)
     if what == "values":
         world.modified(r, root, leaf, array, holder)
-        for other in [other for _, _, other in leaves(root) if other is not leaf and other.GetNumberOfPoints() and r.random() < 0.5]:
+        for other in [other for _, _, other in leaves(root) if other is not leaf and other.GetNumberOfPoints()
+                      and r.random() < 0.5]:
             for array_of, holder_of in arrays_of(other):
                 if array_of.GetName() == array.GetName() and isinstance(holder_of, type(holder)) and not bad:
                     edit_values(array_of, r)
@@ -216,7 +223,8 @@ def change_route(world, r):
         world.used.algorithms["sensor"].UpdatePiece(0, 1, 0)
         world.table = copy_of(world.used.algorithms["sensor"].GetOutput())
         rows = world.table.GetFieldData().GetArray("number_of_channels")
-        route.size = (world.table.GetNumberOfPoints() // int(rows.GetValue(0)), int(rows.GetValue(0))) if rows else (0, 0)
+        route.size = (world.table.GetNumberOfPoints() // int(rows.GetValue(0)),
+                      int(rows.GetValue(0))) if rows else (0, 0)
     world.say(f"way: {vars(route)}")
     world.used.connect(world)
 
@@ -243,7 +251,8 @@ def hold(world, r):
 
 
 KINDS = {**{name: change_property(name) for name in SET}, "edit": edit, "blocks": change_blocks, "data": replace_data,
-         "route": change_route, "moment": change_moment, "hold": hold, "bad data": lambda world, r: edit(world, r, True),
+         "route": change_route, "moment": change_moment, "hold": hold,
+         "bad data": lambda world, r: edit(world, r, True),
          **{"bad " + name: change_property(name, True) for name in ("sensor", "echo", "tree", "material", "medium")}}
 # How often each is drawn, in place of once.
 WEIGHTS = {"edit": 40, "echo": 6, "sensor": 5, "moment": 4, "route": 3, "material": 2, "blocks": 2}

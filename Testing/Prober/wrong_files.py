@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mutated files in child processes with little memory: a reader gives a sound result or an error that names a file; a plan or a
-scenario is taken as a whole or refused in words that name the file and its member. Never a signal, a hang, or nothing. See README.md."""
+"""Mutated files in child processes with little memory: a reader gives a sound result or an error that names a file; a
+plan or a scenario is taken as a whole or refused in words that name the file and its member. Never a signal, a hang, or
+nothing. See README.md."""
 
 import argparse
 import json
@@ -44,8 +45,8 @@ def dumped(document):
 # ---------------------------------------------------------------- files for the readers
 
 def mesh_files(folder):
-    """{name: content} of a box in every format, as text and binary, except formats whose library is known to crash: IFC (Assimp), legacy
-    surfaces and unstructured grids (VTK)."""
+    """{name: content} of a box in every format, as text and binary, except formats whose library is known to crash: IFC
+    (Assimp), legacy surfaces and unstructured grids (VTK)."""
     c, t, q = box.CORNERS, box.TRIANGLES, box.QUADS
     triangles = b"".join(struct.pack("<12fH", 0, 0, 0, *c[list(face)].ravel(), 0) for face in t)
     quads = b"".join(struct.pack("<B4i", 4, *face) for face in q)
@@ -53,18 +54,21 @@ def mesh_files(folder):
     gltf = box.MESHES["box.gltf"]
     gltf += b" " * (-len(gltf) % 4)
     files = {**box.MESHES, "quads.ply": box.ply(c, q).encode(), "quads.ac": box.ac3d(c, q).encode(),
-             "binary.stl": b"box".ljust(80) + struct.pack("<I", len(t)) + triangles, "binary.ply": head.encode() + c.astype("<f4").tobytes() + quads,
+             "binary.stl": b"box".ljust(80) + struct.pack("<I", len(t)) + triangles,
+             "binary.ply": head.encode() + c.astype("<f4").tobytes() + quads,
              "box.glb": b"glTF" + struct.pack("<IIII", 2, 20 + len(gltf), len(gltf), 0x4E4F534A) + gltf}
     image, grid, name = vtk.vtkImageData(), vtk.vtkAppendFilter(), os.path.join(folder, "written")
     image.SetDimensions(3, 4, 2)
     grid.AddInputData(box.poly_data(q))
     grid.Update()
-    for kind, data, writer in (("vtp", box.poly_data(q), vtk.vtkXMLPolyDataWriter()), ("vtu", grid.GetOutput(), vtk.vtkXMLUnstructuredGridWriter()),
+    for kind, data, writer in (("vtp", box.poly_data(q), vtk.vtkXMLPolyDataWriter()),
+                               ("vtu", grid.GetOutput(), vtk.vtkXMLUnstructuredGridWriter()),
                                ("vti", image, vtk.vtkXMLImageDataWriter()), ("vtk", image, vtk.vtkDataSetWriter())):
         for mode in (0, 1):
             writer.SetInputData(data)
             writer.SetFileName(name)
-            writer.SetFileType(mode + 1) if kind == "vtk" else (writer.SetDataModeToAscii, writer.SetDataModeToBinary)[mode]()
+            writer.SetFileType(mode + 1) if kind == "vtk" else (writer.SetDataModeToAscii,
+                                                                writer.SetDataModeToBinary)[mode]()
             writer.Write()
             with open(name, "rb") as file:
                 files[f"box{mode}.{kind}"] = file.read()
@@ -72,7 +76,8 @@ def mesh_files(folder):
 
 
 def reader_samples():
-    """[(file to mutate, file to open, {name: content})] of small good files: the fuzzers' scenes and clouds, and meshes."""
+    """[(file to mutate, file to open, {name: content})] of small good files: the fuzzers' scenes and clouds, and
+    meshes."""
     samples = []
     for kind in ("SceneReader", "PointCloud"):
         for name in sorted({*os.listdir(os.path.join(CORPUS, kind))} - {"empty", "cell-without-its-points"}):
@@ -122,7 +127,8 @@ def says_nothing(name, content):
     nan = b"nan" in content.lower()
     none = re.search(rb"(POINTS|WIDTH|HEIGHT)\s+0\s|DATA binary", content)
     without_points = content[107:111] == b"\0\0\0\0"
-    return {"json": b'"objects": []' in content, ".bin": not content, ".las": without_points, ".laz": without_points, ".pcd": nan or none,
+    return {"json": b'"objects": []' in content, ".bin": not content, ".las": without_points, ".laz": without_points,
+            ".pcd": nan or none,
             ".ply": nan or re.search(rb"vertex +[0+-]|format binary", content)}.get(name[-4:], False)
 
 
@@ -166,30 +172,42 @@ SENSOR = {"preset": "Airport16", "azimuth_step": 30.0, "position": [0, 0, 3]}
 
 def feature(shape, corners, **properties):
     places = [[121.3 + x * EAST, 31.2 + y * NORTH] for x, y in corners]
-    return {"type": "Feature", "properties": properties, "geometry": {"type": shape, "coordinates": [places] if shape == "Polygon" else places}}
+    return {"type": "Feature", "properties": properties,
+            "geometry": {"type": shape, "coordinates": [places] if shape == "Polygon" else places}}
 
 
 def documents():
     """{name: document}; the first three are opened: two plans and a scenario."""
-    scene = {"version": 1, "origin": {"latitude": 31.2, "longitude": 121.3, "height": 3}, "lidar": {"position": [0, 0, 3]},
+    scene = {"version": 1, "origin": {"latitude": 31.2, "longitude": 121.3, "height": 3},
+             "lidar": {"position": [0, 0, 3]},
              "objects": [{"ground": {"size": 4000, "height": 0}, "name": "ground", "material": "Wall"},
-                         {"footprints": "town.geojson", "filter": {"height": "*"}, "height_attribute": "height", "height": 8}]}
+                         {"footprints": "town.geojson", "filter": {"height": "*"}, "height_attribute": "height",
+                          "height": 8}]}
     town = [feature("Polygon", [(200, 0), (260, 0), (260, 60), (200, 60), (200, 0)], height=12, name="hangar"),
             feature("LineString", [(-300, -500), (-300, 500)], kind="runway", name="18/36", width=45)]
     taken = [feature("Polygon", [(400, 400), (600, 400), (600, 600), (400, 600), (400, 400)])]
-    plan = {"scene": "town.lidarscene.json", "sensor": SENSOR, "compare_with": [{**SENSOR, "name": "near", "range_gate": 500}], "seed": 1,
-            "coverage": {"visibility": 20000, "height_limits": [0, 30]}, "mix": {"crow": 1, "starling": 2}, "weather": ["rain:1"], "places": 20,
-            "heights": [15, 30.5], "extent": [-300, 300, -300, 300], "spacing": 150, "runways": "town.geojson", "regions": {"strips": 1, "approaches": 2}}
-    bounds = {"bounds": [-500, 500, -500, 500], "spacing": 500, "masts": [5, 8], "margin": 3, "exclusions": ["taken.geojson"], "sensors": 2, "draws": 1}
+    plan = {"scene": "town.lidarscene.json", "sensor": SENSOR,
+            "compare_with": [{**SENSOR, "name": "near", "range_gate": 500}], "seed": 1,
+            "coverage": {"visibility": 20000, "height_limits": [0, 30]}, "mix": {"crow": 1, "starling": 2},
+            "weather": ["rain:1"], "places": 20,
+            "heights": [15, 30.5], "extent": [-300, 300, -300, 300], "spacing": 150, "runways": "town.geojson",
+            "regions": {"strips": 1, "approaches": 2}}
+    bounds = {"bounds": [-500, 500, -500, 500], "spacing": 500, "masts": [5, 8], "margin": 3,
+              "exclusions": ["taken.geojson"], "sensors": 2, "draws": 1}
     year = [{"weather": ["fog:700"], "share": 0.25}, {"weather": [], "share": 0.75}]
-    scenario = {"scene": "town.lidarscene.json", "sensor": {**SENSOR, "sway_amplitude": 0.02}, "scan": {"rays_per_beam": 50}, "number_of_scans": 2,
+    scenario = {"scene": "town.lidarscene.json", "sensor": {**SENSOR, "sway_amplitude": 0.02},
+                "scan": {"rays_per_beam": 50}, "number_of_scans": 2,
                 "scans_per_sequence": 2, "seed": 1, "near_clutter_distance": 10,
-                "birds": [{"pattern": "Crossings", "species": "crow", "number_of_birds": 2, "radius": 100, "heights": [2, 30]}],
-                "objects": [{"name": "car", "class": "car", "speed": 8, "first": 0, "every": 20, "boxes": [[-1, 1, -2, 2, 0, 1.5]],
+                "birds": [{"pattern": "Crossings", "species": "crow", "number_of_birds": 2, "radius": 100,
+                           "heights": [2, 30]}],
+                "objects": [{"name": "car", "class": "car", "speed": 8, "first": 0, "every": 20,
+                             "boxes": [[-1, 1, -2, 2, 0, 1.5]],
                              "route": [[0, -80, 0], [0, 80, 0], [60, 80, 0]]}]}
-    collections = {name: {"type": "FeatureCollection", "features": of} for name, of in (("town.geojson", town), ("taken.geojson", taken))}
+    collections = {name: {"type": "FeatureCollection", "features": of}
+                   for name, of in (("town.geojson", town), ("taken.geojson", taken))}
     return {"lattice.coverage.json": {**plan, "siting": bounds, "year": year},
-            "points.coverage.json": {**plan, "siting": {"points": "points.csv", "draws": 0}, "metar": "year.txt"}, "town.scenario.json": scenario,
+            "points.coverage.json": {**plan, "siting": {"points": "points.csv", "draws": 0}, "metar": "year.txt"},
+            "town.scenario.json": scenario,
             "town.lidarscene.json": scene, **collections}
 
 
@@ -198,7 +216,8 @@ def try_plan(seed, folder):
     r, found = random.Random(seed), documents()
     files = {name: dumped(document) for name, document in found.items()}
     files["points.csv"] = b"x,y\n-100,0\n100,0\n0,-400\n"
-    files["year.txt"] = b"ZSSS 010000Z 34004MPS 9999 FEW030 12/08 Q1013\nZSSS 010100Z 34004MPS 0800 -RA FG 12/08 Q1013\n"
+    files["year.txt"] = (b"ZSSS 010000Z 34004MPS 9999 FEW030 12/08 Q1013\n"
+                         b"ZSSS 010100Z 34004MPS 0800 -RA FG 12/08 Q1013\n")
     opened = r.choice([*found][:3])
     name = opened if r.random() < 0.6 else r.choice([*files][3:])
     files[name] = dumped(changed(found[name], r)) if name in found and r.random() < 0.8 else mutated(files[name], r)
@@ -209,7 +228,8 @@ def try_plan(seed, folder):
     except Error as error:
         words = str(error).partition(f"{opened}: ")[2]
         of_the_file = "is not JSON|is not known|is a required property|is not of type 'object'"
-        named = words and (re.match(rf"({'|'.join([*found[opened], 'year', 'metar'])})\b", words) or re.search(of_the_file, words))
+        named = words and (re.match(rf"({'|'.join([*found[opened], 'year', 'metar'])})\b", words)
+                           or re.search(of_the_file, words))
         return "" if named else f"{opened}: an error that does not name the file and its member: {error}", "refused"
     except Exception:  # noqa: B902
         return f"{opened}: {traceback.format_exc()}", "refused"
@@ -231,14 +251,17 @@ def run(tell, attempt, seeds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", default="+", help="7, 3-9, 3- (until stopped), +100 from a free one, or + (until stopped)")
+    parser.add_argument("--seeds", default="+", help="7, 3-9, 3- (until stopped), +100 from a free one, or + (until "
+                                                     "stopped)")
     parser.add_argument("--plans", action="store_true", help="plans and scenarios, not what readers read")
     parser.add_argument("--memory", type=int, default=4096, help="MiB of address space")
     parser.add_argument("--limit", type=int, default=60, help=f"seconds of the processor for {BATCH} files")
     options = parser.parse_args()
-    attempt, seeds, failed, total, begin = try_plan if options.plans else try_reader, children.seeds(options.seeds), [], {}, time.monotonic()
+    attempt = try_plan if options.plans else try_reader
+    seeds, failed, total, begin = children.seeds(options.seeds), [], {}, time.monotonic()
     while seeds:
-        value, fault, told = children.run(run, attempt, seeds[:BATCH], seconds=options.limit, memory=options.memory << 20)
+        value, fault, told = children.run(run, attempt, seeds[:BATCH], seconds=options.limit,
+                                          memory=options.memory << 20)
         seed, wrong, kinds = (told[-1], fault, {}) if fault else value
         total = {kind: total.get(kind, 0) + kinds.get(kind, 0) for kind in total | kinds}
         if seed is not None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files and folders of the applications (sequence, coverage, siting, report): names that become file names, what is read, one
-run in a folder, files that are whole or as they were, and folders that go on with the same inputs only."""
+"""Files and folders of the applications (sequence, coverage, siting, report): names that become file names, what is
+read, one run in a folder, files that are whole or as they were, and folders that go on with the same inputs only."""
 import errno
 import gzip
 import json
@@ -27,14 +27,16 @@ from filetools import Table
 from reporttools import quick
 
 ORIGIN = (0.0, 0.0, 0.0)
-SCENE = {"version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "lidar": {"position": [5, -8, 3]}, "objects": [
+SCENE = {"version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "lidar": {"position": [5, -8, 3]},
+         "objects": [
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
     {"name": "Board", "file": "board.obj", "material": "Wall"}]}
 BOARD = "v 20 90 0\nv 60 80 0\nv 60 80 9\nv 20 90 9\nf 1 2 3 4\n"
 RUNWAY = {"type": "Feature", "properties": {"kind": "runway", "name": "09/27", "width": 45},
           "geometry": {"type": "LineString", "coordinates": [[0.001, 0.002], [0.006, 0.002]]}}
 SENSOR = {"preset": "Search905", "azimuth_range": [0, 90], "azimuth_step": 3}
-PLAN = {"scene": "s.lidarscene.json", "sensor": SENSOR, "runways": "runways.geojson", "coverage": {"species": "crow"}, "heights": [30],
+PLAN = {"scene": "s.lidarscene.json", "sensor": SENSOR, "runways": "runways.geojson", "coverage": {"species": "crow"},
+        "heights": [30],
         "extent": [-200, 200, -200, 200], "spacing": 50, "places": 100,
         "siting": {"bounds": [-200, 200, -200, 200], "spacing": 200, "draws": 0, "sensors": 1}}
 SCENARIO = {"scene": "s.lidarscene.json", "sensor": SENSOR, "number_of_scans": 4, "scans_per_sequence": 2, "seed": 5,
@@ -100,9 +102,11 @@ class Inputs(Applications, Table):
         bird, species = SCENARIO["birds"][0], {"species_file_name": file, "species": "crow"}
         yield ["coverage", file, *out]
         yield ["sequence", file, *out]
-        plans = [("coverage", {"runways": file}), ("coverage", {"coverage": species}), ("siting", {"siting": {**PLAN["siting"], "points": file}}),
+        plans = [("coverage", {"runways": file}), ("coverage", {"coverage": species}),
+                 ("siting", {"siting": {**PLAN["siting"], "points": file}}),
                  ("siting", {"siting": {**PLAN["siting"], "exclusions": [file]}})]
-        scenarios = [{"birds": [{**bird, "pattern": "File", "file_name": file}]}, {"birds": [{**bird, "species_file_name": file}]}]
+        scenarios = [{"birds": [{**bird, "pattern": "File", "file_name": file}]},
+                     {"birds": [{**bird, "species_file_name": file}]}]
         if kind == "pipe":  # their names say what they are; a link's is followed
             for name in ("pipe.lidarscene.json", "pipe.lidarsensor.json"):
                 os.mkfifo(self.home / name)
@@ -115,7 +119,8 @@ class Inputs(Applications, Table):
             yield ["sequence", str(self.write(f"{kind}{i}.scenario.json", {**SCENARIO, **change})), *out]
 
     def test_are_regular_files(self):
-        """Neither pipes nor devices nor folders; gzip has a limit, also where parts that follow each other are one text of 2 GiB."""
+        """Neither pipes nor devices nor folders; gzip has a limit, also where parts that follow each other are one text
+        of 2 GiB."""
         os.mkfifo(self.home / "pipe")
         os.symlink("/dev/zero", self.home / "device")
         (self.home / "bomb.coverage.json").write_bytes(gzip.compress(b" " * (1 << 26)) * 32)
@@ -134,8 +139,8 @@ class Inputs(Applications, Table):
 
 
 class OneRun(Applications):
-    """A run has its folder alone. One that is stopped, by Ctrl-C or by an error, leaves nothing that was not there before, unless the
-    same command goes on with it."""
+    """A run has its folder alone. One that is stopped, by Ctrl-C or by an error, leaves nothing that was not there
+    before, unless the same command goes on with it."""
 
     def stop(self, where, arguments, times=1, error=KeyboardInterrupt, meanwhile=lambda: None):
         """@param where what is stopped in its call of this number"""
@@ -161,9 +166,11 @@ class OneRun(Applications):
                 ("sequence", self.scenario, "in/sets", "in/sets", (al.Sequence, "_truth"), 1)):
             for error, status in ((KeyboardInterrupt, 130), (al.Error("no more"), 2)):
                 with self.subTest(verb=verb, error=error):
-                    arguments, second = (verb, file, "-o", self.home / out, *([] if verb == "siting" else ["--threads", "1"])), []
+                    arguments, second = (verb, file, "-o", self.home / out,
+                                         *([] if verb == "siting" else ["--threads", "1"])), []
                     code, said = self.stop(where, arguments, times, error, lambda: second.append(run(*arguments)))
-                    self.assertEqual((code, said), (status, "avianlidar: stopped\n" if status == 130 else "avianlidar: no more\n"))
+                    self.assertEqual((code, said),
+                                     (status, "avianlidar: stopped\n" if status == 130 else "avianlidar: no more\n"))
                     self.assertEqual((second[0][0], len(second[0][1].splitlines())), (2, 1))
                     self.assertIn(f"{self.home / folder}: another run writes there", second[0][1])
                     self.assertEqual((tree(self.home), sorted(self.home.rglob("*"))), before)
@@ -179,7 +186,8 @@ class OneRun(Applications):
             job.send_signal(signal.SIGKILL)
             job.communicate()
         al.Sequence(self.scenario).write(out)
-        self.assertEqual(sorted(path.name for path in out.iterdir()), ["datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"])
+        self.assertEqual(sorted(path.name for path in out.iterdir()),
+                         ["datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"])
 
     def test_where_files_have_no_locks(self):
         """As of some network file systems: a file that is made counts as the lock, and who was killed leaves it."""
@@ -189,7 +197,8 @@ class OneRun(Applications):
         with unittest.mock.patch("fcntl.flock", side_effect=OSError(errno.ENOLCK, "No locks available")):
             with only_run(out):
                 self.assertTrue(lock.exists())
-                with self.assertRaisesRegex(al.Error, f"{out}: another run writes there; .*have no locks: if no other run is there, remove {lock}"):
+                with self.assertRaisesRegex(al.Error, f"{out}: another run writes there; .*have no locks: if no other "
+                                                      f"run is there, remove {lock}"):
                     with only_run(out):
                         pass
             self.assertFalse(lock.exists())
@@ -201,7 +210,8 @@ class OneRun(Applications):
     def test_a_signal(self):
         before = sorted(self.home.rglob("*"))
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            job = subprocess.Popen([sys.executable, "-m", "avianlidar", "report", str(self.plan), "-o", str(self.home / "new" / "r.html")],
+            job = subprocess.Popen([sys.executable, "-m", "avianlidar", "report", str(self.plan), "-o",
+                                    str(self.home / "new" / "r.html")],
                                    stderr=subprocess.PIPE, text=True)
             while job.poll() is None and not (self.home / "new").exists():
                 time.sleep(0.005)
@@ -224,7 +234,8 @@ class Sequences(Applications):
         """The error names the folder, in which all is as it was."""
         al.Sequence(self.scenario, number_of_scans=2).write(self.home)
         before = tree(self.home)
-        with disk(200), self.assertRaisesRegex((OSError, RuntimeError, al.Error), "File too large.*000000|000000.*File too large"):
+        with disk(200), self.assertRaisesRegex((OSError, RuntimeError, al.Error),
+                                               "File too large.*000000|000000.*File too large"):
             al.Sequence(self.scenario).write(self.home)
         self.assertEqual(tree(self.home), before)
 
@@ -258,7 +269,8 @@ class Sequences(Applications):
                 file.write_bytes(kept)
         done = first / "done.json"
         kept = json.loads(done.read_text())
-        for text, words in (("{", "done.json: is not JSON"), ("[]", "00 was made from another scenario"), (None, "00: has no done.json")):
+        for text, words in (("{", "done.json: is not JSON"), ("[]", "00 was made from another scenario"),
+                            (None, "00: has no done.json")):
             done.unlink()
             if text:
                 done.write_text(text)
@@ -282,25 +294,30 @@ class Sequences(Applications):
         out = self.home / "out"
         al.Sequence(self.scenario, threads=1, number_of_scans=2).write(out)
         for words, scene, changes in (
-                (r"sensor\.position \[5\.0, -8\.0, 3\.0\], now \[6\.0, -8\.0, 3\.0\]", {"lidar": {"position": [6, -8, 3]}}, {}),
+                (r"sensor\.position \[5\.0, -8\.0, 3\.0\], now \[6\.0, -8\.0, 3\.0\]",
+                 {"lidar": {"position": [6, -8, 3]}}, {}),
                 ("scene", {"objects": [SCENE["objects"][0], {**SCENE["objects"][1], "material": "Metal"}]}, {}),
                 (r"scan\.rays_per_beam 100, now 50", {}, {"scan": {"rays_per_beam": 50}}),
                 (r"sensor\.sway_amplitude .* now 0\.5", {}, {"sensor": {**SENSOR, "sway_amplitude": 0.5}}),
                 (r"scenario\.birds", {}, {"birds": []})):
             with self.subTest(words):
                 self.write("s.lidarscene.json", {**SCENE, **scene})
-                self.refused(out, f"00 was made from another scenario, scene or version: .*{words}", **{"number_of_scans": 4, **changes})
-        # What decides no bit may differ: threads, more scans, the order of keys, a place in the scene that the scenario overrules.
+                self.refused(out, f"00 was made from another scenario, scene or version: .*{words}",
+                             **{"number_of_scans": 4, **changes})
+        # What decides no bit may differ: threads, more scans, the order of keys, a place in the scene that the scenario
+        # overrules.
         self.write("s.lidarscene.json", SCENE)
         self.write("q.scenario.json", {**SCENARIO, "birds": [dict(reversed(SCENARIO["birds"][0].items()))]})
         al.Sequence(self.scenario, threads=2).write(out)
-        fixed = self.write("fixed.scenario.json", {**SCENARIO, "number_of_scans": 2, "sensor": {**SENSOR, "position": [5, -8, 3]}})
+        fixed = self.write("fixed.scenario.json",
+                           {**SCENARIO, "number_of_scans": 2, "sensor": {**SENSOR, "position": [5, -8, 3]}})
         al.Sequence(fixed).write(self.home / "fixed")
         self.write("s.lidarscene.json", {**SCENE, "lidar": {"position": [6, -8, 3]}})
         al.Sequence(fixed).write(self.home / "fixed")
 
     def test_more_scans_go_on_and_fewer_are_an_error(self):
-        """Three scans in sequences of two, then four: the second sequence was short, and flights depend on its length."""
+        """Three scans in sequences of two, then four: the second sequence was short, and flights depend on its
+        length."""
         out, fresh = self.home / "out", self.home / "fresh"
         al.Sequence(self.scenario).write(fresh)
         al.Sequence(self.scenario, number_of_scans=3).write(out)
@@ -310,10 +327,12 @@ class Sequences(Applications):
         self.assertRegex(said, "^avianlidar: warning: .*01: has fewer scans than requested, and is made again")
         self.assertEqual(tree(out), tree(fresh))
         self.assertEqual((out / "sequences" / "00" / "truth.csv").stat().st_mtime_ns, kept)
-        for scans, words in ((3, "01: has 2 scans, but number_of_scans is 3"), (2, "01: exists, but number_of_scans is 2")):
+        for scans, words in ((3, "01: has 2 scans, but number_of_scans is 3"),
+                             (2, "01: exists, but number_of_scans is 2")):
             status, said = run("sequence", self.scenario, "-o", out, "--scans", scans)
             self.assertEqual(status, 2)
-            self.assertRegex(said, f"^avianlidar: .*{words}: choose at least as many scans as the folder has, or another folder\n$")
+            self.assertRegex(said, f"^avianlidar: .*{words}: choose at least as many scans as the folder has, or "
+                                   "another folder\n$")
             self.assertEqual(tree(out), tree(fresh))
 
     def test_both_spellings_of_a_property_are_one(self):
@@ -327,8 +346,9 @@ class Sequences(Applications):
         (self.home / "t.csv").write_text(tracks)
         written = []
         for name, key in (("old", "FileName"), ("new", "file_name")):
-            file = self.write(f"{name}.scenario.json", {**SCENARIO, "number_of_scans": 2, "birds": [{"pattern": "File", key: "t.csv"}],
-                                                        "sensor": {**SENSOR, "RangeGate": 900}})
+            file = self.write(f"{name}.scenario.json",
+                              {**SCENARIO, "number_of_scans": 2, "birds": [{"pattern": "File", key: "t.csv"}],
+                               "sensor": {**SENSOR, "RangeGate": 900}})
             al.Sequence(file).write(self.home / name)
             written.append(tree(self.home / name))
         self.assertEqual(*written)
@@ -343,7 +363,8 @@ class Sequences(Applications):
                 al.Sequence(self.write("twice.scenario.json", {**SCENARIO, **changes}))
         # An option comes before the scenario, whatever its spelling.
         out = self.home / "told"
-        self.assertEqual(run("sequence", self.scenario, "-o", out, "--scans", 2, "--sensor-set", "AzimuthStep=2"), (0, ""))
+        self.assertEqual(run("sequence", self.scenario, "-o", out, "--scans", 2, "--sensor-set", "AzimuthStep=2"),
+                         (0, ""))
         self.assertEqual(json.loads((out / "manifest.json").read_text())["scenario"]["sensor"]["azimuth_step"], 2)
 
 

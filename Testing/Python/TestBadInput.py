@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What each class reads and each of its properties, with wrong values: one error that names the input and the quantity, empty
-outputs, and the next good input gives what it gave before. What is legal but suspicious is a warning, once."""
+"""What each class reads and each of its properties, with wrong values: one error that names the input and the quantity,
+empty outputs, and the next good input gives what it gave before. What is legal but suspicious is a warning, once."""
 import os
 from xml.etree import ElementTree
 
@@ -122,7 +122,8 @@ class Arrays(Faults):
 
     def test_clouds_that_formats_cannot_hold(self):
         data = cloud(np.zeros((5, 3)))
-        for colours, words in ((np.zeros((5, 4), "u1"), "4 components"), (np.zeros((5, 3)), "double"), (np.zeros((2, 3), "u1"), "2")):
+        for colours, words in ((np.zeros((5, 4), "u1"), "4 components"), (np.zeros((5, 3)), "double"),
+                               (np.zeros((2, 3), "u1"), "2")):
             bad = copy_of(data)
             add_array(bad, "rgb", colours)
             for name in ("LAS", "PCD"):
@@ -137,7 +138,8 @@ class Arrays(Faults):
 def of_panel(name):
     """{property: values beside the choices, or below the least number, of ParaView's panel}"""
     found = {}
-    for prop in ElementTree.parse(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Filters", f"AvianLidar{name}.xml")).iter():
+    for prop in ElementTree.parse(os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Plugin", "Filters",
+                                               f"AvianLidar{name}.xml")).iter():
         ends, entries = prop.get("range", "").split(), prop.get("entries", "").split()
         if ends or entries:
             least = int(ends[0] if ends else 0) - 1 if prop.tag.startswith("Int") else float(ends[0]) - 1e-9
@@ -147,27 +149,36 @@ def of_panel(name):
 
 class Properties(Faults):
     # Any value of these means something.
-    ANY = {("EchoFilter", "Seed"), ("BeamSource", "MotionSeed"), ("EchoFilter", "NumberOfThreads"), ("EchoFilter", "MaximumCacheSize"),
-           ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"), ("Material", "ObjectId"), ("BeamSource", "AzimuthStep"),
+    ANY = {("EchoFilter", "Seed"), ("BeamSource", "MotionSeed"), ("EchoFilter", "NumberOfThreads"),
+           ("EchoFilter", "MaximumCacheSize"),
+           ("CollisionTree", "DisplayLevel"), ("CollisionTree", "MaximumLeafSize"), ("Material", "ObjectId"),
+           ("BeamSource", "AzimuthStep"),
            ("BeamSource", "Orientation"), ("GeoJSONWriter", "MinimumEnergy"), ("EchoFilter", "NumberOfConnections"),
            ("HSBColorMap", "EnergyRange"), ("Tracks", "Seed")}
     # The first value beyond the border of a choice or a number; above sliders, those that the class has.
-    BORDERS = {"EchoFilter": {**of_panel("EchoFilter"), "RaysPerBeam": (0, 1000001), "NumberOfReflections": (0, 4), "LightEnergyFraction": (-1e-9, 1.1e8)},
-               "BeamSource": {"SwayAmplitude": (-1e-9, 10.1), "SwayFrequency": (0.0, 1e7), "EncoderJitter": (-1e-9, 10.1)},
+    BORDERS = {"EchoFilter": {**of_panel("EchoFilter"), "RaysPerBeam": (0, 1000001), "NumberOfReflections": (0, 4),
+                              "LightEnergyFraction": (-1e-9, 1.1e8)},
+               "BeamSource": {"SwayAmplitude": (-1e-9, 10.1), "SwayFrequency": (0.0, 1e7),
+                              "EncoderJitter": (-1e-9, 10.1)},
                "CollisionTree": {"Preset": (2,), "SplitRule": (4,), "BoundingVolume": (-1, 4), "MaximumLeafSize": (0,)},
-               "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,), "GateProbability": (1.0,),
+               "Tracker": {"ClusterAngle": (30.0,), "RangeError": (0.0,), "MotionModel": (2,),
+                           "GateProbability": (1.0,),
                            "ConfirmHits": (5,), "KeepTime": (-1.0,)},
                "ClutterFilter": {"Window": (0.5,), "WarmUp": (-1,)}, "CloudComparison": {"ChamferAlpha": (0.0, 2e6)},
-               "GeodeticTransform": {"UTMZone": (61,)}, "Tracks": {"Pattern": (6,), "NumberOfBirds": (100001,), "Radius": (-1.0,)}}
+               "GeodeticTransform": {"UTMZone": (61,)}, "Tracks": {"Pattern": (6,), "NumberOfBirds": (100001,),
+                                                                   "Radius": (-1.0,)}}
 
     def test_every_property(self):
         """NaN is refused by each; beyond its range, each says its own name."""
         # Settings with which the properties are read.
         setups = {
-            "BeamSource": {}, "EchoFilter": {"Preset": 0}, "CollisionTree": {}, "Material": {"Material": 4}, "HSBColorMap": {"UseFieldDataRange": False},
-            "GeodeticTransform": {"UseFieldDataOrigin": False}, "GeoJSONWriter": {"UseFieldDataLimit": False}, "Tracks": {}, "Tracker": {},
+            "BeamSource": {}, "EchoFilter": {"Preset": 0}, "CollisionTree": {}, "Material": {"Material": 4},
+            "HSBColorMap": {"UseFieldDataRange": False},
+            "GeodeticTransform": {"UseFieldDataOrigin": False}, "GeoJSONWriter": {"UseFieldDataLimit": False},
+            "Tracks": {}, "Tracker": {},
             "CloudComparison": {}, "ClutterFilter": {}}
-        given_inputs = {name: [produce().data() for produce, _ in inputs] for name, _, *inputs in CLASSES if name in setups}
+        given_inputs = {name: [produce().data() for produce, _ in inputs] for name, _, *inputs in CLASSES
+                        if name in setups}
         tried = 0
         for name, settings in setups.items():
             inputs = given_inputs.get(name, []) if name != "Tracks" else []
@@ -177,14 +188,16 @@ class Properties(Faults):
                     continue
                 value = getattr(wrapped(), "Get" + property_)()
                 first = value[0] if isinstance(value, tuple) else value
-                for bad in (NAN, INF, -INF, 1e300, -1e300, -(1 << 31), (1 << 31) - 1, *self.BORDERS.get(name, {}).get(property_, ())):
+                for bad in (NAN, INF, -INF, 1e300, -1e300, -(1 << 31), (1 << 31) - 1,
+                            *self.BORDERS.get(name, {}).get(property_, ())):
                     if isinstance(first, (bool, str)) or type(first) is not type(bad):
                         continue
                     algorithm = make(name, **settings, **({"FileName": "x"} if name.endswith("Writer") else {}))
                     getattr(algorithm, "Set" + property_)((bad,) * len(value) if isinstance(value, tuple) else bad)
                     with self.subTest(name, property=property_, value=bad):
                         errors, out = self.run_one(algorithm, inputs)
-                        legal = (name, property_) in self.ANY and bad == bad and bad not in self.BORDERS.get(name, {}).get(property_, ())
+                        borders = self.BORDERS.get(name, {}).get(property_, ())
+                        legal = (name, property_) in self.ANY and bad == bad and bad not in borders
                         if errors or not legal:
                             self.assertEqual(len(errors), 1, errors)
                             self.assertRegex(errors[0], rf"{property_}[\s\S]*expected|{property_}.*\bis")
@@ -197,14 +210,17 @@ class Properties(Faults):
         source = make("BeamSource", NumberOfChannelElevations=2)
         source.SetChannelElevation(1, 93)
         self.fails(source, [], r"channel 1 \(its ChannelElevation\) is 93")
-        self.fails(make("BeamSource", NumberOfChannels=2, MinimumElevation=80, ElevationStep=11), [], "MinimumElevation .* is 91")
+        self.fails(make("BeamSource", NumberOfChannels=2, MinimumElevation=80, ElevationStep=11), [],
+                   "MinimumElevation .* is 91")
         self.fails(make("EchoFilter", Preset=0, RaysPerBeam=1000000, NumberOfReflections=2, NumberOfConnections=1000),
                    [beams(), surfaces()], "RaysPerBeam is 1000000")
-        self.fails(make("EchoFilter", RaysPerBeam=70000, NumberOfConnections=2000000000), [beams(), surfaces()], "NumberOfConnections")
+        self.fails(make("EchoFilter", RaysPerBeam=70000, NumberOfConnections=2000000000), [beams(), surfaces()],
+                   "NumberOfConnections")
 
     def test_arguments_of_methods(self):
         cover, colours = make("Coverage"), make("HSBColorMap")
-        for algorithm, words, call in ((cover, "no entry 1000", lambda: cover.GetHeightLimit(1000)), (cover, "no entry -1", lambda: cover.GetHeightLimit(-1)),
+        for algorithm, words, call in ((cover, "no entry 1000", lambda: cover.GetHeightLimit(1000)),
+                                       (cover, "no entry -1", lambda: cover.GetHeightLimit(-1)),
                                        (colours, "no table", lambda: colours.FillLookupTable(None))):
             heard = Messages(algorithm)
             call()
@@ -213,7 +229,8 @@ class Properties(Faults):
     def test_more_than_there_is_memory_for(self):
         """Noise that would drown the scan, and range units without number, are refused before they fill the memory."""
         loud, units = sensor(36, 2), sensor(36, 2)
-        for source, values in ((loud, {"NoisePhotonRate": 1e15, "SamplingInterval": 1e-11, "PulseWidth": 0, "LowerEnergyLimit": 1e-18}),
+        for source, values in ((loud, {"NoisePhotonRate": 1e15, "SamplingInterval": 1e-11, "PulseWidth": 0,
+                                       "LowerEnergyLimit": 1e-18}),
                                (units, {"SamplingInterval": 1e-12, "PulseWidth": 1e-9, "RangeGate": 1e5})):
             given(source, **values).Update()
         self.fails(make("EchoFilter"), [loud.GetOutput(), surfaces()], "false alarms")
@@ -247,8 +264,10 @@ class Legal(Faults):
         plain = surfaces()
         for name in COEFFICIENTS:
             plain.GetCellData().RemoveArray(name)
-        for data, words, same in ((lines.GetOutput(), "Input port 1, surfaces: 2 points without a polygon", vtk.vtkPolyData()),
-                                  (astray.GetOutput(), r"Input port 1, surfaces: points lie 1e\+16 m apart", surfaces()),
+        for data, words, same in ((lines.GetOutput(), "Input port 1, surfaces: 2 points without a polygon",
+                                   vtk.vtkPolyData()),
+                                  (astray.GetOutput(), r"Input port 1, surfaces: points lie 1e\+16 m apart",
+                                   surfaces()),
                                   (plain, "Wall.*Group Datasets", surfaces())):
             echo, usual = make("EchoFilter"), make("EchoFilter")
             said = self.warnings(echo, [beams(), data], [[beams(), data]])
@@ -280,8 +299,10 @@ class Legal(Faults):
             self.assertRegex(said[0], r"single precision[\s\S]*5000000 m[\s\S]*0.5 m")
 
     def test_beams_of_anyones_making(self):
-        """Points, directions of any length and type, and the sensor's field data are enough; azimuths lie in [0, 36000)."""
-        for kind, directions, count in (("f4", ((5, 0, 0), (0, 0.1, 0)), 1), ("f8", ((1e-307, 0, 0), (1.5e308, 1e307, 0)), 2)):
+        """Points, directions of any length and type, and the sensor's field data are enough; azimuths lie in [0,
+        36000)."""
+        for kind, directions, count in (("f4", ((5, 0, 0), (0, 0.1, 0)), 1),
+                                        ("f8", ((1e-307, 0, 0), (1.5e308, 1e307, 0)), 2)):
             own = cloud(np.zeros((2, 3)))
             add_array(own, "direction", np.array(directions, kind))
             own.GetFieldData().PassData(beams().GetFieldData())
@@ -302,7 +323,8 @@ class Legal(Faults):
         text.SetName("orientation")
         text.InsertNextValue("north")
         slits.GetFieldData().AddArray(text)
-        self.fails(make("EchoFilter"), [slits, surfaces()], r"port 0 \(beams\), field data 'orientation' holds no numbers")
+        self.fails(make("EchoFilter"), [slits, surfaces()],
+                   r"port 0 \(beams\), field data 'orientation' holds no numbers")
 
     def test_partitions_are_chosen_by_the_name_of_their_set(self):
         sets = vtk.vtkPartitionedDataSetCollection()
@@ -314,7 +336,8 @@ class Legal(Faults):
         material.SetInputData(sets)
         material.Update()
         output = material.GetOutputDataObject(0)
-        ids = [output.GetPartition(i, k).GetCellData().GetArray("material_id").GetValue(0) for i in range(2) for k in range(2)]
+        ids = [output.GetPartition(i, k).GetCellData().GetArray("material_id").GetValue(0) for i in range(2)
+               for k in range(2)]
         self.assertEqual((ids[0], ids[2]), (ids[1], ids[3]))
         self.assertNotEqual(ids[0], ids[2])
 
@@ -360,8 +383,8 @@ def with_materials(data, **changes):
 
 
 class Cells(Faults):
-    """Cells that are no area, lie where no points are, or begin where no cell is: what has no triangles counts for nothing, the
-    rest is an error; and errors count the cells of the user's data."""
+    """Cells that are no area, lie where no points are, or begin where no cell is: what has no triangles counts for
+    nothing, the rest is an error; and errors count the cells of the user's data."""
 
     def both_fail(self, data, *words):
         self.fails(make("CollisionTree"), [data], *words)
@@ -378,7 +401,8 @@ class Cells(Faults):
                 assert_same_bits(one.GetOutput(), other.GetOutput())
             self.assertEqual(one.GetOutput().GetNumberOfCells(), other.GetOutput().GetNumberOfCells())
         for array in ("kd", "object_id"):
-            np.testing.assert_array_equal(*(vtk_to_numpy(a.GetOutput().GetCellData().GetArray(array)) for a in (one, other)))
+            np.testing.assert_array_equal(*(vtk_to_numpy(a.GetOutput().GetCellData().GetArray(array))
+                                            for a in (one, other)))
 
     def test_cells_of_few_points_have_no_triangles(self):
         for short in ((), (0,), (0, 1)):
@@ -391,11 +415,13 @@ class Cells(Faults):
         short = with_materials(wall([(0,), (0, 1, 2), (), (0, 2, 3)], Strips=[(), (1, 2, 3), (0, 1)], Lines=[(0, 1)]))
         tree = make("CollisionTree")
         self.run_one(tree, [short])
-        np.testing.assert_array_equal(vtk_to_numpy(tree.GetOutput().GetCellData().GetArray("kd")), np.array([2, 4, 6]) / 100)
+        np.testing.assert_array_equal(vtk_to_numpy(tree.GetOutput().GetCellData().GetArray("kd")), np.array([2, 4, 6])
+                                      / 100)
 
     def test_offsets_and_point_ids_that_are_none(self):
         """Of the Material filter, too: without offsets VTK counts -1 cells."""
-        bad = {"beyond": [0, 3, 7], "down": [0, 5, 3, 6], "negative": [0, -3, 3, 6], "not from 0": [3, 6], "short": [0, 3], "none": []}
+        bad = {"beyond": [0, 3, 7], "down": [0, 5, 3, 6], "negative": [0, -3, 3, 6], "not from 0": [3, 6],
+               "short": [0, 3], "none": []}
         for bits in (np.int32, np.int64):
             for kind in KINDS:
                 for name, offsets in bad.items():
@@ -404,9 +430,11 @@ class Cells(Faults):
             for kind in ("Polys", "Strips"):
                 for point in (-1, 4):
                     with self.subTest(kind=kind, bits=bits, point=point):
-                        self.both_fail(wall(**{kind: raw_cells([0, 3], [0, 1, point], bits)}), "a cell has a point id outside 0 to 3")
+                        self.both_fail(wall(**{kind: raw_cells([0, 3], [0, 1, point], bits)}),
+                                       "a cell has a point id outside 0 to 3")
         for kind in KINDS:
-            self.fails(make("Material"), [wall(**{kind: raw_cells([], [0, 1, 2], np.int64)})], "Input port 0.*" + OFFSETS)
+            self.fails(make("Material"), [wall(**{kind: raw_cells([], [0, 1, 2], np.int64)})], "Input port 0.*"
+                       + OFFSETS)
 
     def test_arrays_of_other_layouts(self):
         """One array for each component, and single bits: the same scene as from arrays of the usual kind."""
@@ -433,7 +461,8 @@ class Cells(Faults):
     def test_materials_of_what_is_not_there(self):
         """Ghosts, lines and cells without triangles may have any: nothing is made of them."""
         data = with_materials(wall(TRIANGLES + ((0, 1), (0, 1, 2)), Lines=[(0, 1)]))
-        _cloud.add_array(data.GetCellData(), vtk.vtkDataSetAttributes.GhostArrayName(), np.array([0, 0, 0, 0, 1], np.uint8))
+        _cloud.add_array(data.GetCellData(), vtk.vtkDataSetAttributes.GhostArrayName(),
+                         np.array([0, 0, 0, 0, 1], np.uint8))
         for cell in (0, 3, 4):
             data.GetCellData().GetArray("kd").SetValue(cell, -1.0)
         self.assertEqual(self.warnings(make("CollisionTree"), [data]), [])

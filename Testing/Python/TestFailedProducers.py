@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What follows an execution that failed or was stopped: whoever is updated next says so, by the input port and the first error, and
-has no output; a file stays as it is; the next good input works. As VTK has it, and with errors as data, as ParaView has it."""
+"""What follows an execution that failed or was stopped: whoever is updated next says so, by the input port and the
+first error, and has no output; a file stays as it is; the next good input works. As VTK has it, and with errors as
+data, as ParaView has it."""
 import os
 
 import numpy as np
@@ -12,7 +13,8 @@ from avianlidar import vtkAvianLidar as al
 from avianlidar._paraview import Advisor
 from cloudtools import add_field, cloud
 from echotools import RAYS, InFolder, Messages, assert_same_bits, group, scan, sensor, town
-from faulttools import (CLASSES, SETTINGS, algorithms, copy_of, error_of, make, outputs, produced_beams, produced_echoes, produced_surfaces,
+from faulttools import (CLASSES, SETTINGS, algorithms, copy_of, error_of, make, outputs, produced_beams,
+                        produced_echoes, produced_surfaces,
                         size_of, writer)
 from scenetools import SHIPPED
 
@@ -69,7 +71,8 @@ class Producers(InFolder):
                     self.assertEqual(update(filter_), 1)
                     self.assertGreater(size_of(outputs(filter_)[0]), 0)
                     Messages(filter_)  # also what the executive says
-                    for spoil in (lambda: filter_.RemoveAllInputConnections(port), lambda: filter_.SetInputDataObject(port, vtk.vtkTable())):
+                    for spoil in (lambda: filter_.RemoveAllInputConnections(port),
+                                  lambda: filter_.SetInputDataObject(port, vtk.vtkTable())):
                         spoil()
                         if update(filter_):  # not every input has to be there
                             continue
@@ -105,9 +108,9 @@ class Producers(InFolder):
         self.assertEqual(found, {*FILTERS, *(name + "Writer" for name in cloudtools.WRITERS)})
 
     def test_an_error_upstream_is_not_an_empty_input(self):
-        """Plain, VTK does not execute what is downstream of a failure, whose outputs are empty at once; the second update says so, as VTK
-        considers what failed up to date. With errors as data one update executes the whole pipeline, and each algorithm says what is
-        wrong, once."""
+        """Plain, VTK does not execute what is downstream of a failure, whose outputs are empty at once; the second
+        update says so, as VTK considers what failed up to date. With errors as data one update executes the whole
+        pipeline, and each algorithm says what is wrong, once."""
         for name, ports in FILTERS.items():
             filter_, producers = pipeline(name)
             self.assertEqual(update(filter_), 1)
@@ -125,7 +128,8 @@ class Producers(InFolder):
                         self.assertEqual(len(upstream.errors), 1, upstream.errors)
                         self.assertIn(producers[port].words, upstream.errors[0])
                         if not as_data:
-                            self.assert_emptied(filter_, f"Input port {port}: its producer failed: ", producers[port].words)
+                            self.assert_emptied(filter_, f"Input port {port}: its producer failed: ",
+                                                producers[port].words)
                             self.assertEqual(messages.errors, [])
                             filter_.Modified()
                             self.assertEqual(update(filter_), 0)
@@ -140,8 +144,8 @@ class Producers(InFolder):
                         self.assertEqual(messages.errors, [])
 
     def test_the_first_error_of_a_chain(self):
-        """Each says it once, a filter of VTK between passes it on, and what was known is still known afterwards. In plain VTK all outputs
-        are empty at the first update, also of a second consumer."""
+        """Each says it once, a filter of VTK between passes it on, and what was known is still known afterwards. In
+        plain VTK all outputs are empty at the first update, also of a second consumer."""
         for as_data in (False, True):
             first, source, between = produced_surfaces(), produced_beams(), vtk.vtkMultiBlockDataGroupFilter()
             between.SetInputConnection(first.port)
@@ -172,7 +176,8 @@ class Producers(InFolder):
             for one in (other, colours):
                 self.assertEqual(update(one), 1)
                 self.assertGreater(size_of(outputs(one)[0]), 0)
-            self.assertEqual((colours.GetOutput().GetNumberOfPoints(), tree.GetNumberOfBuilds(), echo.GetNumberOfTracedRays()), (*known[:2], 0))
+            self.assertEqual((colours.GetOutput().GetNumberOfPoints(), tree.GetNumberOfBuilds(),
+                              echo.GetNumberOfTracedRays()), (*known[:2], 0))
 
     def test_a_failed_image_has_the_extent_that_it_promised(self):
         """VTK's imaging filters crash without it."""
@@ -187,7 +192,8 @@ class Producers(InFolder):
         self.assertEqual(shift.GetOutput().GetExtent(), (0, 35, 0, 1, 0, 0))
 
     def test_data_without_a_pipeline(self):
-        """The empty output of what failed, handed on by a script; as a block, also of blocks. A field `error` of the user's own is no error."""
+        """The empty output of what failed, handed on by a script; as a block, also of blocks. A field `error` of the
+        user's own is no error."""
         failing = produced_surfaces()
         failing.algorithm.ErrorsAsDataOn()
         heard = Messages(failing.algorithm)
@@ -213,7 +219,8 @@ class Producers(InFolder):
         Messages(failing.algorithm)
         advisor.SetInputConnection(0, given.port)
         advisor.SetInputConnection(1, failing.port)
-        for count, value, said in ((1, failing.good, "beams is 1, expected 50"), (50, -1.0, failing.words), (50, failing.good, "")):
+        for count, value, said in ((1, failing.good, "beams is 1, expected 50"), (50, -1.0, failing.words),
+                                   (50, failing.good, "")):
             advisor.SetSampleBeams(count)
             failing.set(value)
             advisor.Update()
@@ -272,8 +279,8 @@ class Producers(InFolder):
                 self.assertTrue(heard.errors)
 
     def test_aborts(self):
-        """Every algorithm hears it at the first progress and later: no error, and an empty output or the whole one. Without it all goes
-        on, and progress rises from 0 to 1."""
+        """Every algorithm hears it at the first progress and later: no error, and an empty output or the whole one.
+        Without it all goes on, and progress rises from 0 to 1."""
         good = writer("PCD")
         good.SetInputData(cloud(np.ones((50000, 3))))
         self.assertEqual(good.Write(), 1)

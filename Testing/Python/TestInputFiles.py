@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that are read: wrong scenes, damaged meshes, files on which libraries crash, never end or take all memory, pipes, devices,
-the network. Each is one error that names the file, the key and the fault, with an empty output, and the next good file is read."""
+"""Files that are read: wrong scenes, damaged meshes, files on which libraries crash, never end or take all memory,
+pipes, devices, the network. Each is one error that names the file, the key and the fault, with an empty output, and the
+next good file is read."""
 import base64
 import copy
 import ctypes
@@ -29,7 +30,8 @@ NO_FILE = "not a regular file"
 
 def collection(*features, **more):
     return json.dumps({"type": "FeatureCollection", "features": [
-        {"type": "Feature", "properties": p, "geometry": {"type": kind, "coordinates": c}} for kind, c, p in features], **more})
+        {"type": "Feature", "properties": p, "geometry": {"type": kind, "coordinates": c}} for kind, c, p in features],
+                       **more})
 
 
 def plan(**more):
@@ -38,13 +40,15 @@ def plan(**more):
 
 def gltf(children=((),), uri=None):
     """A triangle in the last node; `children`: of each node."""
-    uri = uri or "data:application/octet-stream;base64," + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
+    uri = uri or "data:application/octet-stream;base64," + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1,
+                                                                                        0)).decode()
     nodes = [{"children": list(c)} if c else {} for c in children]
     nodes[-1]["mesh"] = 0
     return json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes,
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                       "max": [1, 1, 0]}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": uri}]})
 
 
@@ -77,9 +81,11 @@ def grid(kind, points, faces=()):
         return array(name, " ".join(map(str, values)), type_)
 
     return xml("UnstructuredGrid", f'<Piece NumberOfPoints="{points}" NumberOfCells="1"><Points>'
-               + array("p", " ".join(f"{i % 3} {i // 3 % 3} {i // 9}" for i in range(points)), "Float64", 'NumberOfComponents="3"')
+               + array("p", " ".join(f"{i % 3} {i // 3 % 3} {i // 9}" for i in range(points)), "Float64",
+                       'NumberOfComponents="3"')
                + "</Points><Cells>" + numbers("connectivity", range(points)) + numbers("offsets", [points])
-               + numbers("types", [kind], "UInt8") + (numbers("faces", faces) + numbers("faceoffsets", [len(faces)]) if faces else "")
+               + numbers("types", [kind], "UInt8") + (numbers("faces", faces) + numbers("faceoffsets", [len(faces)])
+                                                      if faces else "")
                + "</Cells></Piece>")
 
 
@@ -90,12 +96,14 @@ def image(*counts):
 
 
 def blocks(content):
-    return f'<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>{content}</vtkMultiBlockDataSet></VTKFile>'
+    return ('<VTKFile type="vtkMultiBlockDataSet" '
+            f'version="1.0"><vtkMultiBlockDataSet>{content}</vtkMultiBlockDataSet></VTKFile>')
 
 
 def ply(faces, points="0 0 0\n1 0 0\n0 1 0\n"):
     count = faces.count("\n")
-    return ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+    return ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face "
             f"{count}\nproperty list uchar int vertex_indices\nend_header\n{points}{faces}")
 
 
@@ -109,16 +117,20 @@ MESHES = [
     ("torn.obj.gz", TORN[:len(TORN) // 2], "Assimp cannot read it"),
     ("nan.ply", ply("3 0 1 2\n", "0 0 0\nnan 0 0\n0 1 0\n"), "has a vertex whose coordinates are not finite"),
     ("far.ply", ply("4 0 1 2 99999999\n"), "is broken: a face has vertex 99999999 of 3"),
-    ("endless.ply", ply("").split("property float y")[0] + "comment end_header\n0\n0\n", "is broken: its header has no line end_header"),
+    ("endless.ply", ply("").split("property float y")[0] + "comment end_header\n0\n0\n",
+     "is broken: its header has no line end_header"),
     ("short.ply", ply("3 0 1 2\n" * 3)[:-8], "is cut short"),
     ("points.ply", ply("3 0 1 2\n").replace("vertex 3", "vertex 9"), "is cut short"),
     ("index.ply", ply("3 0 1 2\n3 0 1\n"), "is cut short or damaged: row 2 of an element has 3 numbers, expected 4"),
     ("text.obj", "v 1 2 abc\n" + TRIANGLE, 'line 1 is "v 1 2 abc", expected a vertex with three coordinates'),
     ("commas.obj", TRIANGLE.replace("v 0 0 0", "v 0,5 +1e-400 .5 \\\n").replace("v 1 0 0", "v 1,5 0 0#"), None),
     ("broken.vtp", "<VTKFile type='PolyData'", "VTK cannot read it"),
-    ("strip.vtk", legacy("POLYDATA", POINTS + "TRIANGLE_STRIPS 1 3\n2 0 1\n"), "is broken: a vtkTriangleStrip has 2 points"),
-    ("axis.vtk", legacy("RECTILINEAR_GRID", AXES.replace("2 2 2", "2 3 2")), "is broken: an axis has 2 coordinates, expected 3"),
-    ("grid.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 2 2 2\n" + POINTS), "is broken: a grid of 2 x 2 x 2 has 3 points"),
+    ("strip.vtk", legacy("POLYDATA", POINTS + "TRIANGLE_STRIPS 1 3\n2 0 1\n"),
+     "is broken: a vtkTriangleStrip has 2 points"),
+    ("axis.vtk", legacy("RECTILINEAR_GRID", AXES.replace("2 2 2", "2 3 2")),
+     "is broken: an axis has 2 coordinates, expected 3"),
+    ("grid.vtk", legacy("STRUCTURED_GRID", "DIMENSIONS 2 2 2\n" + POINTS),
+     "is broken: a grid of 2 x 2 x 2 has 3 points"),
     ("far.vtk", legacy("POLYDATA", WHOLE.replace("3 0 1 2", "3 5 1 2")), IDS + "2"),
     ("cell.vtk", legacy("UNSTRUCTURED_GRID", POINTS + "CELLS 1 4\n3 0 1 3\nCELL_TYPES 1\n5\n"), IDS + "2"),
     ("line.vtu", grid(4, 1), "is broken: a vtkPolyLine has 1 points"),
@@ -127,7 +139,8 @@ MESHES = [
     ("polyhedron.vtu", grid(42, 3, [0]), "is broken: a vtkPolyhedron has 3 points"),
     ("nofaces.vtu", grid(42, 4, [0]), "is broken: a polyhedron's faces are missing"),
     ("three.vtu", grid(42, 4, [3, 3, 0, 1, 2, 3, 0, 1, 3, 3, 1, 2, 3]), "is broken: a polyhedron has 3 faces"),
-    ("edges.vtu", grid(42, 4, [4, 3, 0, 1, 2, 2, 0, 1, 3, 1, 2, 3, 3, 0, 2, 3]), "is broken: a face of a polyhedron has 2 points"),
+    ("edges.vtu", grid(42, 4, [4, 3, 0, 1, 2, 2, 0, 1, 3, 1, 2, 3, 3, 0, 2, 3]),
+     "is broken: a face of a polyhedron has 2 points"),
     ("faces.vtu", grid(42, 4, [4, 3, 0, 1, 2, 3, 0, 1, 4, 3, 1, 2, 3, 3, 0, 2, 3]), IDS + "3"),
     ("lagrange.vtu", grid(70, 7), "has cells of type 70, of variable order"),
     # Nested or in a circle: the stack of the program that reads.
@@ -176,7 +189,8 @@ VALUES = [
     (["materials", "Grass", "kd"], MISSING, "materials.Grass.kd: is missing"),
     (["materials", "Grass", "ks"], 0.9, "materials.Grass: kd + ks is 1.1"),
     (["materials", "GRASS"], {"kd": 0.1}, "materials.GRASS: this material is already in the scene"),
-    (["material_map", "*"], "velvet", 'material_map.*: unknown material "velvet"; known: Wall, Glass, Metal, Wood, Grass'),
+    (["material_map", "*"], "velvet", 'material_map.*: unknown material "velvet"; known: Wall, Glass, Metal, Wood, '
+                                      'Grass'),
     (["objects", 0, "file"], "nowhere.obj", "objects[0].file: there is no file "),
     (["objects", 0, "file"], MISSING, "objects[0]: must have one of file, footprints, ground"),
     (["objects", 0, "footprints"], "plan.geojson", "objects[0]: must have one of file"),
@@ -190,7 +204,8 @@ VALUES = [
     (["objects", 0, "up_axis"], "x", 'objects[0].up_axis: must be "y" or "z"'),
     (["objects", 0, "crs"], "EPSG:0", 'unknown coordinate reference system "EPSG:0"'),
     (["objects", 0, "name"], "", "objects[0].name: must not be empty"),
-    (["objects", 0], {"file": "triangle.obj", "crs": "EPSG:4326", "position": [0, 95, 0]}, "triangle.obj: coordinates lie outside"),
+    (["objects", 0], {"file": "triangle.obj", "crs": "EPSG:4326", "position": [0, 95, 0]},
+     "triangle.obj: coordinates lie outside"),
     (["objects", 1, "height"], MISSING, "objects[1]: footprints need height or height_attribute, or flat"),
     (["objects", 1], {"footprints": "plan.geojson", "height_attribute": "height"}, "has no usable height"),
     (["objects", 1, "height"], -3, "objects[1].height: must be greater than 0"),
@@ -212,8 +227,10 @@ TEXTS = [
     ('{"version": NaN, "objects": []}', "is not JSON"),
     ('{"version": 1, "version": 1}', 'the key "version" stands twice'),
     ("[1, 2]", "the whole: must be an object"),
-    ('{"version": 1, "objects": [{"file": "triangle.obj", "crs": "EPSG:32631"}]}', "objects[0].crs: needs the scene's origin"),
-    ('{"version": 1, "objects": [{"file": "triangle.obj", "geodetic": %s}]}' % json.dumps(ORIGIN), "objects[0].geodetic: needs the scene's origin"),
+    ('{"version": 1, "objects": [{"file": "triangle.obj", "crs": "EPSG:32631"}]}',
+     "objects[0].crs: needs the scene's origin"),
+    ('{"version": 1, "objects": [{"file": "triangle.obj", "geodetic": %s}]}' % json.dumps(ORIGIN),
+     "objects[0].geodetic: needs the scene's origin"),
     ('{"version":1,"comment":' + "[" * DEEP + "]" * DEEP + ',"objects":[]}', "is nested more than 100 deep"),
     ('{"version":1,"objects":' + "[" * DEEP, "is nested more than 100 deep"),
 ]
@@ -256,7 +273,8 @@ class Contents(Inputs):
         table = []
         for name, content, words in MESHES:
             file = self.save(name, content)
-            table.append((self.scene({"file": name}), words if words in (None, True) else f"objects[0].file: {file}: {words}"))
+            table.append((self.scene({"file": name}), words if words in (None, True)
+                          else f"objects[0].file: {file}: {words}"))
         self.assert_said(table)
 
     def test_values_of_scenes(self):
@@ -264,14 +282,16 @@ class Contents(Inputs):
         read = st.Read(st.write_scene(str(self.folder), "whole", WHOLE_SCENE))
         self.assertEqual((read.errors, read.names), ([], ["triangle", "plan", "Ground"]))
         cases = [(replaced(path, value), words) for path, value, words in [*wrong_types(WHOLE_SCENE), *VALUES]] + TEXTS
-        table = [(st.write_scene(str(self.folder), f"bad{i}", content), words) for i, (content, words) in enumerate(cases)]
+        table = [(st.write_scene(str(self.folder), f"bad{i}", content), words)
+                 for i, (content, words) in enumerate(cases)]
         self.assert_said([*table, (str(self.folder / "none.lidarscene.json"), "cannot be opened")])
         self.assertIn("FileName is not set", "".join(st.Read(None).errors))
 
     def test_a_scale_that_leaves_nothing_warns(self):
         for scale, warned in ((1e-200, True), ([1, 1e-30, 1], True), (1e-6, False)):
             read = st.Read(self.scene({"file": "triangle.obj", "scale": scale}))
-            self.assertEqual((read.errors, "triangle: all 1 triangles are points or lines" in " ".join(read.warnings)), ([], warned))
+            self.assertEqual((read.errors, "triangle: all 1 triangles are points or lines" in " ".join(read.warnings)),
+                             ([], warned))
 
     def test_footprints_nested_deep(self):
         feature = '{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"a":%s},"geometry":%s}]}'
@@ -280,16 +300,19 @@ class Contents(Inputs):
         for i, text in enumerate(("[" * DEEP + "]" * DEEP, feature % ("[" * DEEP + "]" * DEEP, square),
                                   feature % (1, inner * CHAIN + square + "]}" * CHAIN))):
             self.save(f"{i}.geojson", text)
-        self.assert_said([(self.scene({"footprints": f"{i}.geojson", "height": 3}), "GDAL cannot read it") for i in range(3)])
+        self.assert_said([(self.scene({"footprints": f"{i}.geojson", "height": 3}), "GDAL cannot read it")
+                          for i in range(3)])
 
     def test_compressed_files_that_hold_very_much(self):
-        """Each by its own limit, before the memory is full or a reader is busy; the same content that is not packed is read."""
+        """Each by its own limit, before the memory is full or a reader is busy; the same content that is not packed is
+        read."""
         def packed(name, unit, count, start=b"", end=b""):
             return self.save(name, gzip.compress(start + unit * count + end, 6))
 
         zeros, many = b"[0,0,0],", 8_000_000
         city = b'{"type":"CityJSON","version":"1.1","CityObjects":{},"vertices":['
-        line = b'{"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":['
+        line = (b'{"type":"FeatureCollection","features":[{"type":"Feature","properties":{},'
+                b'"geometry":{"type":"LineString","coordinates":[')
         for name in ("city.json.gz", "unknown.gz"):
             packed(name, zeros, many, city, b"[0,0,0]]}")
         for name in ("plan2.geojson.gz", "plan2.kml.gz"):
@@ -298,13 +321,16 @@ class Contents(Inputs):
         packed("wall.stl.gz", bytes(84), 600_000)
         words = "bytes hold more than 100 times as many once decompressed"
         start = time.monotonic()
-        self.assert_said([(self.scene({"footprints": name, "height": 3}), words) for name in ("plan2.geojson.gz", "plan2.kml.gz", "city.json.gz")]
-                         + [(self.scene({"file": name}), words) for name in ("city.json.gz", "unknown.gz", "points.obj.gz", "wall.stl.gz")])
+        self.assert_said([(self.scene({"footprints": name, "height": 3}), words)
+                          for name in ("plan2.geojson.gz", "plan2.kml.gz", "city.json.gz")]
+                         + [(self.scene({"file": name}), words)
+                            for name in ("city.json.gz", "unknown.gz", "points.obj.gz", "wall.stl.gz")])
         self.assertLess(time.monotonic() - start, 60.0)
         from avianlidar.apps.inputs import _read as _inputs  # not in the processes with limits
         for name in ("plan.coverage.json", "cloud.csv"):
             with self.assertRaisesRegex(avianlidar.Error, name + ": holds more than [0-9]+ MiB, which is too much"):
-                (_inputs.read_plan if "json" in name else avianlidar.load_cloud)(packed(name, zeros, many, b'{"a":[', b"0]}"))
+                (_inputs.read_plan if "json" in name else avianlidar.load_cloud)(packed(name, zeros, many, b'{"a":[',
+                                                                                        b"0]}"))
         # 15 MiB of comments are 300 times smaller, and no bomb.
         packed("comments.obj.gz", b"# nothing\n", 1_500_000, end=TRIANGLE.encode())
         self.assertEqual(st.Read(self.scene({"file": "comments.obj.gz"})).errors, [])
@@ -340,7 +366,8 @@ class Contents(Inputs):
 
 
 class Places(Inputs):
-    """Regular files of any folder are read, and nothing else: no pipe, which would wait for ever, no device, which would not end."""
+    """Regular files of any folder are read, and nothing else: no pipe, which would wait for ever, no device, which
+    would not end."""
 
     def make(self, kind, name):
         if kind == "pipe":
@@ -373,7 +400,8 @@ class Places(Inputs):
             table.append((self.scene({"footprints": kind + "2.geojson", "height": 3}), NO_FILE))
         # Grids of a reference system.
         os.mkfifo("grid")
-        for crs in (f"+proj=longlat +nadgrids=@{self.folder}/grid +type=crs", f"+proj=longlat +geoidgrids={self.folder}/grid"):
+        for crs in (f"+proj=longlat +nadgrids=@{self.folder}/grid +type=crs",
+                    f"+proj=longlat +geoidgrids={self.folder}/grid"):
             for thing in ({"footprints": "plan.geojson", "height": 3}, {"file": "triangle.obj"}):
                 table.append((self.scene({**thing, "crs": crs}), "grid"))
         self.assert_said(table)
@@ -395,22 +423,25 @@ class Places(Inputs):
     def files_that_ask(self, url):
         """Files by name, and the object of a scene that uses each."""
         doctype = f'<!DOCTYPE x SYSTEM "{url}/x.dtd">'
-        vrt = "<OGRVRTDataSource><OGRVRTLayer name='plan'><SrcDataSource>{}</SrcDataSource>{}</OGRVRTLayer></OGRVRTDataSource>"
+        vrt = ("<OGRVRTDataSource><OGRVRTLayer name='plan'>"
+               "<SrcDataSource>{}</SrcDataSource>{}</OGRVRTLayer></OGRVRTDataSource>")
 
-        gml = (f'<?xml version="1.0" encoding="ISO-8859-15"?>{doctype}<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/" '
+        gml = (f'<?xml version="1.0" encoding="ISO-8859-15"?>{doctype}<ogr:FeatureCollection '
+               'xmlns:ogr="http://ogr.maptools.org/" '
                'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:xlink="http://www.w3.org/1999/xlink" '
                f'xsi:schemaLocation="http://ogr.maptools.org/ {url}/x.xsd" xmlns:gml="http://www.opengis.net/gml">'
-               f'<gml:featureMember><ogr:x fid="1"><ogr:geometryProperty xlink:href="{url}/x.xml#1"><gml:Polygon srsName="{url}/crs">'
-               '<gml:outerBoundaryIs><gml:LinearRing><gml:coordinates>0,0 0.001,0 0.001,0.001 0,0</gml:coordinates></gml:LinearRing>'
-               '</gml:outerBoundaryIs></gml:Polygon></ogr:geometryProperty></ogr:x></gml:featureMember></ogr:FeatureCollection>')
+               f'<gml:featureMember><ogr:x fid="1"><ogr:geometryProperty xlink:href="{url}/x.xml#1">'
+               f'<gml:Polygon srsName="{url}/crs"><gml:outerBoundaryIs><gml:LinearRing>'
+               '<gml:coordinates>0,0 0.001,0 0.001,0.001 0,0</gml:coordinates></gml:LinearRing></gml:outerBoundaryIs>'
+               '</gml:Polygon></ogr:geometryProperty></ogr:x></gml:featureMember></ogr:FeatureCollection>')
         plans = {
             "link.geojson": plan(crs={"type": "link", "properties": {"href": url + "/crs", "type": "proj4"}}),
             "source.vrt": vrt.format(f"/vsicurl/{url}/x.geojson", ""),
             "system.vrt": vrt.format("plan.geojson", f"<LayerSRS>{url}/crs</LayerSRS>"),
             "wfs.xml": f"<OGRWFSDataSource><URL>{url}/wfs</URL></OGRWFSDataSource>",
             "types.gml": gml,
-            "link.kml": f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document><NetworkLink><Link><href>{url}/x.kml</href></Link>'
-                        "</NetworkLink></Document></kml>"}
+            "link.kml": '<kml xmlns="http://www.opengis.net/kml/2.2"><Document><NetworkLink>'
+                        f"<Link><href>{url}/x.kml</href></Link></NetworkLink></Document></kml>"}
         meshes = {
             "m1.obj": f"mtllib /vsicurl/{url}/x.mtl\n" + TRIANGLE, "m2.gltf": gltf(uri=url + "/b.bin"),
             "m4.vtm": blocks(f'<DataSet index="0" file="{url}/x.vtp"/>')}
@@ -455,7 +486,8 @@ class Places(Inputs):
         with open("/proc/self/maps", encoding="utf-8") as maps:
             gdal = ctypes.CDLL(next(line.split()[-1] for line in maps if "libgdal" in line))
         gdal.CPLGetThreadLocalConfigOption.restype = ctypes.c_char_p
-        options = {b"CPL_VSIL_CURL_ALLOWED_FILENAME": b"mine", b"CPL_VSIL_GZIP_SAVE_INFO": None, b"CPL_VSIL_GZIP_WRITE_PROPERTIES": b"YES"}
+        options = {b"CPL_VSIL_CURL_ALLOWED_FILENAME": b"mine", b"CPL_VSIL_GZIP_SAVE_INFO": None,
+                   b"CPL_VSIL_GZIP_WRITE_PROPERTIES": b"YES"}
         for name, value in options.items():
             gdal.CPLSetThreadLocalConfigOption(name, value)
             self.addCleanup(gdal.CPLSetThreadLocalConfigOption, name, None)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that the package and the applications write: whole or not at all, in pairs too, with an error that names the file. Permissions,
-links, and folders and devices stay. Parts of a killed process are removed at the next writing."""
+"""Files that the package and the applications write: whole or not at all, in pairs too, with an error that names the
+file. Permissions, links, and folders and devices stay. Parts of a killed process are removed at the next writing."""
 import contextlib
 import errno
 import os
@@ -32,7 +32,8 @@ PLACE, ORIGIN = ((0, 0), (1, 1)), (0.0, 0.0, 0.0)
 # Files of the applications, and how they are written.
 MAPS = {
     "map.tif": lambda _, file: _maps.write_geotiff(file, NOISE, *PLACE, ORIGIN, "p"),
-    "status.tif": lambda _, file: _maps.write_geotiff(file, (9 * NOISE).astype(int), *PLACE, None, "s", "", list("abcdefghi")),
+    "status.tif": lambda _, file: _maps.write_geotiff(file, (9 * NOISE).astype(int), *PLACE, None, "s", "",
+                                                      list("abcdefghi")),
     "areas.geojson": lambda folder, file: _maps.write_areas(file, folder / "from.tif", "words"),
     "table.csv": lambda _, file: _maps.write_table(file, [{"value": i} for i in range(9000)]),
     "picture.png": lambda _, file: draw(file, (4, 4), lambda axes: axes.imshow(NOISE))}
@@ -173,7 +174,8 @@ class Single(Written):
         for name in ALL:
             with self.subTest(name):
                 os.symlink("missing/other-" + name, "missing-" + name)
-                missing = rf"No such file or directory: '?(/.*/)?missing-{name}(\.aux\.xml)?'?\Z|missing-{name}: .*No such file or directory\.\Z"
+                missing = (rf"No such file or directory: '?(/.*/)?missing-{name}(\.aux\.xml)?'?\Z|missing-{name}: "
+                           r".*No such file or directory\.\Z")
                 self.refused("missing-" + name, missing)
                 os.symlink("other-" + name, name)
                 self.save(name)
@@ -215,7 +217,8 @@ class Single(Written):
         self.assertEqual(os.listdir(), ["b.bin"])
 
     def test_a_disk_that_is_too_small(self):
-        """For the first byte, for some of them, for the last one: an error, the old file and nothing else, whatever lies beside it."""
+        """For the first byte, for some of them, for the last one: an error, the old file and nothing else, whatever
+        lies beside it."""
         beside = pathlib.Path("status.tif.aux.xml")
         self.save("status.tif")
         beside.write_text("good")
@@ -285,7 +288,8 @@ class Pairs(Written):
         (self.folder / "real" / "a.label").write_bytes(b"old")
         os.symlink("real/a.bin", "echoes.bin")
         self.assertEqual(self.kitti()[0].Write(), 1)
-        self.assertEqual((sorted(os.listdir()), sorted(os.listdir("real"))), (["echoes.bin", "real"], ["a.bin", "a.label"]))
+        self.assertEqual((sorted(os.listdir()), sorted(os.listdir("real"))),
+                         (["echoes.bin", "real"], ["a.bin", "a.label"]))
         self.assertEqual((self.folder / "real" / "a.label").stat().st_size, 4 * self.data.GetNumberOfPoints())
         self.assertIn("semantic_label", al.load_cloud("echoes.bin"))
 

@@ -140,7 +140,8 @@ def ifc(points, faces):
 
 # The box in formats that are text, or bytes.
 MESHES = {"box.obj": obj(CORNERS, TRIANGLES), "box.stl": stl(CORNERS, TRIANGLES), "box.ply": ply(CORNERS, TRIANGLES),
-          "box.gltf": gltf(y_up(CORNERS) - [0.5, 0, 0], TRIANGLES), "z.dae": collada(CORNERS, TRIANGLES, "Z_UP"), "box.ac": ac3d(y_up(CORNERS), TRIANGLES),
+          "box.gltf": gltf(y_up(CORNERS) - [0.5, 0, 0], TRIANGLES), "z.dae": collada(CORNERS, TRIANGLES, "Z_UP"),
+          "box.ac": ac3d(y_up(CORNERS), TRIANGLES),
           "box.3ds": three_ds(CORNERS, TRIANGLES)}
 MESHES = {name: content if isinstance(content, bytes) else content.encode() for name, content in MESHES.items()}
 MESHES["packed.obj.gz"] = gzip.compress(MESHES["box.obj"], mtime=0)

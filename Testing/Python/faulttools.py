@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of faults share: each class with producers of small inputs that are good, what it reads of them, and how that is
-spoilt."""
+"""What the tests of faults share: each class with producers of small inputs that are good, what it reads of them, and
+how that is spoilt."""
 import contextlib
 import resource
 
@@ -40,7 +40,8 @@ def outputs(algorithm):
 
 
 def size_of(data):
-    return sum(data.GetNumberOfElements(kind) for kind in (vtk.vtkDataObject.POINT, vtk.vtkDataObject.CELL, vtk.vtkDataObject.ROW))
+    return sum(data.GetNumberOfElements(kind) for kind in (vtk.vtkDataObject.POINT, vtk.vtkDataObject.CELL,
+                                                           vtk.vtkDataObject.ROW))
 
 
 def error_of(data):
@@ -84,7 +85,8 @@ SPOILERS = {
 
 
 def spoil(data, where, name, how):
-    """A copy with that array, or the points, changed: a key of SPOILERS, "missing", or a value (or tuple) for one element."""
+    """A copy with that array, or the points, changed: a key of SPOILERS, "missing", or a value (or tuple) for one
+    element."""
     data = copy_of(data)
     if where == "points":
         data.GetPoints().SetPoint(PLACE_OF_VALUE, how, 0, 0)
@@ -116,24 +118,31 @@ FINITE = ARRAY + (NAN, INF)
 WHOLE = FINITE + (0.5, 1e300)
 ONE = ("text", "two", NAN, INF)
 LIMITS = {
-    "half_beamwidth": (0.0, -1e-3, 1.05, "missing"), "half_beamwidth_across": (0.2,), "beam_outline": (2,), "beam_rotation": (),
-    "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2), "pulse_energy": (0.0, 1e200, "missing"),
-    "pulse_width": (-1e-9, 1e-5, "missing"), "frequency": (0.0, "missing"), "sampling_interval": (0.0, 1e300, "missing"),
-    "range_gate": (0.0, 1e17, "missing"), "noise_photon_rate": (-1.0, "missing"), "lower_energy_limit": (-1e-9, "missing"),
+    "half_beamwidth": (0.0, -1e-3, 1.05, "missing"), "half_beamwidth_across": (0.2,), "beam_outline": (2,),
+    "beam_rotation": (),
+    "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2),
+    "pulse_energy": (0.0, 1e200, "missing"),
+    "pulse_width": (-1e-9, 1e-5, "missing"), "frequency": (0.0, "missing"),
+    "sampling_interval": (0.0, 1e300, "missing"),
+    "range_gate": (0.0, 1e17, "missing"), "noise_photon_rate": (-1.0, "missing"),
+    "lower_energy_limit": (-1e-9, "missing"),
     "upper_energy_limit": (1e-6, "missing"), "receiver_aperture": (-1.0, "missing"), "display_length": (-1.0,),
     "revolution": (0.5, 1e300)}
 CLASS_NAMES = ("field", "object_classes", ("numbers",))
 NAMED = ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))
 OF_BEAMS = [("points", "position", (NAN, 1.1e30)), ("point", "direction", FINITE + ((0, 0, 0), "missing")),
-            ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE + (-1, "twice")), ("point", "laser_id", WHOLE),
+            ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE + (-1, "twice")),
+            ("point", "laser_id", WHOLE),
             ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "timestamp", FINITE)]
 OF_BEAMS += [("field", name, ONE + values) for name, values in LIMITS.items()]
 OF_SURFACES = [("points", "point", (NAN, INF, 1e31)), ("cell", "object_id", WHOLE), ("cell", "material_id", WHOLE),
-               ("cell", "kd", FINITE + (-0.1,)), ("cell", "ks", FINITE + (0.99, "missing")), ("cell", "kp", FINITE + (2e6,)),
+               ("cell", "kd", FINITE + (-0.1,)), ("cell", "ks", FINITE + (0.99, "missing")),
+               ("cell", "kp", FINITE + (2e6,)),
                CLASS_NAMES, *NAMED]
 OF_REPORT = [("point", name, ("text", "wide", "short", 0.5, NAN)) for name in (
     "beam_id", "laser_id", "status", "skipped", "candidates", "nodes_visited", "rays_traced")]
-OF_REPORT += [("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE + ("missing",)), ("point", "skipped_bound", ARRAY)]
+OF_REPORT += [("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE + ("missing",)),
+              ("point", "skipped_bound", ARRAY)]
 ORIGIN_READ = ("field", "geodetic_origin", ("text", "two", "short", NAN))
 PLACE = [("field", "position", ("text", "two", NAN)), ("field", "orientation", ("text", "two", NAN))]
 
@@ -174,9 +183,11 @@ def produced_scan(port=0):
 def produced_echoes(**fields):
     """Of a scene with an origin and classes."""
     blocks = town()
-    for name, values in {"geodetic_origin": ORIGIN, "object_classes": ["terminal", "ground", "runway", "fence", "no such word"] * 8, **fields}.items():
+    for name, values in {"geodetic_origin": ORIGIN, "object_classes": ["terminal", "ground", "runway", "fence",
+                                                                       "no such word"] * 8, **fields}.items():
         add_field(blocks, name, values)
-    source = given(sensor(), Position=(10.0, 20.0, 3.0), Orientation=(30.0, 2.0, 1.0), HalfBeamwidth=0.03)  # wide, for several returns
+    # wide, for several returns
+    source = given(sensor(), Position=(10.0, 20.0, 3.0), Orientation=(30.0, 2.0, 1.0), HalfBeamwidth=0.03)
     return Producer(scan(blocks, source, **SETTINGS), "AttenuationCoefficient", 3.5e-5, "AttenuationCoefficient")
 
 
@@ -187,17 +198,20 @@ def produced_trails():
 NOTHING = ()
 OF_IMAGE = [("point", name, ways + ("missing",)) for name, ways in (
     ("beam_id", WHOLE), ("energy_received", FINITE), ("distance_m", FINITE), ("energy", FINITE), ("object_id", WHOLE))]
-# Every class with inputs: its name, properties, the producers of its inputs and what it reads of each. A later class is a row.
+# Every class with inputs: its name, properties, the producers of its inputs and what it reads of each. A later class is
+# a row.
 CLASSES = [
     ("EchoFilter", {}, (produced_beams, OF_BEAMS), (produced_surfaces, OF_SURFACES)),
     ("CollisionTree", {}, (produced_surfaces, OF_SURFACES)),
     ("Material", {}, (produced_surfaces, OF_SURFACES[-2:])),
     ("RangeImage", {"Columns": 36, "Rows": 2}, (produced_scan, OF_IMAGE), (lambda: produced_scan(1), OF_REPORT)),
-    ("HSBColorMap", {}, (produced_scan, [("point", "energy", ARRAY), ("field", "lower_energy_limit", ONE), ("field", "upper_energy_limit", ONE)])),
+    ("HSBColorMap", {}, (produced_scan, [("point", "energy", ARRAY), ("field", "lower_energy_limit", ONE),
+                                         ("field", "upper_energy_limit", ONE)])),
     ("GeodeticTransform", {}, (produced_echoes, [ORIGIN_READ])),
     ("CloudComparison", {}, (produced_scan, NOTHING), (produced_echoes, NOTHING)),
     # A cloud of a time is the same scan when it is executed again.
-    ("Tracker", {}, (lambda: produced_echoes(TimeValue=(3.0,)), [("point", "timestamp", FINITE), ("field", "half_beamwidth", ONE)])),
+    ("Tracker", {}, (lambda: produced_echoes(TimeValue=(3.0,)),
+                     [("point", "timestamp", FINITE), ("field", "half_beamwidth", ONE)])),
     ("ClutterFilter", {}, (produced_echoes, [PLACE[0]])),
     ("UnitNames", {}, (produced_echoes, NOTHING)),
     ("BeamView", {"BeamId": 9}, (produced_beams, NOTHING), (produced_surfaces, NOTHING)),
@@ -205,19 +219,25 @@ CLASSES = [
     ("Medium", {"Shape": al.vtkAvianLidarMedium.SHAPE_SURFACE}, (produced_surfaces, NOTHING)),
     ("Tracks", {"Pattern": al.vtkAvianLidarTracks.PATTERN_LINES}, (produced_trails, NOTHING)),
     ("LASWriter", {}, (produced_echoes, [
-        ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE), ("point", "number_of_returns", WHOLE),
-        ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE), ("point", "object_id", WHOLE), ("point", "energy", ARRAY), CLASS_NAMES,
+        ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE),
+        ("point", "number_of_returns", WHOLE),
+        ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE), ("point", "object_id", WHOLE),
+        ("point", "energy", ARRAY), CLASS_NAMES,
         ORIGIN_READ])),
     ("KITTIWriter", {}, (produced_echoes, [
-        ("points", "point", (1e39, NAN)), ("point", "intensity", FINITE), ("point", "object_id", WHOLE), CLASS_NAMES, *PLACE])),
+        ("points", "point", (1e39, NAN)), ("point", "intensity", FINITE), ("point", "object_id", WHOLE), CLASS_NAMES,
+        *PLACE])),
     ("KITTIWriter", {"LabelSource": 1}, (produced_echoes, [("point", "material_id", WHOLE)])),
     ("PCDWriter", {"Organisation": 1}, (produced_echoes, [
-        ("points", "point", (1e39,)), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE), ("point", "energy_received", FINITE),
+        ("points", "point", (1e39,)), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE),
+        ("point", "energy_received", FINITE),
         ("point", "intensity", ARRAY), *PLACE, ("field", "azimuth_range", ("text", "two")),
-        *(("field", name, ONE) for name in ("number_of_channels", "azimuth_step", "minimum_elevation", "elevation_step"))])),
+        *(("field", name, ONE) for name in ("number_of_channels", "azimuth_step", "minimum_elevation",
+                                            "elevation_step"))])),
     ("PLYWriter", {}, (produced_echoes, [("points", "point", (1e39,)), ("point", "energy", ("short",))])),
     ("GeoJSONWriter", {}, (produced_echoes, [
-        ("point", "energy", FINITE + ("missing",)), ("point", "object_id", WHOLE), ("point", "material_id", WHOLE), ORIGIN_READ,
+        ("point", "energy", FINITE + ("missing",)), ("point", "object_id", WHOLE), ("point", "material_id", WHOLE),
+        ORIGIN_READ,
         ("field", "lower_energy_limit", ONE), CLASS_NAMES, *NAMED]))]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of files and of what must be said of them. A process with limits opens each file, as files may crash libraries, never end or
-take all memory. An error must hold in all ways: of the reader, of the reader with errors as data, of the filter behind it, and of the
-Python package; then the same reader reads a good file."""
+"""Tables of files and of what must be said of them. A process with limits opens each file, as files may crash
+libraries, never end or take all memory. An error must hold in all ways: of the reader, of the reader with errors as
+data, of the filter behind it, and of the Python package; then the same reader reads a good file."""
 import functools
 import json
 import os
@@ -26,7 +26,8 @@ STACK = 8 << 20
 SECONDS = 240  # for all files of one process; then the file that is being read counts as one that never ends
 GOOD = {"good.lidarscene.json": json.dumps({"version": 1, "objects": [{"file": "good.obj", "material": "Wall"}]}),
         "good.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-        "good.pcd": "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3\n"}
+        "good.pcd": "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n"
+                    "1 2 3\n"}
 
 
 @functools.cache
@@ -43,7 +44,8 @@ def words_of(message):
     return re.sub("0x[0-9a-f]+", "0x", re.sub(r"\AERROR: .*\n.* \(0x[0-9a-f]+\): ", "", message).strip())
 
 
-# Readers by the ending of their files: the filter behind, how the package reads such a file, and a good file. A later reader is a row.
+# Readers by the ending of their files: the filter behind, how the package reads such a file, and a good file. A later
+# reader is a row.
 READERS = {".json": ("SceneReader", "CollisionTree", avianlidar.Scene, "good.lidarscene.json"),
            ".txt": ("SequenceReader", "UnitNames", None, None),
            **dict.fromkeys(_suffixes.READERS, ("PointCloudReader", "UnitNames", avianlidar.load_cloud, "good.pcd"))}
@@ -51,7 +53,8 @@ OTHERS = "PointCloudReader", "UnitNames", None, "good.pcd"
 
 
 def said_of(item):
-    """Errors, the size of the output without them, and what does not hold beside. @param item a file that is read, or a command"""
+    """Errors, the size of the output without them, and what does not hold beside. @param item a file that is read, or a
+    command"""
     if isinstance(item, list):
         status, _, error = helpertools.run(*item)
         return error.splitlines(), int(status != 2), []
@@ -109,9 +112,12 @@ class Table(unittest.TestCase):
         said = []
         while len(said) < len(items):
             try:
-                text = subprocess.run([sys.executable, os.path.abspath(__file__)], preexec_fn=limit, text=True, errors="replace", check=False,
-                                      input="".join(json.dumps(item) + "\n" for item in items[len(said):]), stdout=subprocess.PIPE,
-                                      env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES}, stderr=subprocess.DEVNULL, timeout=SECONDS).stdout
+                text = subprocess.run([sys.executable, os.path.abspath(__file__)], preexec_fn=limit, text=True,
+                                      errors="replace", check=False,
+                                      input="".join(json.dumps(item) + "\n" for item in items[len(said):]),
+                                      stdout=subprocess.PIPE,
+                                      env={**os.environ, "AVIANLIDAR_MESH_GIGABYTES": MESH_GIGABYTES},
+                                      stderr=subprocess.DEVNULL, timeout=SECONDS).stdout
             except subprocess.TimeoutExpired as late:
                 text = (late.stdout or b"").decode()
             said += [json.loads(line) for line in text.splitlines() if line.startswith("[")]
@@ -119,8 +125,8 @@ class Table(unittest.TestCase):
         return said
 
     def assert_said(self, table):
-        """@param table rows of a file and the words of the one error, which names the file, or of a command (a list) and their pattern;
-        None: any error, or one triangle; True: it is sound"""
+        """@param table rows of a file and the words of the one error, which names the file, or of a command (a list)
+        and their pattern; None: any error, or one triangle; True: it is sound"""
         for (item, words), answer in zip(table, self.read([item for item, _ in table])):
             with self.subTest(item if isinstance(item, list) else os.path.basename(item), words=words):
                 self.assertIsNotNone(answer, "it ended the process, or it is waited for")
@@ -152,7 +158,8 @@ class Files(InFolder, Table):
         """A scene file of objects."""
         self.scenes += 1
         return st.write_scene(str(self.folder), f"scene{self.scenes}", {
-            "version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "material_map": {"*": "Wall"}, "objects": list(objects)})
+            "version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "material_map": {"*": "Wall"},
+            "objects": list(objects)})
 
 
 if __name__ == "__main__":
