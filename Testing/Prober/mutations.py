@@ -7,16 +7,15 @@ import re
 import struct
 
 EXTREMES = [str(x).encode() for x in (0, -1, 1, 2**31, -(2**31), 2**32 - 1, 2**63, 2**64 - 1, 10**15, 65536, 255, 1e30,
-                                      1e154, 1e308, "1e309", 5e-324,
-                                      "nan", "inf", 0.5, "", "1.5.5", "0x10", "x", "9" * 400)]
+                                      1e154, 1e308, "1e309", 5e-324, "nan", "inf", 0.5, "", "1.5.5", "0x10", "x",
+                                      "9" * 400)]
 PATTERNS = [struct.pack(kind, x) for kind, values in (("<I", (0, 2**31 - 1, 2**31, 2**32 - 1, 10**8)),
                                                       ("<Q", (2**63, 2**64 - 1, 2**60)),
                                                       ("<f", (float("nan"), -3e38)), ("<d", (float("inf"), 5e-324)))
             for x in values]
 ODD = [None, True, 0, -1, 0.5, 100.0001, 1e-300, 1e18, -1e308, 2**31, 2**63, "", "x", "12", "a\0b", "../..", "\ud800",
-       "none.json", "town.geojson",
-       "runway", [], {}, [None], [1], [[]], ["x"], [0, 0, 0], [4, 3, 2, 1], [[0, 0], [1, 1]], {"a": 1},
-       {"preset": "VLP-16"}, {"preset": 5}]
+       "none.json", "town.geojson", "runway", [], {}, [None], [1], [[]], ["x"], [0, 0, 0], [4, 3, 2, 1],
+       [[0, 0], [1, 1]], {"a": 1}, {"preset": "VLP-16"}, {"preset": 5}]
 
 
 def _part(data, r):

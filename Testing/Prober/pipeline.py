@@ -28,37 +28,29 @@ WHOLE = ("comparison", "image", "tree", "coverage", "view", "tracks")  # there a
 # Other values than around the default: small scans of what stands near, and scenes in which a setting counts.
 VALUES = {
     "AzimuthStep": (7.0, 10.0, 20.0), "NumberOfChannels": (1, 2, 5), "ElevationStep": (0.5, 1.0, 3.0),
-    "MinimumElevation": (-10.0, 0.0),
-    "AzimuthRange": ((0.0, 360.0), (-20.0, 100.0), (300.0, 420.0)), "NumberOfRevolutions": (1, 2, 3),
-    "StepsPerRevolution": (1, 2, 3),
-    "HalfBeamwidth": (5.6e-3, 0.03, 0.08, 0.1), "HalfBeamwidthAcross": (0.0, 0.0, 1e-3, 0.02),
-    "RangeGate": (40.0, 200.0, 4000.0),
+    "MinimumElevation": (-10.0, 0.0), "AzimuthRange": ((0.0, 360.0), (-20.0, 100.0), (300.0, 420.0)),
+    "NumberOfRevolutions": (1, 2, 3), "StepsPerRevolution": (1, 2, 3), "HalfBeamwidth": (5.6e-3, 0.03, 0.08, 0.1),
+    "HalfBeamwidthAcross": (0.0, 0.0, 1e-3, 0.02), "RangeGate": (40.0, 200.0, 4000.0),
     "LowerEnergyLimit": (0.0, 1e-12, 1e-8, 1e-7, 2e-6), "UpperEnergyLimit": (1e-5, 6.25e-5, 1e-3),
-    "NoisePhotonRate": (0.0, 2e4, 1e12, 1e18),
-    "ReceiverAperture": (0.0, 0.0, 0.008, 10.0), "SamplingInterval": (1e-9, 5e-9), "PulseWidth": (0.0, 5e-9, 2e-8),
-    "FiringInterval": (0.0, 5e-6, 3e-3), "RotationRate": (0.5, 1.0, 10.0), "EncoderJitter": (0.0, 0.1),
-    "SwayAmplitude": (0.0, 0.1, 3.0),
+    "NoisePhotonRate": (0.0, 2e4, 1e12, 1e18), "ReceiverAperture": (0.0, 0.0, 0.008, 10.0),
+    "SamplingInterval": (1e-9, 5e-9), "PulseWidth": (0.0, 5e-9, 2e-8), "FiringInterval": (0.0, 5e-6, 3e-3),
+    "RotationRate": (0.5, 1.0, 10.0), "EncoderJitter": (0.0, 0.1), "SwayAmplitude": (0.0, 0.1, 3.0),
     "RaysPerBeam": (1, 2, 7, 16, 40), "NumberOfConnections": (0, 2, 8),
-    "AttenuationCoefficient": (0.0, 3.5e-5, 1e-3, 0.05),
-    "Preset": (0, 0, 0, 1), "NumberOfThreads": (0, 1, 2, 3), "MaximumCacheSize": (0, 1, 1024),
-    "Seed": (0, 1, -5, 2**31 - 1),
-    "MaximumLeafSize": (1, 2, 4, 16), "DisplayLevel": (-1, 0, 2), "Material": (0, 1, 2, 3, 4, 5),
-    "BlockNamePattern": ("*", "block 1", "inn?r *", ""),
+    "AttenuationCoefficient": (0.0, 3.5e-5, 1e-3, 0.05), "Preset": (0, 0, 0, 1), "NumberOfThreads": (0, 1, 2, 3),
+    "MaximumCacheSize": (0, 1, 1024), "Seed": (0, 1, -5, 2**31 - 1), "MaximumLeafSize": (1, 2, 4, 16),
+    "DisplayLevel": (-1, 0, 2), "Material": (0, 1, 2, 3, 4, 5), "BlockNamePattern": ("*", "block 1", "inn?r *", ""),
     "NameOfObject": ("", "thing"), "Species": ("herring gull", "starling", "no bird"), "NumberOfBirds": (0, 1, 3),
-    "Radius": (20.0, 60.0),
-    "Heights": ((1.0, 9.0),), "TimeRange": ((-5.0, 5.0),), "Lengths": ((40.0, 40.0, 9.0), (100.0, 9.0, 20.0)),
-    "Center": ((0.0, 0.0, 0.0), (30.0, 9.0, 1.0)),
+    "Radius": (20.0, 60.0), "Heights": ((1.0, 9.0),), "TimeRange": ((-5.0, 5.0),),
+    "Lengths": ((40.0, 40.0, 9.0), (100.0, 9.0, 20.0)), "Center": ((0.0, 0.0, 0.0), (30.0, 9.0, 1.0)),
     "Bounds": ((-60.0, 60.0, -60.0, 60.0, 0.0, 9.0), (-9.0, 90.0, 0.0, 60.0, 0.0, 9.0)),
-    "Spacing": ((30.0, 30.0, 9.0), (20.0, 30.0, 9.0)),
-    "Origin": ((31.0, 121.0, 3.0), (31.0, 121.0, 9.0)), "NumberOfScans": (1, 2, 3), "AllSpecies": (0,),
-    "PoseProbabilities": (0,), "Name": ("fog", "x")}
+    "Spacing": ((30.0, 30.0, 9.0), (20.0, 30.0, 9.0)), "Origin": ((31.0, 121.0, 3.0), (31.0, 121.0, 9.0)),
+    "NumberOfScans": (1, 2, 3), "AllSpecies": (0,), "PoseProbabilities": (0,), "Name": ("fog", "x")}
 # Columns and rows go with the table of beams; the others are other names of a setting, or need files.
 NOT_SET = {"Columns", "Rows", "BeamwidthMilliradians", "Wavelength", "ErrorsAsData", "FileName", "SpeciesFileName",
            "BeamId"}
 SMALL = {("coverage", "Bounds"): VALUES["Bounds"][0], ("coverage", "Spacing"): VALUES["Spacing"][0],
-         ("coverage", "RaysPerBeam"): 9,
-         ("tracks", "NumberOfBirds"): 2, ("tracks", "Radius"): 40.0, ("tracks", "Heights"): (1.0, 9.0),
-         ("tracks", "TimeRange"): (-5.0, 5.0)}
+         ("coverage", "RaysPerBeam"): 9, ("tracks", "NumberOfBirds"): 2, ("tracks", "Radius"): 40.0,
+         ("tracks", "Heights"): (1.0, 9.0), ("tracks", "TimeRange"): (-5.0, 5.0)}
 
 
 def _read_panels():

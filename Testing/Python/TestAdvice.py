@@ -18,9 +18,8 @@ import avianlidar as al
 from avianlidar import _command
 from avianlidar._measurement import DEFAULT, DIRECT, UNCONNECTED, Measurement, Trial, choose
 from echotools import given
+from scenetools import SHIPPED
 
-SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
-SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "advice"
 EASY = {"energy": 0.05, "range": 0.2, "missed": 0.08, "beams": 150}
 SENSOR = al.Sensor("Airport16", azimuth_range=(-60.0, 60.0))
@@ -62,7 +61,7 @@ class Advice(unittest.TestCase):
         self.assertTrue((advice.table["energy_error"][one] > 0.01).all())
 
     def test_holds_on_the_whole_scan(self):
-        scan = al.Scan(SCENE, "Airport16", noise=False)
+        scan = al.Scan(SHIPPED, "Airport16", noise=False)
         advice = scan.advise(**{**EASY, "energy": 0.01, "missed": 0.02, "beams": 400})
         before = scan.properties()
         self.assertEqual(scan.set(**advice.settings, seed=99).seed, 99)
@@ -241,7 +240,7 @@ class Advice(unittest.TestCase):
         OUTPUT.mkdir(parents=True, exist_ok=True)
         files = [OUTPUT / f"advice{suffix}" for suffix in (".json", ".csv", ".png")]
         with contextlib.redirect_stdout(io.StringIO()) as out:
-            code = _command.main(["advise", str(SCENE), "--energy", "0.05", "--missed", "0.3", "--beams", "60",
+            code = _command.main(["advise", SHIPPED, "--energy", "0.05", "--missed", "0.3", "--beams", "60",
                                   *(word for file in files for word in ("-o", str(file)))])
         self.assertEqual(code, 0)
         found = json.loads(files[0].read_text("utf-8"))
@@ -253,5 +252,5 @@ class Advice(unittest.TestCase):
         self.assertEqual(len(files[1].read_text("utf-8").splitlines()), 38)
         self.assertEqual(files[2].read_bytes()[:4], b"\x89PNG")
         with contextlib.redirect_stderr(io.StringIO()) as error:
-            self.assertEqual(_command.main(["advise", str(SCENE), "-o", str(OUTPUT / "advice.las")]), 2)
+            self.assertEqual(_command.main(["advise", SHIPPED, "-o", str(OUTPUT / "advice.las")]), 2)
         self.assertIn("advice is not written as .las", error.getvalue())

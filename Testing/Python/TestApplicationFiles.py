@@ -21,6 +21,7 @@ from avianlidar.apps.coverage import _maps, _report
 from avianlidar.apps.inputs import _read as _inputs
 from osgeo import gdal
 import helpertools
+import scenetools as st
 from exampletools import emptied
 from faulttools import disk
 from filetools import Table
@@ -32,8 +33,7 @@ SCENE = {"version": 1, "origin": {"latitude": 0, "longitude": 0, "height": 0}, "
     {"name": "Ground", "class": "ground", "ground": {"size": 4000, "height": 0}, "material": "Wall"},
     {"name": "Board", "file": "board.obj", "material": "Wall"}]}
 BOARD = "v 20 90 0\nv 60 80 0\nv 60 80 9\nv 20 90 9\nf 1 2 3 4\n"
-RUNWAY = {"type": "Feature", "properties": {"kind": "runway", "name": "09/27", "width": 45},
-          "geometry": {"type": "LineString", "coordinates": [[0.001, 0.002], [0.006, 0.002]]}}
+RUNWAY = "LineString", [[0.001, 0.002], [0.006, 0.002]], {"kind": "runway", "name": "09/27", "width": 45}
 SENSOR = {"preset": "Search905", "azimuth_range": [0, 90], "azimuth_step": 3}
 PLAN = {"scene": "s.lidarscene.json", "sensor": SENSOR, "runways": "runways.geojson", "coverage": {"species": "crow"},
         "heights": [30],
@@ -68,7 +68,7 @@ class Applications(unittest.TestCase):
         self.home = emptied("applications", self.id().rpartition(".")[2])
         (self.home / "board.obj").write_text(BOARD)
         self.write("s.lidarscene.json", SCENE)
-        self.write("runways.geojson", {"type": "FeatureCollection", "features": [RUNWAY]})
+        (self.home / "runways.geojson").write_text(st.features(RUNWAY))
         self.plan, self.scenario = self.write("p.coverage.json", PLAN), self.write("q.scenario.json", SCENARIO)
 
     def write(self, name, document):

@@ -2,19 +2,17 @@
 """Beams that are not round reach echoes, coverage, field data and files. Their rays and energies are tested in
 TestBeamShape.cxx."""
 import json
-import pathlib
-import tempfile
-import unittest
 
 import numpy as np
 
 import avianlidar as al
+from echotools import InFolder
 
 SHAPE = {"half_beamwidth": 2e-3, "half_beamwidth_across": 1e-3, "beam_outline": "Rectangle", "beam_rotation": 20,
          "beam_profile": "Gaussian", "gaussian_truncation": 2}
 
 
-class BeamShapes(unittest.TestCase):
+class BeamShapes(InFolder):
     def test_a_turn_of_the_sensor_turns_its_beams(self):
         """A slit of light, upright, before two walls side by side; lying, of a sensor that lies on its side."""
         walls = al.Scene([(-9, 50, -9), (0, 50, -9), (0, 50, 9), (-9, 50, 9), (0, 60, -9), (9, 60, -9), (9, 60, 9),
@@ -46,10 +44,9 @@ class BeamShapes(unittest.TestCase):
     def test_shapes_are_in_field_data_and_files(self):
         fields = {name: float(al.Sensor("Airport16", **SHAPE).beams.fields[name]) for name in SHAPE}
         self.assertEqual(fields, {**SHAPE, "beam_outline": 1, "beam_profile": 1})
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "mine.lidarsensor.json"
-            units = {name: "deg" if "rotation" in name else "rad" if name[:4] == "half" else "1" for name in fields}
-            values = {name: {"value": value, "unit": units[name], "source": "made"} for name, value in fields.items()}
-            file.write_text(json.dumps({"format": "lidarsensor 1", "name": "Mine", "values": values}))
-            read = al.Sensor(file).beams.fields
-            self.assertEqual({name: float(read[name]) for name in SHAPE}, fields)
+        file = self.folder / "mine.lidarsensor.json"
+        units = {name: "deg" if "rotation" in name else "rad" if name[:4] == "half" else "1" for name in fields}
+        values = {name: {"value": value, "unit": units[name], "source": "made"} for name, value in fields.items()}
+        file.write_text(json.dumps({"format": "lidarsensor 1", "name": "Mine", "values": values}))
+        read = al.Sensor(file).beams.fields
+        self.assertEqual({name: float(read[name]) for name in SHAPE}, fields)

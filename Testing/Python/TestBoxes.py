@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Boxes about what moves: size, place and heading in closed form, what hides and what cuts them, and points of a
 sequence that lie in them."""
-import pathlib
-import tempfile
-import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -14,7 +11,7 @@ import avianlidar as al
 from avianlidar._cloud import add_array as _set
 from avianlidar.apps.sequences._boxes import Boxes, _rotation
 from avianlidar.apps.sequences._sequence import Sequence
-from echotools import group
+from echotools import InFolder, group
 from helpertools import box
 from TestSequence import scenario_file
 
@@ -52,7 +49,7 @@ def one(size, place, heading=0.0, surfaces=None, points=3, name="car", **setting
     return boxes.lines(al.Cloud(report), group(thing)).split()
 
 
-class TestBoxes(unittest.TestCase):
+class TestBoxes(InFolder):
     def test_place_size_and_heading(self):
         words = one((2, 4, 1.5), (-30, 100, 5), heading=90)
         self.assertEqual((words[0], words[-2:]), ("car", ["1007", "3"]))
@@ -116,29 +113,27 @@ class TestBoxes(unittest.TestCase):
         self.assertEqual(one((2, 2, 2), (0, -100, 0), **forward), [])
 
     def test_points_of_a_sequence_lie_in_them(self):
-        with tempfile.TemporaryDirectory() as name:
-            home = pathlib.Path(name)
-            sequence = Sequence(scenario_file(home, number_of_scans=4, scans_per_sequence=4), threads=1)
-            sequence.write(home / "out")
-            folder = home / "out" / "sequences" / "00"
-            seen, near = 0, 0
-            for file in sorted((folder / "boxes").iterdir()):
-                points = np.fromfile(folder / "velodyne" / f"{file.stem}.bin", np.float32).reshape(-1, 4)[:, :3]
-                owners = (np.fromfile(folder / "labels" / f"{file.stem}.label", np.uint32) >> 16).astype(int) - 1
-                for line in file.read_text().splitlines():
-                    name, truncated, hidden, *words, number, count = line.split()
-                    x, y, z, length, width, height, yaw = map(float, words)
-                    self.assertTrue(name in ("bird", "car") and 0 <= float(truncated) < 1 and 0 <= float(hidden) <= 1)
-                    ours = points[owners == int(number)] - (x, y, z)
-                    self.assertEqual(len(ours), int(count))
-                    if name == "car":
-                        self.assertEqual((length, width, height), (4, 2, 2))
-                    ahead = ours[:, :2] @ [np.cos(yaw), np.sin(yaw)]
-                    aside = ours[:, :2] @ [-np.sin(yaw), np.cos(yaw)]
-                    # Beams are metres wide there, and ranges have noise. Those that met it in the revolution before are
-                    # far.
-                    far = np.max(np.abs([ahead, aside, ours[:, 2]]) - np.array([[length], [width], [height]]) / 2,
-                                 axis=0, initial=-1)
-                    seen, near = seen + len(ours), near + np.count_nonzero(far < 4)
-            self.assertGreater(seen, 10)
-            self.assertGreater(near, 0.9 * seen)
+        sequence = Sequence(scenario_file(self.folder, number_of_scans=4, scans_per_sequence=4), threads=1)
+        sequence.write(self.folder / "out")
+        folder = self.folder / "out" / "sequences" / "00"
+        seen, near = 0, 0
+        for file in sorted((folder / "boxes").iterdir()):
+            points = np.fromfile(folder / "velodyne" / f"{file.stem}.bin", np.float32).reshape(-1, 4)[:, :3]
+            owners = (np.fromfile(folder / "labels" / f"{file.stem}.label", np.uint32) >> 16).astype(int) - 1
+            for line in file.read_text().splitlines():
+                name, truncated, hidden, *words, number, count = line.split()
+                x, y, z, length, width, height, yaw = map(float, words)
+                self.assertTrue(name in ("bird", "car") and 0 <= float(truncated) < 1 and 0 <= float(hidden) <= 1)
+                ours = points[owners == int(number)] - (x, y, z)
+                self.assertEqual(len(ours), int(count))
+                if name == "car":
+                    self.assertEqual((length, width, height), (4, 2, 2))
+                ahead = ours[:, :2] @ [np.cos(yaw), np.sin(yaw)]
+                aside = ours[:, :2] @ [-np.sin(yaw), np.cos(yaw)]
+                # Beams are metres wide there, and ranges have noise. Those that met it in the revolution before are
+                # far.
+                far = np.max(np.abs([ahead, aside, ours[:, 2]]) - np.array([[length], [width], [height]]) / 2,
+                             axis=0, initial=-1)
+                seen, near = seen + len(ours), near + np.count_nonzero(far < 4)
+        self.assertGreater(seen, 10)
+        self.assertGreater(near, 0.9 * seen)

@@ -23,10 +23,10 @@ from avianlidar._numbers import figures
 from boxfiles import CORNERS, TRIANGLES, poly_data, stl
 from cloudtools import CLOUDS, READ_BACK
 import helpertools
+import scenetools as st
 from helpertools import from_terminal
 
-SOURCE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"])
-SCENE = SOURCE / "Examples" / "airport" / "scene" / "hongqiao.lidarscene.json"
+SOURCE, SCENE = pathlib.Path(st.SOURCE), pathlib.Path(st.SHIPPED)
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "command"
 SHARE = next((folder / "share" for folder in pathlib.Path(al.__file__).resolve().parents
               if (folder / "share" / "man").is_dir()), None)
@@ -130,10 +130,9 @@ class Verbs(unittest.TestCase):
 
     def test_what_a_scene_assumes_and_leaves_out_is_printed(self):
         square = [[[0, 50], [9, 50], [9, 59], [0, 59], [0, 50]]]
-        features = [{"type": "Feature", "properties": {"name": name, "h": "tall"},
-                     "geometry": {"type": kind, "coordinates": at}}
-                    for name, kind, at in (("House", "Polygon", square), ("Lamp", "Point", [0, 0]))]
-        (OUTPUT / "plans.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+        (OUTPUT / "plans.geojson").write_text(st.features(*(
+            (kind, at, {"name": name, "h": "tall"})
+            for name, kind, at in (("House", "Polygon", square), ("Lamp", "Point", [0, 0])))))
         scene = OUTPUT / "plans.lidarscene.json"
         scene.write_text(json.dumps({"version": 1, "objects": [{
             "footprints": "plans.geojson", "crs": "local", "height": 3, "height_attribute": "h", "material": "Wall"}]}))

@@ -140,7 +140,3 @@ class Crossings(unittest.TestCase):
         share = np.mean(twice)
         self.assertAlmostEqual(share, found.share,
                                delta=3.0 * math.sqrt(found.share * (1.0 - found.share) / (times * len(positions))))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -84,49 +84,6 @@ class EchoPipeline(unittest.TestCase):
             self.assertEqual(count, 360)
             assert_same_bits(echoes, append.GetOutput())
 
-    def test_objects_without_triangles_keep_their_names(self):
-        """The echoes list them with or without a tree, also where the tree's output was copied, so that its content is
-        merged."""
-        blocks = town(count=4)
-        blocks.SetBlock(4, vtk.vtkPolyData())
-        blocks.GetMetaData(4).Set(vtk.vtkCompositeDataSet.NAME(), "meadow")
-        tree = al.vtkAvianLidarCollisionTree()
-        tree.SetInputData(blocks)
-        tree.Update()
-        for surfaces in (blocks, tree, copy_of(tree.GetOutput())):
-            names = ran(surfaces).GetOutput().GetFieldData().GetAbstractArray("object_names")
-            self.assertEqual([names.GetValue(i) for i in range(names.GetNumberOfValues())],
-                             [*(f"house {i}" for i in range(4)), "meadow"])
-
-    def test_progress_and_abort(self):
-        """Progress rises from the calling thread; abort within blocks, with empty and valid outputs. Rays take long
-        enough for that."""
-        busy, seen, calls = scan(TOWN, sensor(720, 8), NumberOfThreads=1, **SAMPLED), [], []
-        busy.AddObserver("ProgressEvent", lambda *_: seen.append(busy.GetProgress()))
-        busy.Update()
-        self.assertGreaterEqual(len(seen), 100)  # every few thousand rays with hits
-        self.assertEqual((seen, seen[-1]), (sorted(seen), 1.0))
-
-        def stop(*_):
-            calls.append(1)
-            if len(calls) == 10:
-                busy.AbortExecuteOn()
-
-        busy.RemoveAllObservers()
-        busy.AddObserver("ProgressEvent", stop)
-        busy.SetNumberOfThreads(2)
-        busy.SetSeed(1)
-        busy.Update()
-        self.assertTrue(10 <= len(calls) <= 12, len(calls))  # no block begins after the wish to stop
-        self.assertEqual([busy.GetOutput(port).GetNumberOfPoints() for port in (0, 1)], [0, 0])
-        busy.RemoveAllObservers()
-        busy.AbortExecuteOff()
-        busy.SetSeed(0)
-        busy.Modified()
-        busy.Update()
-        self.assertGreater(busy.GetNumberOfTracedRays(), 0)  # an aborted run leaves no cache
-        assert_same_bits(busy.GetOutput(), ran(TOWN, sensor(720, 8), **SAMPLED).GetOutput())
-
     def test_arrays(self):
         """Units are TestGlossary's."""
         echo = ran(TOWN)

@@ -3,9 +3,6 @@
 its signal and of the simulation, and n = 0 of a reflectivity from which range was taken out."""
 import contextlib
 import io
-import pathlib
-import tempfile
-import unittest
 
 import numpy as np
 
@@ -13,6 +10,7 @@ import avianlidar as al
 import cloudtools
 import exampletools
 import falloff
+from echotools import InFolder
 
 GROUND = falloff.Plane("ground", np.array([0.03, 0.04, -np.sqrt(1 - 0.0025)]), 1.8, np.array([], int))
 WALL = falloff.Plane("wall", np.array([0.0, -1.0, 0.0]), 6.0, np.array([], int))
@@ -42,7 +40,7 @@ def scanned(random):
     return way[seen] * (distance + random.normal(0, 0.01, len(distance)))[:, None], ring[seen], signal, which[seen]
 
 
-class Planes(unittest.TestCase):
+class Planes(InFolder):
     def test_frames(self):
         random = np.random.default_rng(5)
         points, ring, signal, which = scanned(random)
@@ -53,17 +51,16 @@ class Planes(unittest.TestCase):
             self.assertAlmostEqual(plane.distance, made.distance, delta=0.01)
             np.testing.assert_allclose(plane.normal, made.normal, atol=3e-3)
             self.assertGreater((which[plane.points] == (plane.kind == "wall")).mean(), 0.98)
-        with tempfile.TemporaryDirectory() as folder:
-            for name, values, n in (("signal", signal, 2.0), ("reflectivity", signal * (points**2).sum(axis=1), 0.0)):
-                noisy = values * random.lognormal(0, 0.3, len(values))
-                file = pathlib.Path(folder) / f"{name}.pcd"
-                al.save(cloud(points, ring, **{name: noisy.astype(np.float32)}), file)
-                with contextlib.redirect_stdout(io.StringIO()):
-                    study, = falloff.main(["--clouds", str(file), "--field", name, "--out", folder])
-                self.assertEqual(len(study.planes), 2)
-                for _, windows in study.planes:
-                    (_, every), _, (_, model) = windows[0]
-                    self.assertAlmostEqual(every[0], n, delta=3 * every[1] + 0.01)
-                    self.assertLess(every[1], 0.1)
-                    self.assertAlmostEqual(model[0], 2.0, delta=0.1)
-                self.assertTrue((pathlib.Path(folder) / "falloff-planes.md").exists())
+        for name, values, n in (("signal", signal, 2.0), ("reflectivity", signal * (points**2).sum(axis=1), 0.0)):
+            noisy = values * random.lognormal(0, 0.3, len(values))
+            file = self.folder / f"{name}.pcd"
+            al.save(cloud(points, ring, **{name: noisy.astype(np.float32)}), file)
+            with contextlib.redirect_stdout(io.StringIO()):
+                study, = falloff.main(["--clouds", str(file), "--field", name, "--out", str(self.folder)])
+            self.assertEqual(len(study.planes), 2)
+            for _, windows in study.planes:
+                (_, every), _, (_, model) = windows[0]
+                self.assertAlmostEqual(every[0], n, delta=3 * every[1] + 0.01)
+                self.assertLess(every[1], 0.1)
+                self.assertAlmostEqual(model[0], 2.0, delta=0.1)
+            self.assertTrue((self.folder / "falloff-planes.md").exists())

@@ -7,7 +7,6 @@ import os
 import signal
 import stat
 import unittest
-import warnings
 from unittest import mock
 
 import numpy as np
@@ -17,7 +16,7 @@ import avianlidar as al
 from avianlidar import _disk
 from cloudtools import add_array, cloud
 from echotools import InFolder, copy_of
-from helpertools import WALL, same
+from helpertools import WALL, same, warned
 
 
 class Files(InFolder):
@@ -134,12 +133,9 @@ class Files(InFolder):
             self.assertEqual((cloud.points.tolist(), *cloud.values())[::-1], ([6], [[1, 2, 3]]))
         file = self.folder / "gaps.csv"
         file.write_text("x,y,z,i,j\n1,2,3,,5\n4,5,6,7,\n7,8,,9,10\n", "ascii")
-        with warnings.catch_warnings(record=True) as said:
-            warnings.simplefilter("always")
-            cloud = al.load_cloud(file)
-        self.assertEqual([str(one.message) for one in said], [
-            f"{file}: 2 empty cells are read as NaN",
-            f"{file}: 1 points whose coordinates are not finite are left out"])
+        cloud, said = warned(lambda: al.load_cloud(file))
+        self.assertEqual(said, [f"{file}: 2 empty cells are read as NaN",
+                                f"{file}: 1 points whose coordinates are not finite are left out"])
         np.testing.assert_array_equal(np.column_stack([cloud.points, cloud["i"], cloud["j"]]),
                                       [(1, 2, 3, np.nan, 5), (4, 5, 6, 7, np.nan)])
 

@@ -9,7 +9,6 @@ import subprocess
 import sys
 import types
 import unittest
-import warnings
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -19,10 +18,10 @@ import avianlidar as al
 import exampletools
 from avianlidar import _sight
 from boxfiles import CORNERS, TRIANGLES, obj, stl, y_up
-from helpertools import WALL, box, same
+from helpertools import WALL, box, same, warned
+from scenetools import SHIPPED
 
 OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "helper-scenes"
-SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 BOUNDS = (1, 2, 2, 4, 0, 3)
 
 
@@ -33,10 +32,7 @@ def cells(scene, name):
 
 def said(run):
     """The texts of the warnings of a call."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        run()
-    return [str(warning.message) for warning in caught]
+    return warned(run)[1]
 
 
 class Sources(unittest.TestCase):
@@ -159,7 +155,7 @@ class Sources(unittest.TestCase):
 
 class Copies(unittest.TestCase):
     def test_scenes(self):
-        scene = al.Scene(SCENE)
+        scene = al.Scene(SHIPPED)
         scene.add(box((199, 299, 0), (201, 301, 30)), material="Metal", name="mast")
         scene.tree.SetMaximumLeafSize(7)
         sensor = al.Sensor(azimuth_step=2)
@@ -183,7 +179,7 @@ class Copies(unittest.TestCase):
 
 class Shown(unittest.TestCase):
     def test_words(self):
-        scene, sensor = al.Scene(SCENE), al.Sensor("Airport16", position=(0, 0, 3))
+        scene, sensor = al.Scene(SHIPPED), al.Sensor("Airport16", position=(0, 0, 3))
         scan = al.Scan(scene, sensor)
         scan.update()
         scan.seed = 5
@@ -240,7 +236,7 @@ class NothingToSee(unittest.TestCase):
         return said(al.Scan(scene, al.Sensor(azimuth_step=5, **sensor)).update)
 
     def test_likely_mistakes_are_named(self):
-        airport, walls = al.Scene(SCENE), al.Scene(WALL)
+        airport, walls = al.Scene(SHIPPED), al.Scene(WALL)
         hill = al.Scene([(-500, -500, 0), (500, -500, 0), (500, 500, 40), (-500, 500, 40)], [(0, 1, 2), (0, 2, 3)])
         tall = np.concatenate([box((-50, 300, 0), (50, 340, 12))[0], box((80, -300, 0), (90, -290, 30))[0]])
         faces = np.concatenate([WALL[1], WALL[1] + 8])
@@ -299,7 +295,7 @@ class NothingToSee(unittest.TestCase):
 
     def test_scenes_that_are_as_meant(self):
         """Each has echoes, or nothing wrong but that."""
-        for scene, place in ((SCENE, (0, 0, 3)), (SCENE, (0, 0, 0)), (box((-20, 50, 0.3), (20, 52, 15)), (0, 0, 0)),
+        for scene, place in ((SHIPPED, (0, 0, 3)), (SHIPPED, (0, 0, 0)), (box((-20, 50, 0.3), (20, 52, 15)), (0, 0, 0)),
                              (box((-10, 300, 40), (10, 320, 60)), (0, 0, 32)),
                              (box((-15, 0, -10), (15, 0.2, 20)), (0, -60, 3)),
                              (box((-5, 0, -30), (5, 10, 30)), (0, -60, 3))):
@@ -309,7 +305,7 @@ class NothingToSee(unittest.TestCase):
         self.assertEqual(said(al.Scan(al.Scene(), al.Sensor(), movers=[bird]).update), [])
 
     def test_said_once_and_when_it_runs_only(self):
-        scan = al.Scan(al.Scene(SCENE), al.Sensor(position=(0, 0, -50), azimuth_step=5))
+        scan = al.Scan(al.Scene(SHIPPED), al.Sensor(position=(0, 0, -50), azimuth_step=5))
         self.assertEqual([len(said(scan.update)) for _ in range(3)], [2, 0, 0])
         scan.attenuation_coefficient = 1e-5
         self.assertRegex(" ".join(said(lambda: scan["energy"])), "^no echoes of")

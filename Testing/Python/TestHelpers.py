@@ -19,8 +19,7 @@ from avianlidar import reach, siting, vtkAvianLidar as wrapped
 from cloudtools import cloud
 from echotools import assert_same_bits, box as colored_box, copy_of, given, group, scan as plain_scan, town
 from helpertools import WALL, box, same
-
-SCENE = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene", "hongqiao.lidarscene.json")
+from scenetools import SHIPPED
 
 
 class Properties(unittest.TestCase):
@@ -155,7 +154,7 @@ class Scans(unittest.TestCase):
         self.assertTrue(first == first and first != scan.echoes and len({first, scan.echoes}) == 2)
         scan.scene = WALL
         self.assertLess(scan["distance_m"].min(), 60)
-        scene = al.load_scene(SCENE)  # which says where its lidar stands
+        scene = al.load_scene(SHIPPED)  # which says where its lidar stands
         self.assertEqual(al.Scan(scene).sensor.position, scene.lidar_position)
 
     def test_range_image(self):
@@ -223,7 +222,7 @@ class Surfaces(unittest.TestCase):
         self.assertEqual([merged.GetArray(k).GetValue(12) for k in ("kd", "ks", "kp")], [0.1, 0.2, 30])
 
     def test_adding_to_a_scene_changes_its_scans(self):
-        scene = al.load_scene(SCENE)
+        scene = al.load_scene(SHIPPED)
         scan = al.Scan(scene)
         self.assertNotIn("mast", scan.echoes.fields["object_names"])
         scene.add(box((199, 299, 0), (201, 301, 30)), material="Metal", name="mast")

@@ -28,14 +28,8 @@ SQUARE = [[0, 0], [0.001, 0], [0.001, 0.001], [0, 0.001], [0, 0]]
 NO_FILE = "not a regular file"
 
 
-def collection(*features, **more):
-    return json.dumps({"type": "FeatureCollection", "features": [
-        {"type": "Feature", "properties": p, "geometry": {"type": kind, "coordinates": c}} for kind, c, p in features],
-                       **more})
-
-
 def plan(**more):
-    return collection(("Polygon", [SQUARE], {"kind": "house", "height": "high"}), **more)
+    return st.features(("Polygon", [SQUARE], {"kind": "house", "height": "high"}), **more)
 
 
 def gltf(children=((),), uri=None):
@@ -162,7 +156,7 @@ MESHES = [
 ]
 
 PLANS = {
-    "plan.geojson": plan(), "points.geojson": collection(("Point", [0, 0], {})), "triangle.obj": TRIANGLE,
+    "plan.geojson": plan(), "points.geojson": st.features(("Point", [0, 0], {})), "triangle.obj": TRIANGLE,
     "two.kml": '<kml xmlns="http://www.opengis.net/kml/2.2"><Document>' + "".join(
         f"<Folder><name>{name}</name><Placemark><Point><coordinates>0,0</coordinates></Point></Placemark></Folder>"
         for name in ("roads", "trees")) + "</Document></kml>"}

@@ -8,14 +8,13 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 import avianlidar
 from avianlidar.apps.sequences import _mcap
+from echotools import InFolder
 
 READER = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Testing" / "IO" / "mcap_to_json.js"
 MODULES = pathlib.Path(os.environ.get("NODE_PATH", "none"))
@@ -28,9 +27,9 @@ def pose_line(rotation, place):
     return " ".join(f"{value:.9g}" for value in np.column_stack([rotation, place]).ravel()) + "\n"
 
 
-class TestMcap(unittest.TestCase):
+class TestMcap(InFolder):
     def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        super().setUp()
         self.sequence, self.out = self.folder / "00", self.folder / "out.mcap"
         chance, self.scans = np.random.default_rng(3), []
         for name in ("velodyne", "labels"):

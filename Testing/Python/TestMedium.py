@@ -9,6 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkFiltersSources import vtkCubeSource, vtkPlaneSource
 
 import avianlidar as al
+import scenetools as st
 from avianlidar.vtkAvianLidar import (vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter,
                                       vtkAvianLidarMedium)
 from cloudtools import field as texts
@@ -153,25 +154,21 @@ class Coverage(unittest.TestCase):
 
 class SceneFiles(InFolder):
     def scene(self, objects):
-        file = self.folder / "airport.lidarscene.json"
-        file.write_text(json.dumps({"version": 1, "objects": objects}), "utf-8")
-        return file
+        return st.write_scene(self.folder, "airport", {"version": 1, "objects": objects})
 
     def test_fog_trees_rows_and_woods(self):
-        feature = lambda kind, coordinates, **tags: {"type": "Feature", "properties": tags,
-                                                     "geometry": {"type": kind, "coordinates": coordinates}}
-        plan = {"type": "FeatureCollection", "features": [
-            feature("Point", [10.0, 50.0], natural="tree"), feature("Point", [20.0, 50.0], natural="tree", height="12"),
-            feature("LineString", [[0.0, 100.0], [30.0, 100.0]], natural="tree_row"),
-            feature("Polygon", [[[-60, 80], [-20, 80], [-20, 120], [-60, 120], [-60, 80]]], natural="wood")]}
+        plan = st.features(
+            ("Point", [10.0, 50.0], {"natural": "tree"}), ("Point", [20.0, 50.0], {"natural": "tree", "height": "12"}),
+            ("LineString", [[0.0, 100.0], [30.0, 100.0]], {"natural": "tree_row"}),
+            ("Polygon", [[[-60, 80], [-20, 80], [-20, 120], [-60, 120], [-60, 80]]], {"natural": "wood"}))
         trees = {"footprints": "trees.geojson", "crs": "local", "name": "trees", "class": "vegetation", "base": 2,
                  "height": 8, "height_attribute": "height", "width": 6,
                  "medium": {"kind": "foliage", "leaf_area_density": 0.5}}
-        (self.folder / "trees.geojson").write_text(json.dumps(plan), "utf-8")
+        (self.folder / "trees.geojson").write_text(plan, "utf-8")
         file = self.scene([{"ground": {"size": 1000}, "name": "ground", "material": "Grass"}, trees,
                            {"medium": {"kind": "fog", "visibility": 200, "shape": "layer", "top": 3, "softness": 2},
                             "name": "ground fog"}])
-        scene = al.Scene(str(file))
+        scene = al.Scene(file)
         scan = al.Scan(scene, al.Sensor("Search905", position=(0, 0, 5), azimuth_range=(-50, 50)), noise=False)
         kinds = [json.loads(said)["kind"] for said in texts(scan.echoes.data, "media")]
         self.assertEqual(sorted(kinds), ["fog", "foliage", "foliage"])
@@ -193,5 +190,5 @@ class SceneFiles(InFolder):
                           ({"ground": {"size": 5}, "medium": {"kind": "fog", "visibility": 5, "shape": "box"}},
                            "objects[0]")):
             with self.subTest(part), self.assertRaises(al.Error) as raised:
-                al.Scene(str(self.scene([one])))
+                al.Scene(self.scene([one]))
             self.assertIn(part, str(raised.exception))

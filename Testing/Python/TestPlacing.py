@@ -106,7 +106,3 @@ class Labels(unittest.TestCase):
         _, left_out, boxes = self.written((-100.0, 100.0, -100.0, 100.0), crowd)
         self.assertEqual(sorted([*boxes, *left_out]), sorted(label.words for label in crowd))
         self.assertGreater(min(len(boxes), len(left_out)), 20)
-
-
-if __name__ == "__main__":
-    unittest.main()

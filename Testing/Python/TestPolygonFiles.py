@@ -255,7 +255,3 @@ class PolygonFiles(InFolder):
         self.assertLess(time.process_time() - start, 20)
         self.assertEqual(said, [])
         np.testing.assert_allclose(found, math.sqrt(10) * (shoelace(10 * circle) - shoelace(4 * circle)), rtol=1e-9)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,13 +5,12 @@ import json
 import os
 import pathlib
 import re
-import tempfile
 import unittest
 
 import numpy as np
 
 import avianlidar as al
-from echotools import copy_of
+from echotools import InFolder, copy_of
 from helpertools import WALL
 
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
@@ -107,7 +106,7 @@ class PatternOfTheMid360(unittest.TestCase):
         self.assertLess(np.degrees(off.max()), 1.3)
 
 
-class Use(unittest.TestCase):
+class Use(InFolder):
     """What uses beams that differ from scan to scan."""
 
     def test_echoes_lie_on_the_wall_at_their_time(self):
@@ -151,29 +150,27 @@ class Use(unittest.TestCase):
         self.assertTrue(0.03 < (held > 0).mean() < 0.97)
 
     def test_a_sequence_has_the_clutter_of_each_scan(self):
-        with tempfile.TemporaryDirectory() as folder:
-            place = pathlib.Path(folder)
-            (place / "flat.lidarscene.json").write_text(
-                json.dumps({"version": 1, "lidar": {"position": [0, 0, 3]},
-                            "objects": [{"name": "Ground", "class": "ground", "ground": {"size": 400, "height": 0},
-                                         "material": "Wall"}]}))
-            (place / "flat.scenario.json").write_text(
-                json.dumps({"scene": "flat.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 1,
-                            "sensor": {"preset": "Mid40"}, "birds": [
-                                {"pattern": "Circles", "species": "crow", "number_of_birds": 3, "radius": 40,
-                                 "heights": [5, 9]}]}))
-            sequence = al.Sequence(place / "flat.scenario.json", threads=1)
-            for k, _, species in sequence.frames(0):
-                self.assertEqual(len(sequence.truth(k, species)), 3)
-                beams = window(al.Sensor("Mid40"), k)
-                order = np.searchsorted(beams["beam_id"], sequence.clutter.beams)
-                ranges = -3 / beams["direction"][order, 2]
-                self.assertGreater(len(ranges), 2000)
-                near = ranges < 30
-                np.testing.assert_allclose(sequence.clutter.ranges[near], ranges[near], rtol=0.05)
+        (self.folder / "flat.lidarscene.json").write_text(
+            json.dumps({"version": 1, "lidar": {"position": [0, 0, 3]},
+                        "objects": [{"name": "Ground", "class": "ground", "ground": {"size": 400, "height": 0},
+                                     "material": "Wall"}]}))
+        (self.folder / "flat.scenario.json").write_text(
+            json.dumps({"scene": "flat.lidarscene.json", "number_of_scans": 2, "scans_per_sequence": 2, "seed": 1,
+                        "sensor": {"preset": "Mid40"}, "birds": [
+                            {"pattern": "Circles", "species": "crow", "number_of_birds": 3, "radius": 40,
+                             "heights": [5, 9]}]}))
+        sequence = al.Sequence(self.folder / "flat.scenario.json", threads=1)
+        for k, _, species in sequence.frames(0):
+            self.assertEqual(len(sequence.truth(k, species)), 3)
+            beams = window(al.Sensor("Mid40"), k)
+            order = np.searchsorted(beams["beam_id"], sequence.clutter.beams)
+            ranges = -3 / beams["direction"][order, 2]
+            self.assertGreater(len(ranges), 2000)
+            near = ranges < 30
+            np.testing.assert_allclose(sequence.clutter.ranges[near], ranges[near], rtol=0.05)
 
 
-class BadFiles(unittest.TestCase):
+class BadFiles(InFolder):
     def test_values_are_named(self):
         """Values of their own are those of the kernel, tested in TestPrisms.cxx: the file, the unit, and what does not
         go with prisms."""
@@ -189,8 +186,8 @@ class BadFiles(unittest.TestCase):
             values = {key: entry for key, entry in good["values"].items() if key != name}
             if value is not None:
                 values[name] = {"value": value, "unit": unit, "source": "test"}
-            with self.subTest(words), tempfile.TemporaryDirectory() as folder:
-                file = pathlib.Path(folder) / "bad.lidarsensor.json"
-                file.write_text(json.dumps({**good, "values": values}), "utf-8")
-                with self.assertRaisesRegex(al.Error, "bad.lidarsensor.json(.|\n)*" + re.escape(words)):
-                    al.Sensor(file).beams
+            file = self.folder / "bad.lidarsensor.json"
+            file.write_text(json.dumps({**good, "values": values}), "utf-8")
+            words = "bad.lidarsensor.json(.|\n)*" + re.escape(words)
+            with self.subTest(words), self.assertRaisesRegex(al.Error, words):
+                al.Sensor(file).beams

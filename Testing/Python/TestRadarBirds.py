@@ -21,7 +21,7 @@ from avianlidar._pipeline import update
 from avianlidar.apps.sequences._flights import read_flights
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
 from exampletools import emptied
-from helpertools import rows_of, run
+from helpertools import rows_of, run, warned
 
 ORIGIN = (47.45, 8.55, 420.0)
 # latitude, longitude, m above the sea
@@ -442,10 +442,7 @@ class Scenarios(unittest.TestCase):
 
     def made(self, rows, **more):
         """The sequence of a scenario, and the warnings."""
-        with warnings.catch_warnings(record=True) as heard:
-            warnings.simplefilter("always")
-            sequence = al.Sequence(self.scenario(rows, **more), threads=1)
-        return sequence, [str(one.message) for one in heard]
+        return warned(lambda: al.Sequence(self.scenario(rows, **more), threads=1))
 
     def warned(self, words, rows, count=1, **more):
         """@param words of all warnings; empty: there is no warning"""

@@ -13,7 +13,6 @@ import threading
 import time
 import unittest
 import unittest.mock
-import warnings
 
 import numpy as np
 from osgeo import gdal, ogr, osr
@@ -24,6 +23,7 @@ from avianlidar.apps.airport import _ground
 from avianlidar.apps.airport._osm import read_extract
 from avianlidar.apps.inputs._json import packaged
 from avianlidar.apps.places._gdal import coordinate_system, open_file, quiet
+from helpertools import warned
 
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 AROUND = (-1000.0, 1000.0, -1000.0, 1000.0)
@@ -62,10 +62,8 @@ def degrees():
 
 def read(file, origin=HERE, around=AROUND):
     """Its heights, and its warnings."""
-    with warnings.catch_warnings(record=True) as heard:
-        warnings.simplefilter("always")
-        found = _ground.read_heights(pathlib.Path(file), origin, around, KNOWN)
-    return found, " ".join(str(one.message) for one in heard)
+    found, heard = warned(lambda: _ground.read_heights(pathlib.Path(file), origin, around, KNOWN))
+    return found, " ".join(heard)
 
 
 class Values(unittest.TestCase):
@@ -254,10 +252,7 @@ class Values(unittest.TestCase):
             runway.SetGeometry(ogr.CreateGeometryFromWkt(f"LINESTRING({x} {y},{x + 900} {y})"))
             layer.CreateFeature(runway)
             del runway, layer, base
-            with warnings.catch_warnings(record=True) as heard:
-                warnings.simplefilter("always")
-                read_extract(file, KNOWN)
-            self.assertRegex(" ".join(str(one.message) for one in heard), said or "^$")
+            self.assertRegex(" ".join(warned(lambda: read_extract(file, KNOWN))[1]), said or "^$")
 
 
 class Server:
@@ -436,7 +431,3 @@ class Files(unittest.TestCase):
         found, heard = read(FOLDER / "odd.tif")
         self.assertAlmostEqual(found.here, 50.0, delta=1e-3)
         self.assertRegex(heard, "odd.tif: GDAL warns: .*not sorted")
-
-
-if __name__ == "__main__":
-    unittest.main()

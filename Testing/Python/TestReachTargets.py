@@ -217,7 +217,3 @@ class Verb(unittest.TestCase):
                 (r"reflectance is 2, expected above 0 to 1", ("--target", "wall", "--reflectance", 2))):
             with self.subTest(words):
                 self.assertRegex(helpertools.error_of("reach", "--sensor", "VLP16", *arguments), words)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Objects of a scene: formats, placement, material names, footprints of every shape, warnings, abort."""
-import json
 import math
 import os
 import pathlib
@@ -15,7 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 from vtkmodules.vtkIOXML import vtkXMLMultiBlockDataWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
-from boxfiles import CORNERS, MESHES, QUADS, TRIANGLES, collada, gltf, ifc, obj, poly_data, stl, y_up
+from boxfiles import CORNERS, MESHES, QUADS, TRIANGLES, collada, ifc, obj, poly_data, y_up
 from avianlidar import vtkAvianLidar
 from avianlidar.apps.places._features import length_of
 from echotools import group
@@ -34,14 +33,6 @@ def canonical(triangles):
 def notes(scene):
     """The report of a scene as one text."""
     return " ".join(scene.strings("scene_report"))
-
-
-def features(*rows):
-    """GeoJSON. @param rows kind, coordinates, properties; no kind: no geometry"""
-    return json.dumps({"type": "FeatureCollection", "features": [
-        {"type": "Feature", "properties": properties,
-         "geometry": {"type": kind, "coordinates": coordinates} if kind else None}
-        for kind, coordinates, properties in rows]})
 
 
 BOX, NULL_ISLAND = CORNERS[np.array(TRIANGLES)], {"latitude": 0, "longitude": 0, "height": 0}
@@ -217,7 +208,7 @@ class SceneObjects(unittest.TestCase):
 
     def plan(self, file, *rows, **keys):
         """A scene of features in metres."""
-        self.save(file, features(*rows))
+        self.save(file, st.features(*rows))
         return self.read({"footprints": file, "crs": "local", **keys})
 
     SQUARE = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]
@@ -331,7 +322,7 @@ class SceneObjects(unittest.TestCase):
                 ([far], {"crs": "local", "height": 1, "glazing": {"share": 0.5, "bay": 2}},
                  "bays of 2 m: a coordinate or 'bay' is wrong) were left out: B")):
             local = [[[1000 * (x - 13), 1000 * (y - 53)] for x, y in good]] if "crs" in more else [good]
-            self.save("bad.geojson", features(("Polygon", local, {"name": "A", "h": 1}),
+            self.save("bad.geojson", st.features(("Polygon", local, {"name": "A", "h": 1}),
                                               ("Polygon", coordinates, {"name": "B"})))
             scene = self.read({"footprints": "bad.geojson", **({"height": 1} if not more else more)}, origin=origin)
             alone = self.plan("alone.geojson", ("Polygon", local, {"h": 1}),
@@ -417,9 +408,9 @@ class SceneObjects(unittest.TestCase):
         """What is left out is counted, and an error says what is wrong, whether there is a filter or not."""
         nowhere, origin = (None, None, {"k": "a"}), NULL_ISLAND
         for name, text, chosen, words in (
-                ("null.geojson", features(nowhere, nowhere), {"k": "*"},
+                ("null.geojson", st.features(nowhere, nowhere), {"k": "*"},
                  "none of its 2 features that fit the filter has a geometry"),
-                ("none.geojson", features(), {}, "holds no features"),
+                ("none.geojson", st.features(), {}, "holds no features"),
                 ("city.json", '{"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": []}', {},
                  "is CityJSON, which is not read"),
                 ("A.CSV", "id,height\n1,2\n", {}, "a table needs the columns x and y")):
@@ -427,7 +418,7 @@ class SceneObjects(unittest.TestCase):
             item = {"footprints": name, "height": 3, "crs": "EPSG:4326", **({"filter": chosen} if chosen else {})}
             file = st.write_scene(self.folder, "scene", {"version": 1, "origin": origin, "objects": [item]})
             self.assertIn(words, " ".join(st.Read(file).errors))
-        self.save("some.geojson", features(nowhere, ("Polygon", [[[0, 0], [0.001, 0], [0.001, 0.001], [0, 0]]], {})))
+        self.save("some.geojson", st.features(nowhere, ("Polygon", [[[0, 0], [0.001, 0], [0.001, 0.001], [0, 0]]], {})))
         scene = self.read({"footprints": "some.geojson", "height": 3}, origin=origin)
         self.assertIn("1 features without a geometry were left out", notes(scene))
         self.save("dof.csv", "OAS,LATDEC,LONDEC,AGL,AMSL\n01-1,0.001,0.002,00100,00200\n")
@@ -660,7 +651,7 @@ class SceneObjects(unittest.TestCase):
                       scene.strings("scene_report"))
         self.assertIn("Flat: 1 points or lines were left out", scene.strings("scene_report"))
         point = '{"type": "Point", "coordinates": [9, 4]}'
-        self.save("trees.geojson", features(("Point", [3, 4], {}), ("Point", [9, 4], {})).replace(
+        self.save("trees.geojson", st.features(("Point", [3, 4], {}), ("Point", [9, 4], {})).replace(
             point, f'{{"type": "GeometryCollection", "geometries": [{point}]}}'))
         leaves = {"kind": "foliage", "leaf_area_density": 1}
         fog = self.read({"name": "Fog", "medium": {"kind": "fog", "visibility": 300, "shape": "everywhere"}},

@@ -10,7 +10,6 @@ import pickle
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy as np
@@ -18,6 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 import avianlidar as al
 import echotools
+from echotools import InFolder
 from avianlidar import _display, reach, vtkAvianLidar
 from faulttools import text_array
 from helpertools import same
@@ -47,7 +47,7 @@ def wall(y, half=5):
     return [(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)], [(0, 1, 2), (0, 2, 3)]
 
 
-class Manuals(unittest.TestCase):
+class Manuals(InFolder):
     def test_names_and_what_a_file_says(self):
         for name, rate in REAL.items():
             with self.subTest(name):
@@ -157,33 +157,31 @@ class Manuals(unittest.TestCase):
         found = reach.within_beams(sensor, "herring gull", birds=64).to(0.5)
         low, high = (one.to(0.5) for one in reach.in_interval(sensor, "herring gull", birds=64))
         self.assertTrue(0 < low < found < high)
-        with tempfile.TemporaryDirectory() as folder:
-            for bad, words in (([1.2, 2.0], "at most 1"), ([0.5], "at most 1"), ([0, 2], "at most 1")):
-                file = pathlib.Path(folder) / "bad.lidarsensor.json"
-                file.write_text(json.dumps({**sensor.description,
-                                            "range_interval": {"value": bad, "unit": "1", "source": "x"}}))
-                with self.assertRaisesRegex(al.Error, words):
-                    al.Sensor(file)
+        for bad, words in (([1.2, 2.0], "at most 1"), ([0.5], "at most 1"), ([0, 2], "at most 1")):
+            file = self.folder / "bad.lidarsensor.json"
+            file.write_text(json.dumps({**sensor.description,
+                                        "range_interval": {"value": bad, "unit": "1", "source": "x"}}))
+            with self.assertRaisesRegex(al.Error, words):
+                al.Sensor(file)
 
     def test_numbers_that_a_file_lacks_are_marked(self):
         """The guide's example gives neither pattern nor pulse."""
         guide = (FILES.parents[1] / "Documentation" / "guide" / "lidars.md").read_text("utf-8")
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "mine.lidarsensor.json"
-            file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], "utf-8")
-            rows = _display.sensor_rows(al.Sensor(file))
-            for key in ("beams", "elevations", "pulse energy", "rate", "range gate"):
-                self.assertIn("not given", str(rows[key]), key)
-            self.assertNotIn("not given", rows["wavelength"])
-            self.assertIn("500 m at 10 %", rows["point 1 of the sheet"])
-            run = subprocess.run([sys.executable, "-m", "avianlidar", "reach", "--sensor", str(file)],
-                                 capture_output=True, text=True)
-            self.assertIn("does not give azimuth_step, elevation_step", run.stderr)
-            self.assertNotEqual(run.returncode, 0)
-            shown = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "Mid360"], capture_output=True,
-                                   text=True).stdout
-            self.assertLessEqual(max(map(len, shown.splitlines())), 120)
-            self.assertIn("61 %", shown)
+        file = self.folder / "mine.lidarsensor.json"
+        file.write_text(re.search(r"```json\n(.*?)```", guide, re.DOTALL)[1], "utf-8")
+        rows = _display.sensor_rows(al.Sensor(file))
+        for key in ("beams", "elevations", "pulse energy", "rate", "range gate"):
+            self.assertIn("not given", str(rows[key]), key)
+        self.assertNotIn("not given", rows["wavelength"])
+        self.assertIn("500 m at 10 %", rows["point 1 of the sheet"])
+        run = subprocess.run([sys.executable, "-m", "avianlidar", "reach", "--sensor", str(file)],
+                             capture_output=True, text=True)
+        self.assertIn("does not give azimuth_step, elevation_step", run.stderr)
+        self.assertNotEqual(run.returncode, 0)
+        shown = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "Mid360"], capture_output=True,
+                               text=True).stdout
+        self.assertLessEqual(max(map(len, shown.splitlines())), 120)
+        self.assertIn("61 %", shown)
         for name in al.Sensor.presets():
             self.assertEqual(al.Sensor(name).not_given, (), name)
 
@@ -226,7 +224,7 @@ class Manuals(unittest.TestCase):
                           "OS2_128": 1.0, "Pandar40P": 0.3, "PandarXT32": 0.05})
 
 
-class Own(unittest.TestCase):
+class Own(InFolder):
     def test_beams_go_where_and_when_they_are_told(self):
         rng = np.random.default_rng(1)
         directions = rng.normal(size=(500, 3))
@@ -262,10 +260,9 @@ class Own(unittest.TestCase):
         self.assertGreater(one.echoes.number_of_points, 10)
         for name in ("beam_id", "energy", "distance_m", "timestamp", "azimuth"):
             np.testing.assert_allclose(other[name], one[name], rtol=1e-12, err_msg=name)
-        with tempfile.TemporaryDirectory() as folder:  # no rows and columns
-            other.save(os.path.join(folder, "list.pcd"))
-            self.assertEqual(al.load_cloud(os.path.join(folder, "list.pcd")).number_of_points,
-                             other.echoes.number_of_points)
+        # no rows and columns
+        other.save("list.pcd")
+        self.assertEqual(al.load_cloud("list.pcd").number_of_points, other.echoes.number_of_points)
         with self.assertRaisesRegex(al.Error, "set Columns and Rows"):
             other.range_image()
 
@@ -303,7 +300,7 @@ class Own(unittest.TestCase):
         self.assertEqual(source.GetOutput().GetNumberOfPoints(), 15360)
 
 
-class Reader(unittest.TestCase):
+class Reader(InFolder):
     def test_reads_a_file_and_stays_in_its_place(self):
         reader = vtkAvianLidar.vtkAvianLidarSensorReader()
         reader.ErrorsAsDataOn()  # else VTK prints that it failed
@@ -312,26 +309,25 @@ class Reader(unittest.TestCase):
         reader.SetPosition(1, 2, 3)
         reader.Update()
         self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (1, 0))
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder, "own.lidarsensor.json")
-            good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text("utf-8"))
-            file.write_text(json.dumps(good), "utf-8")
-            reader.SetFileName(str(file))
-            reader.Update()
-            expected = al.Sensor(file, position=(1, 2, 3)).beams
-            beams = al.Cloud(reader.GetOutput())
-            self.assertEqual(beams.number_of_points, 57856)
-            self.assertTrue(same(beams, expected))
-            self.assertEqual(repr(beams.fields), repr(expected.fields))
-            # A change of the file counts when it is asked for, and a bad one is an error until the next good one.
-            del good["values"]["wavelength"]["source"]
-            file.write_text(json.dumps(good), "utf-8")
-            reader.Update()
-            self.assertEqual(len(heard), 1)
-            reader.Reload()
-            reader.Update()
-            self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 0))
-            reader.SetFileName(str(FILES / "VLP16.lidarsensor.json"))
-            reader.Update()
-            self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 28928))
-            self.assertEqual(reader.GetPosition(), (1, 2, 3))
+        file = self.folder / "own.lidarsensor.json"
+        good = json.loads((FILES / "VLP32C.lidarsensor.json").read_text("utf-8"))
+        file.write_text(json.dumps(good), "utf-8")
+        reader.SetFileName(str(file))
+        reader.Update()
+        expected = al.Sensor(file, position=(1, 2, 3)).beams
+        beams = al.Cloud(reader.GetOutput())
+        self.assertEqual(beams.number_of_points, 57856)
+        self.assertTrue(same(beams, expected))
+        self.assertEqual(repr(beams.fields), repr(expected.fields))
+        # A change of the file counts when it is asked for, and a bad one is an error until the next good one.
+        del good["values"]["wavelength"]["source"]
+        file.write_text(json.dumps(good), "utf-8")
+        reader.Update()
+        self.assertEqual(len(heard), 1)
+        reader.Reload()
+        reader.Update()
+        self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 0))
+        reader.SetFileName(str(FILES / "VLP16.lidarsensor.json"))
+        reader.Update()
+        self.assertEqual((len(heard), reader.GetOutput().GetNumberOfPoints()), (2, 28928))
+        self.assertEqual(reader.GetPosition(), (1, 2, 3))

@@ -3,15 +3,13 @@
 """Receivers fitted to the points of a sheet: numbers that are known come back, boards at the fitted ranges are seen as
 often as the sheet says when they are simulated, and bad sheets are named."""
 import json
-import pathlib
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import numpy as np
 
 import avianlidar as al
+from echotools import InFolder
 from avianlidar import _sheet
 
 HALF = 2e-3  # rad
@@ -30,7 +28,7 @@ def points(receiver, numbers, *rows):
     return [{**point, "range": receiver.range(point, *numbers)} for point in made]
 
 
-class Sheets(unittest.TestCase):
+class Sheets(InFolder):
 
     def test_known_numbers_come_back(self):
         start = sensor()
@@ -126,24 +124,23 @@ class Sheets(unittest.TestCase):
         start = sensor()
         sheet = points(_sheet.Receiver(start), (3e-4, 10.0, 0.6), (0.1, 0.5, 0), (0.1, 0.9, 0), (0.8, 0.5, 0),
                        (0.8, 0.9, 0))
-        with tempfile.TemporaryDirectory() as folder:
-            made, fitted = (pathlib.Path(folder) / f"{name}.lidarsensor.json" for name in ("made", "fitted"))
-            description = al.Sensor("Automotive16").description
-            description["values"]["half_beamwidth"]["value"] = HALF
-            description["values"]["range_gate"]["value"] = 600.0
-            description["values"]["background_radiance"]["value"] = 0.0
-            made.write_text(json.dumps({**description, "sheet": {"points": sheet}}), "utf-8")
-            run = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "--fit", str(made), "-o", str(fitted)],
-                                 capture_output=True, text=True)
-            self.assertEqual(run.returncode, 0, run.stderr)
-            self.assertIn("ranges by this receiver have an error of about 0 %", run.stdout)
-            # Over itself: a fit of what is fitted is the same.
-            before = fitted.read_text("utf-8")
-            again = [sys.executable, "-m", "avianlidar", "sensors", "--fit", str(fitted), "-o", str(fitted)]
-            self.assertEqual(subprocess.run(again, capture_output=True).returncode, 0)
-            self.assertEqual(fitted.read_text("utf-8"), before)
-            self.assertEqual(sorted(path.name for path in made.parent.iterdir()), sorted((made.name, fitted.name)))
-            of = al.Sensor(fitted)
-            self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)
-            self.assertEqual((of.description["sheet"]["bar"] < 0.01, len(of.description["sheet"]["residuals"])),
-                             (True, 4))
+        made, fitted = (self.folder / f"{name}.lidarsensor.json" for name in ("made", "fitted"))
+        description = al.Sensor("Automotive16").description
+        description["values"]["half_beamwidth"]["value"] = HALF
+        description["values"]["range_gate"]["value"] = 600.0
+        description["values"]["background_radiance"]["value"] = 0.0
+        made.write_text(json.dumps({**description, "sheet": {"points": sheet}}), "utf-8")
+        run = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "--fit", str(made), "-o", str(fitted)],
+                             capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("ranges by this receiver have an error of about 0 %", run.stdout)
+        # Over itself: a fit of what is fitted is the same.
+        before = fitted.read_text("utf-8")
+        again = [sys.executable, "-m", "avianlidar", "sensors", "--fit", str(fitted), "-o", str(fitted)]
+        self.assertEqual(subprocess.run(again, capture_output=True).returncode, 0)
+        self.assertEqual(fitted.read_text("utf-8"), before)
+        self.assertEqual(sorted(path.name for path in made.parent.iterdir()), sorted((made.name, fitted.name)))
+        of = al.Sensor(fitted)
+        self.assertAlmostEqual(of.receiver_aperture / 3e-4, 1, delta=0.01)
+        self.assertEqual((of.description["sheet"]["bar"] < 0.01, len(of.description["sheet"]["residuals"])),
+                         (True, 4))

@@ -9,7 +9,6 @@ import os
 import pathlib
 import unittest
 import unittest.mock
-import warnings
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -29,7 +28,8 @@ from avianlidar.apps.inputs._read import read_plan
 from avianlidar.apps.pages import _drawing
 from avianlidar.apps.places._candidates import Surfaces, code_of, pierced
 from avianlidar.apps.places._features import properties_of
-from helpertools import error_of
+import scenetools as st
+from helpertools import error_of, warned
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
 PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
@@ -373,8 +373,7 @@ class Airport(unittest.TestCase):
         folder = fresh("plan")
         square = siting.to_geodetic([(100, -700, 0), (500, -700, 0), (500, 700, 0), (100, 700, 0), (100, -700, 0)],
                                     self.scene.geodetic_origin)[:, :2].tolist()
-        (folder / "taken.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
-            {"type": "Feature", "properties": None, "geometry": {"type": "Polygon", "coordinates": [square]}}]}))
+        (folder / "taken.geojson").write_text(st.features(("Polygon", [square], None)))
         wanted = {"spacing": 400, "bounds": [-400, 800, -600, 600], "masts": [5, 8], "draws": 2, "sensors": 2}
         plan = {**read_plan(COVERAGE), "places": 100, "coverage": TARGET, "spacing": 100.0}
         free = Sites(Plan({**plan, "siting": wanted})).positions
@@ -462,7 +461,7 @@ class Plans(unittest.TestCase):
 
     def test_wrong_plans_are_named(self):
         lattice = {"spacing": 1500}
-        (self.folder / "none.geojson").write_text('{"type": "FeatureCollection", "features": []}')
+        (self.folder / "none.geojson").write_text(st.features())
         (self.folder / "nowhere.lidarscene.json").write_text(
             '{"version": 1, "objects": [{"ground": {"size": 100}, "material": "wall"}]}')
         for member, change in (
@@ -548,10 +547,8 @@ class Plans(unittest.TestCase):
                          "geometry": {"type": "LineString", "coordinates": siting.to_geodetic(
                                           [(*end, 0) for end in ends], origin)[:, :2].tolist()}} for ends, tags in rows]
             file.write_text(json.dumps({"features": features}))
-            with warnings.catch_warnings(record=True) as heard:
-                warnings.simplefilter("always")
-                found = siting.read_runways(file, origin)
-            return [one.name for one in found], "".join(str(one.message) for one in heard)
+            found, heard = warned(lambda: siting.read_runways(file, origin))
+            return [one.name for one in found], "".join(heard)
 
         west, east, north = [(-900, 0), (-100, 0)], [(100, 1), (900, 1)], [(-900, 300), (900, 300)]
         far = [(9000, 0), (9900, 0)]
@@ -592,13 +589,11 @@ class Plans(unittest.TestCase):
         gdal.VectorTranslate(str(self.folder / "a.geojson"), str(self.folder / "a.osm"), format="GeoJSON",
                              layers=["lines"])
         self.assertIn("other_tags", (self.folder / "a.geojson").read_text())
-        with warnings.catch_warnings(record=True) as heard:
-            warnings.simplefilter("always")
-            found = siting.read_runways(self.folder / "a.geojson", (53.6, 13.3, 0.0))
+        found, heard = warned(lambda: siting.read_runways(self.folder / "a.geojson", (53.6, 13.3, 0.0)))
         self.assertEqual([(one.name, round(one.width, 2)) for one in found],
                          [('Main, "old"', 45.0), ("18L/36R", 30.0), ("18R/36L", 45.11), ("05/23", 45.0),
                           ("13/31", 45.0)])
-        self.assertEqual([str(one.message).partition("a.geojson: ")[2] for one in heard],
+        self.assertEqual([one.partition("a.geojson: ")[2] for one in heard],
                          ["13/31: width is 'wide', expected metres above 0; the runway counts as 45 m wide"])
         extract = read_extract(self.folder / "a.osm", packaged("places/airport.json"))
         rows = [properties_of(one, packaged("places/airport.json")) for one in extract.features]
@@ -626,10 +621,9 @@ class Plans(unittest.TestCase):
         file = self.write(siting={"points": "points.csv"})
         table = self.folder / "points.csv"
         table.write_bytes(b"\xef\xbb\xbfx, y\r\n300, -900\r\n600, -900\r\n300, -900\r\n")  # as spreadsheets save UTF-8
-        with warnings.catch_warnings(record=True) as said:
-            warnings.simplefilter("always")
-            np.testing.assert_allclose(Sites(Plan(read_plan(file))).positions[:, :2], [(300, -900), (600, -900)])
-        self.assertEqual([str(w.message)[:6] for w in said], ["1 of 3"])
+        sites, (said,) = warned(lambda: Sites(Plan(read_plan(file))))
+        np.testing.assert_allclose(sites.positions[:, :2], [(300, -900), (600, -900)])
+        self.assertEqual(said[:6], "1 of 3")
         for content, words in (("x,y\n1,2\n3,nan\n", "row 2"), ("x,z\n1,2\n", "columns x and y"),
                                ('x,y\n1,2\n"3,4\n5,6\n', "points.csv: line 3: is not CSV")):
             table.write_text(content)

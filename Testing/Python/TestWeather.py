@@ -6,16 +6,15 @@ What others published: extinction by Koschmieder, Kruse and Kim; the fog of anot
 Simulation on Real LiDAR Point Clouds, ICCV 2021, after R. H. Rasshofer et al., Adv. Radio Sci. 9, 2011), its hard and
 its soft target; Mie's theory of droplets and drops."""
 import math
-import os
-import pathlib
-import tempfile
 import unittest
 
 import numpy as np
 from scipy import integrate, stats
 
 import avianlidar as al
+from echotools import InFolder
 from helpertools import run
+from scenetools import SHIPPED
 
 import exampletools  # noqa: F401  (finds the studies)
 import drops
@@ -110,7 +109,7 @@ class Coverage(unittest.TestCase):
         self.assertTrue(0.1 < found.mean() < 0.9)
 
 
-class Labels(unittest.TestCase):
+class Labels(InFolder):
     def test_points_of_rain_are_known_as_such(self):
         echoes = al.Scan(NOTHING, looking(beams=100), rain_rate=20).echoes
         air = np.array(echoes["object_id"]) == -2
@@ -119,30 +118,25 @@ class Labels(unittest.TestCase):
         self.assertTrue(np.all(np.array(echoes["label_share"])[air] > 0.5))
         self.assertEqual(float(echoes.fields["rain_rate"]), 20)
         self.assertEqual(int(echoes.fields["air_backscatter"]), 0)
-        with tempfile.TemporaryDirectory() as folder:
-            al.save(echoes, pathlib.Path(folder) / "rain.las")
-            self.assertEqual(set(np.array(al.load_cloud(pathlib.Path(folder) / "rain.las")["classification"])[air]),
-                             {7})
-            al.save(echoes, pathlib.Path(folder) / "rain.bin")
-            self.assertEqual(set((np.fromfile(pathlib.Path(folder) / "rain.label", np.uint32) & 0xffff)[air]), {1})
+        al.save(echoes, "rain.las")
+        self.assertEqual(set(np.array(al.load_cloud("rain.las")["classification"])[air]), {7})
+        al.save(echoes, "rain.bin")
+        self.assertEqual(set((np.fromfile("rain.label", np.uint32) & 0xffff)[air]), {1})
 
 
-class Words(unittest.TestCase):
+class Words(InFolder):
     def test_wrong_weather_is_named(self):
         with self.assertRaisesRegex(al.Error, "receiver_aperture above 0, for example Search905"):
             al.Scan(NOTHING, al.Sensor("Airport16"), rain_rate=1).echoes
 
     def test_weather_on_the_command_line(self):
-        scene = os.path.join(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "airport", "scene",
-                             "hongqiao.lidarscene.json")
-        with tempfile.TemporaryDirectory() as folder:
-            for words, wrong in (("fog:2000 rain:5", ""), ("fog:-1", "weather 'fog:-1'"),
-                                 ("fog:800 rain:1 haze:5000", "weather 'haze:5000' after 'fog:800'")):
-                code, out, error = run("scan", scene, "--sensor", "Search905", "--sensor-set", "azimuth_step=6", "-o",
-                                       os.path.join(folder, "a.vtp"), "--weather", *words.split())
-                self.assertEqual(code, 2 if wrong else 0, words)
-                self.assertIn(wrong, error)
-                self.assertEqual("of the air (object_id -2)" in out, not wrong)
+        for words, wrong in (("fog:2000 rain:5", ""), ("fog:-1", "weather 'fog:-1'"),
+                             ("fog:800 rain:1 haze:5000", "weather 'haze:5000' after 'fog:800'")):
+            code, out, error = run("scan", SHIPPED, "--sensor", "Search905", "--sensor-set", "azimuth_step=6", "-o",
+                                   "a.vtp", "--weather", *words.split())
+            self.assertEqual(code, 2 if wrong else 0, words)
+            self.assertIn(wrong, error)
+            self.assertEqual("of the air (object_id -2)" in out, not wrong)
 
 
 class Extinction(unittest.TestCase):

@@ -119,21 +119,18 @@ WHOLE = FINITE + (0.5, 1e300)
 ONE = ("text", "two", NAN, INF)
 LIMITS = {
     "half_beamwidth": (0.0, -1e-3, 1.05, "missing"), "half_beamwidth_across": (0.2,), "beam_outline": (2,),
-    "beam_rotation": (),
-    "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2),
-    "pulse_energy": (0.0, 1e200, "missing"),
-    "pulse_width": (-1e-9, 1e-5, "missing"), "frequency": (0.0, "missing"),
-    "sampling_interval": (0.0, 1e300, "missing"),
-    "range_gate": (0.0, 1e17, "missing"), "noise_photon_rate": (-1.0, "missing"),
-    "lower_energy_limit": (-1e-9, "missing"),
+    "beam_rotation": (), "beam_profile": (2, "missing"), "gaussian_truncation": (5.0,), "receiver_model": (1, 2),
+    "pulse_energy": (0.0, 1e200, "missing"), "pulse_width": (-1e-9, 1e-5, "missing"), "frequency": (0.0, "missing"),
+    "sampling_interval": (0.0, 1e300, "missing"), "range_gate": (0.0, 1e17, "missing"),
+    "noise_photon_rate": (-1.0, "missing"), "lower_energy_limit": (-1e-9, "missing"),
     "upper_energy_limit": (1e-6, "missing"), "receiver_aperture": (-1.0, "missing"), "display_length": (-1.0,),
     "revolution": (0.5, 1e300)}
 CLASS_NAMES = ("field", "object_classes", ("numbers",))
 NAMED = ("field", "object_names", ("numbers",)), ("field", "material_names", ("numbers",))
 OF_BEAMS = [("points", "position", (NAN, 1.1e30)), ("point", "direction", FINITE + ((0, 0, 0), "missing")),
             ("point", "reported_direction", FINITE), ("point", "beam_id", WHOLE + (-1, "twice")),
-            ("point", "laser_id", WHOLE),
-            ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE), ("point", "timestamp", FINITE)]
+            ("point", "laser_id", WHOLE), ("point", "azimuth", FINITE), ("point", "vertical_angle", FINITE),
+            ("point", "timestamp", FINITE)]
 OF_BEAMS += [("field", name, ONE + values) for name, values in LIMITS.items()]
 OF_SURFACES = [("points", "point", (NAN, INF, 1e31)), ("cell", "object_id", WHOLE), ("cell", "material_id", WHOLE),
                ("cell", "kd", FINITE + (-0.1,)), ("cell", "ks", FINITE + (0.99, "missing")),
@@ -220,9 +217,8 @@ CLASSES = [
     ("Tracks", {"Pattern": al.vtkAvianLidarTracks.PATTERN_LINES}, (produced_trails, NOTHING)),
     ("LASWriter", {}, (produced_echoes, [
         ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE),
-        ("point", "number_of_returns", WHOLE),
-        ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE), ("point", "object_id", WHOLE),
-        ("point", "energy", ARRAY), CLASS_NAMES,
+        ("point", "number_of_returns", WHOLE), ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE),
+        ("point", "object_id", WHOLE), ("point", "energy", ARRAY), CLASS_NAMES,
         ORIGIN_READ])),
     ("KITTIWriter", {}, (produced_echoes, [
         ("points", "point", (1e39, NAN)), ("point", "intensity", FINITE), ("point", "object_id", WHOLE), CLASS_NAMES,
@@ -230,15 +226,14 @@ CLASSES = [
     ("KITTIWriter", {"LabelSource": 1}, (produced_echoes, [("point", "material_id", WHOLE)])),
     ("PCDWriter", {"Organisation": 1}, (produced_echoes, [
         ("points", "point", (1e39,)), ("point", "beam_id", WHOLE), ("point", "laser_id", WHOLE),
-        ("point", "energy_received", FINITE),
-        ("point", "intensity", ARRAY), *PLACE, ("field", "azimuth_range", ("text", "two")),
+        ("point", "energy_received", FINITE), ("point", "intensity", ARRAY), *PLACE,
+        ("field", "azimuth_range", ("text", "two")),
         *(("field", name, ONE) for name in ("number_of_channels", "azimuth_step", "minimum_elevation",
                                             "elevation_step"))])),
     ("PLYWriter", {}, (produced_echoes, [("points", "point", (1e39,)), ("point", "energy", ("short",))])),
     ("GeoJSONWriter", {}, (produced_echoes, [
         ("point", "energy", FINITE + ("missing",)), ("point", "object_id", WHOLE), ("point", "material_id", WHOLE),
-        ORIGIN_READ,
-        ("field", "lower_energy_limit", ONE), CLASS_NAMES, *NAMED]))]
+        ORIGIN_READ, ("field", "lower_energy_limit", ONE), CLASS_NAMES, *NAMED]))]
 
 
 def algorithms():

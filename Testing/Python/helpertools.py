@@ -6,6 +6,7 @@ import io
 import os
 import pty
 import subprocess
+import warnings
 
 import numpy as np
 
@@ -65,6 +66,13 @@ def error_of(*words):
     code, _, said = run(*words)
     assert code == 2, said
     return said
+
+
+def warned(call):
+    """What a call gives, and the texts of its warnings."""
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        return call(), [str(one.message) for one in heard]
 
 
 def rows_of(file):

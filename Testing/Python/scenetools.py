@@ -83,6 +83,15 @@ def write_scene(folder, name, scene):
     return file
 
 
+def features(*rows, **more):
+    """GeoJSON as text. @param rows kind of the geometry, coordinates, properties; no kind: no geometry @param more
+    members of the collection"""
+    return json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": properties,
+         "geometry": {"type": kind, "coordinates": coordinates} if kind else None}
+        for kind, coordinates, properties in rows], **more})
+
+
 def frame(origin, place):
     """Position and rotation of the tangent frame of a place in that of the origin, by ECEF (WGS84, the textbook's
     formula)."""
