@@ -279,11 +279,6 @@ def test_files():
         os.remove(f"{base}-{name}.lidarscene.json")
 
 
-def error_of(data):
-    array = data.GetFieldData().GetAbstractArray("error")
-    return array.GetValue(0) if array else ""
-
-
 def test_errors_as_data():
     """As in ParaView: outputs after a failure are empty, and the pipeline goes on. The error is named on
     the failed rank and on rank 0. The image is made again on all ranks or on none, even if a rank has no part of it."""
@@ -314,7 +309,7 @@ def test_errors_as_data():
                 for port in range(algorithm.GetNumberOfOutputPorts()):
                     data = algorithm.GetOutputDataObject(port)
                     assert data.IsA("vtkImageData") or data.GetNumberOfPoints() == 0, data.GetNumberOfPoints()
-                    assert words in error_of(data), error_of(data)
+                    assert words in faulttools.error_of(data), faulttools.error_of(data)
                 heard = heard_by_all(messages)
                 assert words in heard[0] and words in heard[LAST], heard
                 assert all(text.count("ERROR:") == 1 for text in heard if text), heard
@@ -325,7 +320,7 @@ def test_errors_as_data():
             material.SetKd(0.3)
             material.Modified()
             update(image)
-            assert not error_of(image.GetOutput()) and not error_of(echo.GetOutput())
+            assert not faulttools.error_of(image.GetOutput()) and not faulttools.error_of(echo.GetOutput())
             assert total(image.GetOutput().GetNumberOfPoints()) >= (RANKS - 1) * rows
             said[0].errors.clear()
 

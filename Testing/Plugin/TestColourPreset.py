@@ -7,18 +7,12 @@ import os
 
 from paraview import servermanager, simple
 
-from plugin_testing import SOURCE_DIR, airport, load_macro, load_plugin
+from plugin_testing import SOURCE_DIR, airport, colour_of, load_macro, load_plugin
 
 MACROS = os.path.join(SOURCE_DIR, "Plugin", "Macros")
 PRESET = "Avian lidar HSB"
 LIMITS = (2e-6, 6.25e-5)
 STATUS = ("echo", "no surface", "below the lower limit", "saturated", "outside the gate")
-
-
-def colour_of(function, energy):
-    rgb = [0, 0, 0]
-    function.GetColor(energy, rgb)
-    return rgb
 
 
 def assert_eq_13(table):

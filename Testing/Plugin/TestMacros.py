@@ -23,7 +23,8 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
-from plugin_testing import OUTPUT_DIR, PLUGIN, SOURCE_DIR, airport, assert_same, compare, fetch, load_macro, load_plugin
+from plugin_testing import (OUTPUT_DIR, PLUGIN, SOURCE_DIR, airport, assert_same, colour_of, compare, fetch, load_macro,
+                            load_plugin)
 
 FOLDER = os.path.dirname(PLUGIN)
 AIRPORT, BIRDS, BEAM, COVERAGE, TRACKED, FOG, CLASSES = (
@@ -63,13 +64,6 @@ def find(*names):
 
 def points_of(*names):
     return [source.GetDataInformation().GetNumberOfPoints() for source in find(*names)]
-
-
-def colour_of(table, value):
-    """The colour of a value in a table of colours."""
-    colour = [0.0, 0.0, 0.0]
-    table.SMProxy.GetClientSideObject().GetColor(value, colour)
-    return colour
 
 
 def document(name, view, size):
@@ -282,7 +276,7 @@ class Macros(Case):
         simple.Render(self.view)
         found = fetch(echoes)
         energies = found["energy"][found["object_id"] >= 10000]
-        hues = [colorsys.rgb_to_hsv(*colour_of(table, energy))[0] for energy in energies]
+        hues = [colorsys.rgb_to_hsv(*colour_of(table.SMProxy.GetClientSideObject(), energy))[0] for energy in energies]
         self.assertLess(numpy.median(hues), 0.55)  # blue is 0.67
 
     def test_ground_fog(self):

@@ -71,6 +71,13 @@ def direct_echoes(columns):
     return beams, echoes
 
 
+def colour_of(function, value):
+    """The colour of a value by a function of colours."""
+    colour = [0.0, 0.0, 0.0]
+    function.GetColor(value, colour)
+    return colour
+
+
 def compare(name):
     """The picture in the folder for temporary files with the baseline of that name."""
     pictures.compare(os.path.join(OUTPUT_DIR, name), name)

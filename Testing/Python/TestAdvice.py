@@ -6,8 +6,6 @@ errors."""
 import contextlib
 import io
 import json
-import os
-import pathlib
 import re
 import unittest
 
@@ -18,9 +16,10 @@ import avianlidar as al
 from avianlidar import _command
 from avianlidar._measurement import DEFAULT, DIRECT, UNCONNECTED, Measurement, Trial, choose
 from echotools import given
+from exampletools import emptied
 from scenetools import SHIPPED
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "advice"
+OUTPUT = emptied("advice")
 EASY = {"energy": 0.05, "range": 0.2, "missed": 0.08, "beams": 150}
 SENSOR = al.Sensor("Airport16", azimuth_range=(-60.0, 60.0))
 CORNER = ([(-30, 50, -30), (0, 80, -30), (30, 50, -30), (-30, 50, 30), (0, 80, 30), (30, 50, 30)],
@@ -237,7 +236,6 @@ class Advice(unittest.TestCase):
             scan.advise(progress=progress)
 
     def test_command(self):
-        OUTPUT.mkdir(parents=True, exist_ok=True)
         files = [OUTPUT / f"advice{suffix}" for suffix in (".json", ".csv", ".png")]
         with contextlib.redirect_stdout(io.StringIO()) as out:
             code = _command.main(["advise", SHIPPED, "--energy", "0.05", "--missed", "0.3", "--beams", "60",

@@ -4,8 +4,6 @@ errors."""
 import itertools
 import json
 import math
-import os
-import pathlib
 import shutil
 import unittest
 import unittest.mock
@@ -17,9 +15,10 @@ import avianlidar as al
 from avianlidar import _command
 from avianlidar.apps.sequences import _bench
 from avianlidar.apps.sequences._bench import Points, write_bench
+from exampletools import emptied
 from helpertools import rows_of
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "bench"
+OUTPUT = emptied("bench")
 BIRD, WALL, CAR = 99, 50, 252
 SCANS = 6
 
@@ -42,7 +41,6 @@ def drawn(seed, count=400):
 
 def write_set(home, bird_class=BIRD, sequences=2):
     """A small set with random points. @return labels by (sequence, scan)"""
-    shutil.rmtree(home, ignore_errors=True)
     draw, found = np.random.default_rng(5), {}
     for number in range(sequences):
         folder = home / "sequences" / f"{number:02d}"
@@ -67,7 +65,6 @@ def write_set(home, bird_class=BIRD, sequences=2):
 
 def write_predictions(home, labels, called, score=None):
     """@param called, score functions of the labels of a scan"""
-    shutil.rmtree(home, ignore_errors=True)
     for (number, name), kind in labels.items():
         folder = home / "sequences" / number / "predictions"
         folder.mkdir(parents=True, exist_ok=True)
@@ -137,7 +134,6 @@ class Scores(unittest.TestCase):
 class Files(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        OUTPUT.mkdir(parents=True, exist_ok=True)
         cls.home = OUTPUT / "set"
         cls.labels = write_set(cls.home)
         draw = np.random.default_rng(1)
@@ -170,7 +166,6 @@ class Files(unittest.TestCase):
 
     def test_the_page_and_the_tables(self):
         out = OUTPUT / "page"
-        shutil.rmtree(out, ignore_errors=True)
         by_name = [OUTPUT / "noisy", OUTPUT / "right"]
         self.assertIn(_command.main(["bench", str(self.home), "--predictions", *map(str, by_name), "--first", "2", "-o",
                                      str(out)]), (None, 0))
@@ -204,7 +199,6 @@ class Files(unittest.TestCase):
     def test_leaves_no_new_folder_after_an_error(self):
         """The disk is full at the picture, after two tables."""
         out = OUTPUT / "full"
-        shutil.rmtree(out, ignore_errors=True)
         with unittest.mock.patch.object(_bench.drawing, "draw", side_effect=OSError(28, "No space left on device")), \
                 self.assertRaises(OSError):
             write_bench([self.home], [OUTPUT / "right"], out)
@@ -219,13 +213,8 @@ class Files(unittest.TestCase):
                 file = wrong / "sequences" / "00" / "predictions" / name
                 file.unlink() if content is None else file.write_bytes(content)
             return make
-        damaged = OUTPUT / "damaged" / "set"
-        shutil.rmtree(damaged, ignore_errors=True)
-        shutil.copytree(self.home, damaged)
+        damaged, lost = (shutil.copytree(self.home, OUTPUT / name / "set") for name in ("damaged", "lost"))
         (damaged / "sequences" / "00" / "done.json").write_text("{}", "utf-8")
-        lost = OUTPUT / "lost" / "set"
-        shutil.rmtree(lost, ignore_errors=True)
-        shutil.copytree(self.home, lost)
         manifest = json.loads((lost / "manifest.json").read_text())
         manifest["sequences"]["00"] = {"sha256": "of a set that `avianlidar sequence` has made"}
         (lost / "manifest.json").write_text(json.dumps(manifest), "utf-8")

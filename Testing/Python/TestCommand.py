@@ -27,7 +27,7 @@ import scenetools as st
 from helpertools import from_terminal
 
 SOURCE, SCENE = pathlib.Path(st.SOURCE), pathlib.Path(st.SHIPPED)
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "command"
+OUTPUT = exampletools.emptied("command")
 SHARE = next((folder / "share" for folder in pathlib.Path(al.__file__).resolve().parents
               if (folder / "share" / "man").is_dir()), None)
 FEW = ("--sensor-set", "azimuth_step=1.875")  # beams: 3,072
@@ -42,7 +42,6 @@ def run(*arguments):
 class Verbs(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        exampletools.emptied("command")
         cls.files = {suffix[1:]: OUTPUT / f"echoes{suffix}" for suffix in (*CLOUDS, ".png")}
         outs = [word for file in cls.files.values() for word in ("-o", file)]
         cls.ran = run("scan", SCENE, "--sensor", "search-905", *FEW, "--sensor-set", "range_gate=3000", "--scan-set",
@@ -291,7 +290,6 @@ class Surroundings(unittest.TestCase):
         return [sys.executable, "-m", "avianlidar", *map(str, arguments)]
 
     def test_a_bar_on_a_terminal_and_nowhere_else(self):
-        OUTPUT.mkdir(parents=True, exist_ok=True)
         work = self.command("scan", SCENE, *FEW, "-o", OUTPUT / "bar.vtp")
         self.assertEqual(subprocess.run(work, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=True).stderr,
                          b"")

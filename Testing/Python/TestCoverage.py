@@ -19,6 +19,7 @@ import flown_sensors
 from avianlidar import siting
 from avianlidar.vtkAvianLidar import vtkAvianLidarCoverage
 from echotools import given
+from helpertools import wall
 
 AIRPORT = os.path.join(exampletools.EXAMPLES, "airport", "scene")
 AIR = 8.9e-5  # 1/m
@@ -34,7 +35,7 @@ NOTHING = (np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
 REGION = {"bounds": (-200.0, 200.0, 20.0, 300.0, 0.0, 30.0), "spacing": (40.0, 40.0, 10.0)}
 SHAPE = (11, 8, 4)  # places of the region
 TARGET = {"species": "", "effective_area": 0.03}  # m2: quicker than a bird, of which many views are made
-WALL = ([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)])
+WALL = wall(50, 9)
 
 
 def airport():

@@ -2,6 +2,7 @@
 """Designs: closed forms of the link budget, the front against brute force, formulas that attack, bounds that are wrong,
 work that goes on."""
 import contextlib
+import functools
 import io
 import json
 import math
@@ -30,10 +31,7 @@ TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicke
 FAINT = {"coverage": {**TARGET, "effective_area": 0.001}, "places": 3000}  # which more energy sees from farther
 GULL = {"species": "herring gull", "clutter": False}
 NIGHT = {"preset": "Search905", "azimuth_step": 2.0, "background_radiance": 0.0}
-
-
-def fresh(name):
-    return emptied("design", name)
+fresh = functools.partial(emptied, "design")
 
 
 def plan_of(where, **changes):

@@ -2,8 +2,6 @@
 """Scenes of mesh files, arrays and mappings, materials for each triangle, copies, what is shown of a scene, a sensor
 and a scan, and warnings where a sensor can see nothing."""
 import copy
-import os
-import pathlib
 import pickle
 import subprocess
 import sys
@@ -21,7 +19,7 @@ from boxfiles import CORNERS, TRIANGLES, obj, stl, y_up
 from helpertools import WALL, box, same, warned
 from scenetools import SHIPPED
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "helper-scenes"
+OUTPUT = exampletools.emptied("helper-scenes")
 BOUNDS = (1, 2, 2, 4, 0, 3)
 
 
@@ -38,7 +36,6 @@ def said(run):
 class Sources(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        exampletools.emptied("helper-scenes")
         cls.stl = OUTPUT / "hangar.stl"
         cls.stl.write_text(stl(CORNERS, TRIANGLES), "utf-8")
         cls.las = OUTPUT / "cloud.las"

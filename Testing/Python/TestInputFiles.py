@@ -2,23 +2,24 @@
 """Files that are read: wrong scenes, damaged meshes, files on which libraries crash, never end or take all memory,
 pipes, devices, the network. Each is one error that names the file, the key and the fault, with an empty output, and the
 next good file is read."""
-import base64
 import copy
 import ctypes
 import gzip
 import json
-import multiprocessing
 import os
 import pathlib
 import socket
-import struct
 import tempfile
 import time
+
+import numpy as np
 
 import avianlidar
 import scenetools as st
 from avianlidar import _suffixes
+from boxfiles import gltf_document, with_buffer
 from filetools import Files
+from helpertools import Server
 
 DEEP = 80000
 CHAIN = 20000
@@ -34,16 +35,11 @@ def plan(**more):
 
 def gltf(children=((),), uri=None):
     """A triangle in the last node; `children`: of each node."""
-    uri = uri or "data:application/octet-stream;base64," + base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1,
-                                                                                        0)).decode()
     nodes = [{"children": list(c)} if c else {} for c in children]
     nodes[-1]["mesh"] = 0
-    return json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes,
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
-                       "max": [1, 1, 0]}],
-        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": uri}]})
+    document, blob = gltf_document([np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], "f4")], (0, 1, 2), nodes,
+                                   min=[0, 0, 0], max=[1, 1, 0])
+    return with_buffer(document, uri or blob)
 
 
 def legacy(kind, content):
@@ -107,18 +103,20 @@ IDS = "is broken: a cell has a point id outside 0 to "
 # Name, content, what is said; None: an error that names the file, or the one triangle; True: it is sound.
 MESHES = [
     ("points.obj", "v 0 0 0\nv 1 0 0\n", ""),
-    ("unknown.xyz", "1 2 3\n", "Assimp cannot read it"),
+    ("unknown.xyz", "1 2 3\n", "Assimp cannot read it: No suitable reader found"),
     ("torn.obj.gz", TORN[:len(TORN) // 2], "Assimp cannot read it"),
     ("nan.ply", ply("3 0 1 2\n", "0 0 0\nnan 0 0\n0 1 0\n"), "has a vertex whose coordinates are not finite"),
     ("far.ply", ply("4 0 1 2 99999999\n"), "is broken: a face has vertex 99999999 of 3"),
     ("endless.ply", ply("").split("property float y")[0] + "comment end_header\n0\n0\n",
      "is broken: its header has no line end_header"),
     ("short.ply", ply("3 0 1 2\n" * 3)[:-8], "is cut short"),
+    ("strips.ply", ply("3 0 1 2\n").replace("element face", "element tristrips"), "has triangle strips"),
     ("points.ply", ply("3 0 1 2\n").replace("vertex 3", "vertex 9"), "is cut short"),
     ("index.ply", ply("3 0 1 2\n3 0 1\n"), "is cut short or damaged: row 2 of an element has 3 numbers, expected 4"),
     ("text.obj", "v 1 2 abc\n" + TRIANGLE, 'line 1 is "v 1 2 abc", expected a vertex with three coordinates'),
     ("commas.obj", TRIANGLE.replace("v 0 0 0", "v 0,5 +1e-400 .5 \\\n").replace("v 1 0 0", "v 1,5 0 0#"), None),
     ("broken.vtp", "<VTKFile type='PolyData'", "VTK cannot read it"),
+    ("few.vtk", legacy("POLYDATA", WHOLE.replace("POINTS 3", "POINTS 4")), "VTK cannot read it"),
     ("strip.vtk", legacy("POLYDATA", POINTS + "TRIANGLE_STRIPS 1 3\n2 0 1\n"),
      "is broken: a vtkTriangleStrip has 2 points"),
     ("axis.vtk", legacy("RECTILINEAR_GRID", AXES.replace("2 2 2", "2 3 2")),
@@ -452,21 +450,15 @@ class Places(Inputs):
         """Even where users want PROJ to fetch its grids for other programs. What was not fetched is said."""
         for name, value in (("PROJ_NETWORK", "ON"), ("GDAL_HTTP_TIMEOUT", "5"), ("GDAL_HTTP_MAX_RETRY", "0")):
             os.environ[name] = value
-        requests = multiprocessing.Value("i", 0)
-        with socket.create_server(("127.0.0.1", 0)) as listener:
-            server = multiprocessing.Process(target=serve, args=(listener, requests), daemon=True)
-            server.start()
-            url = f"http://127.0.0.1:{listener.getsockname()[1]}"
-            said = {}
-            for asking in self.files_that_ask(url):
-                before = requests.value
-                said[json.dumps(asking)] = st.Read(self.scene(asking)).errors
-                self.assertEqual(requests.value - before, 0, asking)
-            with socket.create_connection(listener.getsockname()) as connection:  # the server hears whoever asks
-                connection.sendall(b"GET / HTTP/1.0\r\n\r\n")
-                self.assertIn(b"404", connection.recv(100))
-            self.assertEqual(requests.value, 1)
-            server.terminate()
+        server, said = Server(), {}
+        url = server.url
+        for asking in self.files_that_ask(url):
+            said[json.dumps(asking)] = st.Read(self.scene(asking)).errors
+            self.assertEqual(server.requests.value, 0, asking)
+        with socket.create_connection(server.listener.getsockname()) as connection:  # the server hears whoever asks
+            connection.sendall(b"GET / HTTP/1.0\r\n\r\n")
+            self.assertIn(b"404", connection.recv(100))
+        self.assertEqual(server.requests.value, 1)
         for asking, words in (({"footprints": "link.geojson", "height": 3}, url + "/crs is not fetched"),
                               ({"footprints": "system.vrt", "height": 3}, "GDAL cannot read it"),
                               ({"file": "triangle.obj", "crs": url + "/crs"}, "unknown coordinate reference system")):
@@ -490,14 +482,3 @@ class Places(Inputs):
         read = st.Read(file)
         self.assertEqual((read.errors, gdal.OSRGetPROJEnableNetwork()), ([], 1))
         self.assertEqual({name: gdal.CPLGetThreadLocalConfigOption(name, None) for name in options}, options)
-
-
-def serve(listener, requests):
-    """Answers that nothing is there, and counts."""
-    while True:
-        connection, _ = listener.accept()
-        with requests.get_lock():
-            requests.value += 1
-        connection.recv(1000)
-        connection.sendall(b"HTTP/1.0 404 none\r\n\r\n")
-        connection.close()

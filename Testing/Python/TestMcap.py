@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import avianlidar
 from avianlidar.apps.sequences import _mcap
+from cloudtools import pose_line, write_sequence
 from echotools import InFolder
 
 READER = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Testing" / "IO" / "mcap_to_json.js"
@@ -23,25 +24,14 @@ COUNTS = (5, 0, 70000)
 TIMES = (0.0, 2.5, 1234567.000001)
 
 
-def pose_line(rotation, place):
-    return " ".join(f"{value:.9g}" for value in np.column_stack([rotation, place]).ravel()) + "\n"
-
-
 class TestMcap(InFolder):
     def setUp(self):
         super().setUp()
         self.sequence, self.out = self.folder / "00", self.folder / "out.mcap"
-        chance, self.scans = np.random.default_rng(3), []
-        for name in ("velodyne", "labels"):
-            (self.sequence / name).mkdir(parents=True)
-        for number, count in enumerate(COUNTS):
-            points, labels = chance.random((count, 4), np.float32), chance.integers(0, 2**32, count, np.uint32)
-            points.tofile(self.sequence / "velodyne" / f"{number:06d}.bin")
-            labels.tofile(self.sequence / "labels" / f"{number:06d}.label")
-            self.scans.append((points, labels))
-        self.put("times.txt", "".join(f"{time:.6f}\n" for time in TIMES))
-        self.put("poses.txt", pose_line(TURN, (10, -20, 3)) * len(COUNTS))
-        self.put("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
+        chance = np.random.default_rng(3)
+        self.scans = [(chance.random((count, 4), np.float32), chance.integers(0, 2**32, count, np.uint32))
+                      for count in COUNTS]
+        write_sequence(self.sequence, self.scans, TIMES, pose_line(TURN, (10, -20, 3)))
 
     def put(self, name, text):
         (self.sequence / name).write_text(text, "utf-8")

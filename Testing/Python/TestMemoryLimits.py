@@ -17,7 +17,7 @@ import avianlidar
 import echotools
 import scenetools
 from cloudtools import WRITERS, add_array, add_field, cloud
-from faulttools import make, writer
+from faulttools import limited, make, writer
 
 MEGABYTE = 1 << 20
 LEAST, MOST = 0.25, 256  # MB that are left to the algorithm: it fails with the first, and does not with the last
@@ -25,20 +25,11 @@ STEPS = 4
 POINTS = 60000
 
 
-class Limit:
+def limit(more):
     """The address space that there is now and so many bytes more."""
-
-    def __init__(self, more):
-        self.more = more
-
-    def __enter__(self):
-        with open("/proc/self/status", encoding="ascii") as status:
-            size = next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmSize:"))
-        self.before = resource.getrlimit(resource.RLIMIT_AS)
-        resource.setrlimit(resource.RLIMIT_AS, (size + self.more, self.before[1]))
-
-    def __exit__(self, *_):
-        resource.setrlimit(resource.RLIMIT_AS, self.before)
+    with open("/proc/self/status", encoding="ascii") as status:
+        size = next(int(line.split()[1]) * 1024 for line in status if line.startswith("VmSize:"))
+    return limited(resource.RLIMIT_AS, size + more)
 
 
 def ball(resolution=120):
@@ -120,7 +111,7 @@ def walk(*names):
         for step in range(STEPS):
             algorithm = there[name]()
             messages = echotools.Messages(algorithm)
-            with Limit(int(MEGABYTE * LEAST * (MOST / LEAST) ** (step / (STEPS - 1)))):
+            with limit(int(MEGABYTE * LEAST * (MOST / LEAST) ** (step / (STEPS - 1)))):
                 execute(algorithm)
             if messages.errors:
                 failed += 1
@@ -138,7 +129,7 @@ def first_scan():
     """In a process of its own, which has no threads yet and no room for eight."""
     echo = echotools.scan(ball(50), echotools.sensor(), RaysPerBeam=10, NumberOfThreads=8)
     messages = echotools.Messages(echo)
-    with Limit(20 * MEGABYTE):
+    with limit(20 * MEGABYTE):
         echo.Update()
     assert not messages.errors and echo.GetOutput().GetNumberOfPoints(), messages.errors
 

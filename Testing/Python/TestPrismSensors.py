@@ -11,7 +11,7 @@ import numpy as np
 
 import avianlidar as al
 from echotools import InFolder, copy_of
-from helpertools import WALL
+from helpertools import WALL, wall
 
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
@@ -111,8 +111,7 @@ class Use(InFolder):
 
     def test_echoes_lie_on_the_wall_at_their_time(self):
         y = 20.0
-        corners = [(-30, y, -30), (30, y, -30), (30, y, 30), (-30, y, 30)]
-        scan = al.Scan(al.Scene((corners, [(0, 1, 2), (0, 2, 3)])), al.Sensor("Mid40"), noise=False, rays_per_beam=16)
+        scan = al.Scan(al.Scene(wall(y, 30)), al.Sensor("Mid40"), noise=False, rays_per_beam=16)
         scan.algorithm.UpdateTimeStep(0.4)
         echoes = al.Cloud(scan.algorithm.GetOutput())
         self.assertEqual(echoes.number_of_points, 10_000)

@@ -6,10 +6,8 @@ import os
 import pathlib
 import re
 import shutil
-import socket
 import sqlite3
 import struct
-import threading
 import time
 import unittest
 import unittest.mock
@@ -23,7 +21,7 @@ from avianlidar.apps.airport import _ground
 from avianlidar.apps.airport._osm import read_extract
 from avianlidar.apps.inputs._json import packaged
 from avianlidar.apps.places._gdal import coordinate_system, open_file, quiet
-from helpertools import warned
+from helpertools import Server, warned
 
 HERE = (53.6, 13.3, 0.0)  # latitude, longitude, height
 AROUND = (-1000.0, 1000.0, -1000.0, 1000.0)
@@ -255,24 +253,6 @@ class Values(unittest.TestCase):
             self.assertRegex(" ".join(warned(lambda: read_extract(file, KNOWN))[1]), said or "^$")
 
 
-class Server:
-    """Counts who connects."""
-
-    def __init__(self):
-        self.listener, self.count = socket.create_server(("127.0.0.1", 0)), 0
-        self.url = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
-        threading.Thread(target=self.serve, daemon=True).start()
-
-    def serve(self):
-        while True:
-            connection, _ = self.listener.accept()
-            self.count += 1
-            connection.settimeout(1)
-            connection.recv(300)
-            connection.sendall(b"HTTP/1.0 404 none\r\n\r\n")
-            connection.close()
-
-
 def mosaic(source, more="", srs="EPSG:4326", start="", relative=0):
     return (f'<VRTDataset rasterXSize="100" rasterYSize="100">{start}<SRS>{srs}</SRS>'
             '<GeoTransform>13.2,.002,0,53.7,0,-.002</GeoTransform><VRTRasterBand dataType="Float32" band="1">'
@@ -366,12 +346,12 @@ class Files(unittest.TestCase):
                     gdal.Open(name).ReadAsArray()
             with self.assertRaises(RuntimeError):
                 osr.SpatialReference().SetFromUserInput(url + "/crs")
-        self.assertEqual(server.count, 0)
+        self.assertEqual(server.requests.value, 0)
         self.assertIsNone(gdal.GetThreadLocalConfigOption("GDAL_HTTP_PROXY"))
         with socket.create_connection(server.listener.getsockname()) as connection:
             connection.sendall(b"GET / HTTP/1.0\r\n\r\n")
             self.assertIn(b"404", connection.recv(100))
-        self.assertEqual(server.count, 1)
+        self.assertEqual(server.requests.value, 1)
 
     def test_limits_hold_before_the_work(self):
         """What a file of some hundred bytes declares, is not done."""

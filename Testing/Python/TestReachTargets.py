@@ -2,8 +2,6 @@
 """Ranges of boards, spheres, drones, people, walls, ground, flocks and birds of one's own table: against closed forms
 of the radar equation, and against scans of still surfaces or flown flocks by the echo filter."""
 import math
-import os
-import pathlib
 import re
 import unittest
 import unittest.mock
@@ -16,8 +14,9 @@ from avianlidar import _sheet, reach
 from avianlidar.apps.coverage import _targets
 from avianlidar.vtkAvianLidar import vtkAvianLidarTracks
 import helpertools
+from exampletools import emptied
 
-OUTPUT = pathlib.Path(os.environ.get("AVIANLIDAR_TEST_OUTPUT_DIR", "/tmp")) / "reach"
+OUTPUT = emptied("reach")
 TABLE = """species,mass [kg],length [m],span [m],wing area [m2],passerine,airspeed [m/s]
 buzzard,0.9,0.54,1.2,0.22,no,11
 bunting,0.045,0.18,0.29,0.018,yes,13
@@ -176,7 +175,6 @@ class Targets(unittest.TestCase):
 class Verb(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        OUTPUT.mkdir(parents=True, exist_ok=True)
         cls.table = OUTPUT / "my.csv"
         cls.table.write_text(TABLE, "utf-8")
 

@@ -20,7 +20,7 @@ import echotools
 from echotools import InFolder
 from avianlidar import _display, reach, vtkAvianLidar
 from faulttools import text_array
-from helpertools import same
+from helpertools import same, wall
 
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
@@ -41,10 +41,6 @@ def frame(name):
 def around(angle):
     """Within -180 to 180."""
     return (angle + 180) % 360 - 180
-
-
-def wall(y, half=5):
-    return [(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)], [(0, 1, 2), (0, 2, 3)]
 
 
 class Manuals(InFolder):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A sequence as one time series: which scan at which time, poses, labels, boxes, and what is refused."""
 import os
-import pathlib
 import shutil
 
 import numpy as np
@@ -10,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from avianlidar.vtkAvianLidar import vtkAvianLidarSequenceReader
-from cloudtools import read_error
+from cloudtools import pose_line, read_error, write_sequence
 from echotools import InFolder, Messages
 
 TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # a quarter to the left
@@ -23,20 +22,13 @@ TIMES = (0.0, 0.5, 2.0)
 class Sequence(InFolder):
     def setUp(self):
         super().setUp()
-        for name in ("velodyne", "labels", "boxes"):
-            os.mkdir(os.path.join(self.folder, name))
-        self.write("times.txt", "".join(f"{time}\n" for time in TIMES))
-        pose = " ".join(map(repr, np.column_stack([TURN, SHIFT]).ravel().tolist()))
-        self.write("poses.txt", f"{pose}\n" * len(SCANS))
-        self.write("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
-        for number, points in enumerate(SCANS):
-            points.tofile(os.path.join(self.folder, "velodyne", f"{number:06d}.bin"))
-            np.full(len(points), (7 << 16) + 99, "<u4").tofile(
-                os.path.join(self.folder, "labels", f"{number:06d}.label"))
+        write_sequence(self.folder, [(points, np.full(len(points), (7 << 16) + 99, "<u4")) for points in SCANS], TIMES,
+                       pose_line(TURN, SHIFT))
+        os.mkdir("boxes")
         self.write("boxes/000001.txt", "bird 0.00 0.00 30 3 2 2.0 1.0 0.5 0.5 10000 1\n")
 
     def write(self, name, text):
-        pathlib.Path(os.path.join(self.folder, name)).write_text(text, "utf-8")
+        (self.folder / name).write_text(text, "utf-8")
 
     def reader(self):
         reader = vtkAvianLidarSequenceReader()

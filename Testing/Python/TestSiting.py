@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Siting: outlines, weights, searches against brute force, coverage that is kept, the airport's reference curve, files,
 plans that are wrong."""
+import functools
 import gzip
 import itertools
 import json
@@ -33,14 +34,10 @@ from helpertools import error_of, warned
 
 AIRPORT = pathlib.Path(exampletools.EXAMPLES) / "airport" / "scene"
 PLAN, SCENE = AIRPORT / "hongqiao.geojson", AIRPORT / "hongqiao.lidarscene.json"
-WALL = ([(-9, 50, -9), (9, 50, -9), (9, 50, 9), (-9, 50, 9)], [(0, 1, 2), (0, 2, 3)])
 COVERAGE = AIRPORT.parent.parent / "coverage" / "hongqiao.coverage.json"
 TARGET = {"species": "", "effective_area": 0.03, "clutter": False}  # m2: quicker than birds
 GREEDY = (0.105, 0.206, 0.292, 0.357, 0.405, 0.446)
-
-
-def fresh(name):
-    return exampletools.emptied("TestSiting", name)
+fresh = functools.partial(exampletools.emptied, "TestSiting")
 
 
 def drawn(sites, species, places, seed):
@@ -260,7 +257,7 @@ class Search(unittest.TestCase):
 
 class Kept(unittest.TestCase):
     def test_a_stopped_run_goes_on(self):
-        scene = al.Scene(WALL, material="Wall")
+        scene = al.Scene(TestCoverage.WALL, material="Wall")
         sensor = al.Sensor("Search905", azimuth_range=(-60.0, 60.0), position=(1, 2, 3))
         sites = np.array([(0, 0, 2), (10, 0, 2), (-30, 0, 2)], dtype=float)
         places = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3))
@@ -297,7 +294,8 @@ class Kept(unittest.TestCase):
         self.assertEqual(len(list(folder.iterdir())), 3 + 4)
 
     def test_damaged_files_are_made_again(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
+        scene = al.Scene(TestCoverage.WALL, material="Wall")
+        sensor = al.Sensor("Search905", azimuth_range=(-60.0, 60.0))
         sites = [(k, 0, 2) for k in range(7)]
         places = np.random.default_rng(1).uniform((-200, 60, 0), (200, 500, 40), (20, 3))
         folder = fresh("damaged")
@@ -633,7 +631,7 @@ class Plans(unittest.TestCase):
 
 class BadInput(unittest.TestCase):
     def test_is_named(self):
-        scene, sensor = al.Scene(WALL, material="Wall"), al.Sensor("Search905")
+        scene, sensor = al.Scene(TestCoverage.WALL, material="Wall"), al.Sensor("Search905")
         found, weights = drawn(5, 2, 30, 1)
         for words, work in (("outline", lambda: siting.is_near([(0, 0)], [(0, 0), (1, 1)])),
                             ("spacing", lambda: siting.lattice((0, 1, 0, 1), 0.0)),

@@ -13,7 +13,7 @@ from scipy import integrate, stats
 
 import avianlidar as al
 from echotools import InFolder
-from helpertools import run
+from helpertools import run, wall
 from scenetools import SHIPPED
 
 import exampletools  # noqa: F401  (finds the studies)
@@ -70,16 +70,15 @@ def of_air(visibility, sampling_interval, gate):
 
 class Law(unittest.TestCase):
     def test_walls_behind_are_weakened(self):
-        wall = al.Scene([(-9, 80, -9), (9, 80, -9), (9, 80, 9), (-9, 80, 9)], [(0, 1, 2), (0, 2, 3)],
-                        material=(0.5, 0, 1))
+        behind = al.Scene(wall(80, 9), material=(0.5, 0, 1))
         sensor = looking()
-        clear = al.Scan(wall, sensor, noise=False, attenuation_coefficient=0).echoes["return_energy"]
+        clear = al.Scan(behind, sensor, noise=False, attenuation_coefficient=0).echoes["return_energy"]
         rain = 2.7708e-3 * (1 - others.kept_in_view(5.6e-3, 905e-9, 25) / 2)  # 1/m
         for weather, mu in ((FOG, EXTINCTION), ({"rain_rate": 25, "attenuation_coefficient": 0}, rain)):
-            echoes = al.Scan(wall, sensor, noise=False, **weather).echoes
+            echoes = al.Scan(behind, sensor, noise=False, **weather).echoes
             self.assertEqual(len(echoes["return_energy"]), 1)  # the threshold follows
             self.assertAlmostEqual(echoes["return_energy"][0] / clear[0] / math.exp(-160 * mu), 1, delta=1e-3)
-        fixed = al.Scan(wall, looking(threshold_law="Fixed"), noise=False, return_mode="RangeUnits", **FOG).echoes
+        fixed = al.Scan(behind, looking(threshold_law="Fixed"), noise=False, return_mode="RangeUnits", **FOG).echoes
         self.assertIn(-2, fixed["object_id"])
 
 

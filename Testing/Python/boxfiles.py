@@ -16,6 +16,7 @@ LOW, HIGH = (1.0, 2.0, 0.0), (2.0, 4.0, 3.0)
 CORNERS = np.array([[(LOW, HIGH)[i >> k & 1][k] for k in range(3)] for i in range(8)])
 TRIANGLES = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4),
              (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
+COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "f4": 5126}  # of glTF
 QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 
 
@@ -47,22 +48,41 @@ def ply(points, faces):
             + "".join("%d %s\n" % (len(f), " ".join(map(str, f))) for f in faces))
 
 
+def gltf_document(parts, faces, nodes, **accessor):
+    """The JSON of a glTF file of one mesh, and its buffer, which has no name yet. @param parts an array of each
+    accessor, the first of positions @param accessor changes of the first accessor"""
+    blob, views, accessors = b"", [], []
+    for values in (*parts, np.asarray(faces, dtype="<u2").ravel()):
+        size = 1 if values.ndim == 1 else values.shape[1]
+        # elements begin at multiples of 4 bytes
+        step = -(-values.dtype.itemsize * size // 4) * 4 if size > 1 else values.dtype.itemsize
+        rows = np.zeros((len(values), step), dtype=np.uint8)
+        rows[:, :values.dtype.itemsize * size] = np.ascontiguousarray(values).view("u1").reshape(len(values), -1)
+        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": rows.size,
+                      **({"byteStride": step} if size > 1 else {})})
+        accessors.append({"bufferView": len(views) - 1, "componentType": COMPONENTS[values.dtype.str[1:]],
+                          "count": len(values), "type": "SCALAR" if size == 1 else f"VEC{size}"})
+        blob += rows.tobytes() + bytes(-rows.size % 4)
+    accessors[0].update(accessor)
+    primitive = {"attributes": {"POSITION": 0}, "indices": len(parts), "material": 0}
+    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes,
+            "materials": [{"name": "painted"}], "meshes": [{"primitives": [primitive]}], "bufferViews": views,
+            "accessors": accessors, "buffers": [{"byteLength": len(blob)}]}, blob
+
+
+def with_buffer(document, uri):
+    """A glTF document whose buffer is of that name, or in the file itself (bytes)."""
+    if isinstance(uri, bytes):
+        uri = "data:application/octet-stream;base64," + base64.b64encode(uri).decode()
+    document["buffers"][0]["uri"] = uri
+    return json.dumps(document)
+
+
 def gltf(points, faces):
-    indices = struct.pack("<%dH" % (3 * len(faces)), *(k for f in faces for k in f))
-    vertices = np.asarray(points, dtype="<f4").tobytes()
-    blob = base64.b64encode(indices + vertices).decode()
-    # Half of the shift in the scene graph, half in the vertices.
-    return json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-                       "nodes": [{"mesh": 0, "translation": [0.5, 0, 0]}], "materials": [{"name": "painted"}],
-                       "meshes": [{"primitives": [{"attributes": {"POSITION": 1}, "indices": 0, "material": 0}]}],
-                       "buffers": [{"uri": "data:application/octet-stream;base64," + blob,
-                                    "byteLength": len(indices) + len(vertices)}],
-                       "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(indices)},
-                                       {"buffer": 0, "byteOffset": len(indices), "byteLength": len(vertices)}],
-                       "accessors": [{"bufferView": 0, "componentType": 5123, "count": 3 * len(faces),
-                                      "type": "SCALAR"}, {"bufferView": 1, "componentType": 5126, "count": 8,
-                                                          "type": "VEC3", "min": points.min(0).tolist(),
-                                                          "max": points.max(0).tolist()}]})
+    """Half of the shift is in the scene graph, half in the vertices."""
+    return with_buffer(*gltf_document([np.asarray(points, dtype="<f4")], faces,
+                                      [{"mesh": 0, "translation": [0.5, 0, 0]}],
+                                      min=points.min(0).tolist(), max=points.max(0).tolist()))
 
 
 def collada(points, faces, up):

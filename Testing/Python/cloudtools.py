@@ -136,6 +136,21 @@ def read_error(name):
     return errors[0]
 
 
+def pose_line(rotation, place):
+    return " ".join(f"{value:.9g}" for value in np.column_stack([rotation, place]).ravel()) + "\n"
+
+
+def write_sequence(folder, scans, times, pose):
+    """A sequence in the folders of KITTI. @param scans points and labels @param pose a line, of all scans"""
+    for name, suffix, of_scans in zip(("velodyne", "labels"), (".bin", ".label"), zip(*scans)):
+        (folder / name).mkdir(parents=True)
+        for number, values in enumerate(of_scans):
+            values.tofile(folder / name / f"{number:06d}{suffix}")
+    (folder / "times.txt").write_text("".join(f"{time:.6f}\n" for time in times))
+    (folder / "poses.txt").write_text(pose * len(scans))
+    (folder / "calib.txt").write_text("P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n")
+
+
 def geodetic(data, frame):
     """The points in another frame, by the filter that is tested against other programs."""
     transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=data, MovePoints=True)

@@ -17,14 +17,19 @@ PLACE_OF_VALUE = 3  # of the one value of an array that is spoilt
 
 
 @contextlib.contextmanager
-def disk(size):
-    """Files may not grow beyond this: as if the disk were full then."""
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+def limited(kind, size):
+    """A limit of this process. @param kind RLIMIT_AS, or another one of `resource`"""
+    limits = resource.getrlimit(kind)
+    resource.setrlimit(kind, (size, limits[1]))
     try:
         yield
     finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        resource.setrlimit(kind, limits)
+
+
+def disk(size):
+    """Files may not grow beyond this: as if the disk were full then."""
+    return limited(resource.RLIMIT_FSIZE, size)
 
 
 def make(name, **properties):

@@ -3,8 +3,10 @@
 import contextlib
 import csv
 import io
+import multiprocessing
 import os
 import pty
+import socket
 import subprocess
 import warnings
 
@@ -17,6 +19,11 @@ def box(low, high):
     points = np.array([[ends[(i >> axis) & 1][axis] for axis in range(3)] for i in range(8)], dtype=float)
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return points, np.array([(a, b, c) for a, b, c, d in sides] + [(a, c, d) for a, b, c, d in sides])
+
+
+def wall(y, half=5):
+    """Corners and triangles of a square across the direction north."""
+    return [(-half, y, -half), (half, y, -half), (half, y, half), (-half, y, half)], [(0, 1, 2), (0, 2, 3)]
 
 
 WALL = box((-20, 50, -5), (20, 52, 15))
@@ -66,6 +73,24 @@ def error_of(*words):
     code, _, said = run(*words)
     assert code == 2, said
     return said
+
+
+class Server:
+    """Answers in a process of its own that nothing is there, and counts who asks."""
+
+    def __init__(self):
+        self.listener, self.requests = socket.create_server(("127.0.0.1", 0)), multiprocessing.Value("i", 0)
+        self.url = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
+        multiprocessing.get_context("fork").Process(target=self.serve, daemon=True).start()
+
+    def serve(self):
+        while True:
+            connection, _ = self.listener.accept()
+            with self.requests.get_lock():
+                self.requests.value += 1
+            connection.recv(1000)
+            connection.sendall(b"HTTP/1.0 404 none\r\n\r\n")
+            connection.close()
 
 
 def warned(call):
