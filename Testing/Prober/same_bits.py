@@ -132,12 +132,6 @@ def scribble(world, r):
 KINDS["scribble"] = scribble
 
 
-def outcome_of(seed, steps, seconds):
-    """(what is wrong, what was done, counts) of a child that runs the steps."""
-    value, fault, told = children.run(run, seed, steps, seconds=seconds)
-    return (f"{told[-1:]}: {fault}", told, {}) if fault else value
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", default="+", help="7, 3-9, 3- (until stopped), +100 from a free one, or + (until "
@@ -148,7 +142,8 @@ def main():
     failed, total, begin = [], {}, time.monotonic()
     for seed in children.seeds(arguments.seeds):
         steps = sequence(seed, arguments.steps)
-        wrong, said, counts = outcome_of(seed, steps, arguments.limit)
+        value, fault, told = children.run(run, seed, steps, seconds=arguments.limit)
+        wrong, said, counts = (f"{told[-1:]}: {fault}", told, {}) if fault else value
         total = {name: total.get(name, 0) + counts.get(name, 0) for name in total | counts}
         if wrong:
             failed.append(seed)

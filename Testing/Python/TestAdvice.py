@@ -3,8 +3,6 @@
 whole scan with other seeds and what surely fails does; more beams where these cannot tell how many echoes are wrong;
 settings that are equally fast are ranked by their errors; every kind of sensor, movers and weather; the same each time;
 errors."""
-import contextlib
-import io
 import json
 import re
 import unittest
@@ -13,10 +11,10 @@ import numpy as np
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import avianlidar as al
-from avianlidar import _command
 from avianlidar._measurement import DEFAULT, DIRECT, UNCONNECTED, Measurement, Trial, choose
 from echotools import given
 from exampletools import emptied
+from helpertools import error_of, run
 from scenetools import SHIPPED
 
 OUTPUT = emptied("advice")
@@ -237,18 +235,14 @@ class Advice(unittest.TestCase):
 
     def test_command(self):
         files = [OUTPUT / f"advice{suffix}" for suffix in (".json", ".csv", ".png")]
-        with contextlib.redirect_stdout(io.StringIO()) as out:
-            code = _command.main(["advise", SHIPPED, "--energy", "0.05", "--missed", "0.3", "--beams", "60",
-                                  *(word for file in files for word in ("-o", str(file)))])
+        code, out, _ = run("advise", SHIPPED, "--energy", "0.05", "--missed", "0.3", "--beams", "60",
+                           *(word for file in files for word in ("-o", file)))
         self.assertEqual(code, 0)
         found = json.loads(files[0].read_text("utf-8"))
-        options = next(line for line in out.getvalue().splitlines() if line.startswith("Command: ")).split()[2::2]
+        options = next(line for line in out.splitlines() if line.startswith("Command: ")).split()[2::2]
         self.assertEqual(dict(option.split("=") for option in options),
                          {key: str(value) for key, value in found["settings"].items()})
-        self.assertIn(f"scan.set(preset=\"Custom\", beam_samples=\"{found['settings']['beam_samples']}\"",
-                      out.getvalue())
+        self.assertIn(f"scan.set(preset=\"Custom\", beam_samples=\"{found['settings']['beam_samples']}\"", out)
         self.assertEqual(len(files[1].read_text("utf-8").splitlines()), 38)
         self.assertEqual(files[2].read_bytes()[:4], b"\x89PNG")
-        with contextlib.redirect_stderr(io.StringIO()) as error:
-            self.assertEqual(_command.main(["advise", SHIPPED, "-o", str(OUTPUT / "advice.las")]), 2)
-        self.assertIn("advice is not written as .las", error.getvalue())
+        self.assertIn("advice is not written as .las", error_of("advise", SHIPPED, "-o", OUTPUT / "advice.las"))

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Designs: closed forms of the link budget, the front against brute force, formulas that attack, bounds that are wrong,
 work that goes on."""
-import contextlib
 import functools
-import io
 import json
 import math
 import re
@@ -15,7 +13,6 @@ import numpy as np
 
 import TestBirdTracks
 from avianlidar import Error
-from avianlidar._command import main
 from avianlidar.apps.coverage import _design_page
 from avianlidar.apps.coverage._design import is_told, on_the_front, spread
 from avianlidar.apps.coverage._design_page import Designs
@@ -23,7 +20,7 @@ from avianlidar.apps.coverage._formula import Formula
 from avianlidar.apps.coverage._plan import Plan
 from avianlidar.apps.inputs._read import read_plan
 from exampletools import emptied
-from helpertools import rows_of
+from helpertools import rows_of, run
 
 BOUNDS = {"pulse_energy": {"from": 1e-4, "to": 4e-3, "logarithmic": True}, "receiver_aperture": [0.005, 0.02]}
 DESIGN = {"share": 0.12, "bounds": BOUNDS, "cost": "1000 * pulse_energy + 100 * receiver_aperture", "designs": 8}
@@ -191,8 +188,8 @@ class Work(unittest.TestCase):
         where = fresh("page")
         file = plan_of(where, description="<script>alert(1)</script> & what?",
                        design={**DESIGN, "cost_unit": "<b>kEUR"}, coverage=GULL)
-        with contextlib.redirect_stdout(io.StringIO()) as said:
-            self.assertEqual(main(["design", str(file), "-o", str(where / "out")]), 0)
+        code, said, _ = run("design", file, "-o", where / "out")
+        self.assertEqual(code, 0)
         self.assertEqual({path.name for path in (where / "out").iterdir()},
                          {"coverage", "design.csv", "design.html", "front.png", "sensitivities.csv",
                           "sensitivities.png"})
@@ -215,7 +212,7 @@ class Work(unittest.TestCase):
                       "scan costs ", page)
         chosen = next(row for row in rows if int(row["chosen"]))
         microjoules = 1e6 * float(chosen["pulse_energy [J]"]) * 38.4845e-6 / float(chosen["receiver_aperture [m2]"])
-        for answer in (said.getvalue().splitlines()[0], re.search('<p class="said">(.*?)</p>', page)[1]):
+        for answer in (said.splitlines()[0], re.search('<p class="said">(.*?)</p>', page)[1]):
             first = re.search(r"^The cheapest of .*; eye safety is not assessed: at 905 nm each pulse puts (\S+) µJ "
                               r"through a pupil of 7 mm", answer)
             self.assertAlmostEqual(float(first[1]) / microjoules, 1.0, delta=0.05)

@@ -38,13 +38,6 @@ def units_of(lidar):
     return found
 
 
-def from_surfaces(surfaces, points):
-    """How far points are from the nearest surface, m."""
-    distance = vtkImplicitPolyDataDistance()
-    distance.SetInput(surfaces)
-    return np.abs([distance.EvaluateFunction(point) for point in points])
-
-
 class Paper(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -152,7 +145,10 @@ class Paper(unittest.TestCase):
             subject, lidar = self.mine[sensor]
             mine = et.strings(lidar.GetOutput(), "object_names").index("Terminal 1")
             found = et.arrays(lidar.GetOutput())
-            away = from_surfaces(subject.tree.GetOutput(), found["points"][found["object_id"] == mine])
+            distance = vtkImplicitPolyDataDistance()
+            distance.SetInput(subject.tree.GetOutput())
+            points = found["points"][found["object_id"] == mine]
+            away = np.abs([distance.EvaluateFunction(point) for point in points])  # m, from the nearest surface
             rms.append(trade_runs.rms(away))
             number.append(len(away))
         self.assertAlmostEqual(number[1] / number[0], 4, delta=0.4)

@@ -28,11 +28,6 @@ def cells(scene, name):
     return vtk_to_numpy(scene.tree.GetOutput().GetCellData().GetArray(name))
 
 
-def said(run):
-    """The texts of the warnings of a call."""
-    return warned(run)[1]
-
-
 class Sources(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -43,7 +38,7 @@ class Sources(unittest.TestCase):
 
     def test_a_mesh_file(self):
         for file in (self.stl, str(self.stl)):
-            self.assertEqual(said(lambda: al.Scene(file)), [])
+            self.assertEqual(warned(lambda: al.Scene(file))[1], [])
             scene = al.Scene(file)
             self.assertEqual((scene.objects, scene.bounds, scene.number_of_triangles), (["hangar"], BOUNDS, 12))
         scene = al.Scene(self.stl, scale=0.001, material="Metal", name="shed")
@@ -61,9 +56,9 @@ class Sources(unittest.TestCase):
     def test_known_names_of_materials(self):
         file = OUTPUT / "panes.obj"
         file.write_text(obj(CORNERS, TRIANGLES, ("Glass", "paint")), "utf-8")
-        self.assertRegex(" ".join(said(lambda: al.Scene(file))),
+        self.assertRegex(" ".join(warned(lambda: al.Scene(file))[1]),
                          "no material or material_map for .*paint.*: taken as Wall")
-        self.assertEqual(said(lambda: al.Scene(file, material="Metal")), [])
+        self.assertEqual(warned(lambda: al.Scene(file, material="Metal"))[1], [])
         self.assertEqual(sorted(cells(al.Scene(file), "material_id")), [0] * 6 + [1] * 6)
 
     def test_meshes_of_other_libraries(self):
@@ -230,7 +225,7 @@ class NothingToSee(unittest.TestCase):
     """Warnings of scans that see nothing, or of scenes that are not as they were meant."""
 
     def words(self, scene, **sensor):
-        return said(al.Scan(scene, al.Sensor(azimuth_step=5, **sensor)).update)
+        return warned(al.Scan(scene, al.Sensor(azimuth_step=5, **sensor)).update)[1]
 
     def test_likely_mistakes_are_named(self):
         airport, walls = al.Scene(SHIPPED), al.Scene(WALL)
@@ -299,12 +294,12 @@ class NothingToSee(unittest.TestCase):
             self.assertEqual(self.words(al.Scene(scene), position=place), [], place)
         self.assertEqual(list(_sight.of_scene((-10000, 10000, -10000, 10000, 1500, 4000))), [])  # hills
         bird = al.mover(al.mesh(*box((-1, 80, 2), (1, 82, 4))), [(0, 0, 0)])
-        self.assertEqual(said(al.Scan(al.Scene(), al.Sensor(), movers=[bird]).update), [])
+        self.assertEqual(warned(al.Scan(al.Scene(), al.Sensor(), movers=[bird]).update)[1], [])
 
     def test_said_once_and_when_it_runs_only(self):
         scan = al.Scan(al.Scene(SHIPPED), al.Sensor(position=(0, 0, -50), azimuth_step=5))
-        self.assertEqual([len(said(scan.update)) for _ in range(3)], [2, 0, 0])
+        self.assertEqual([len(warned(scan.update)[1]) for _ in range(3)], [2, 0, 0])
         scan.attenuation_coefficient = 1e-5
-        self.assertRegex(" ".join(said(lambda: scan["energy"])), "^no echoes of")
+        self.assertRegex(" ".join(warned(lambda: scan["energy"])[1]), "^no echoes of")
         scan.sensor.position = (0, 0, -40)
-        self.assertRegex(" ".join(said(scan.update)), r"^the sensor at \(0, 0, -40\) m")
+        self.assertRegex(" ".join(warned(scan.update)[1]), r"^the sensor at \(0, 0, -40\) m")

@@ -46,14 +46,6 @@ def bits(data):
             **{name: (array(data, name).dtype, array(data, name).tobytes()) for name in names(data)}}
 
 
-def content(name):
-    return pathlib.Path(name).read_bytes()
-
-
-def save(whole, name=LAZ):
-    pathlib.Path(name).write_bytes(whole)
-
-
 @unittest.skipUnless(LASZIP, "built without LASzip")
 class TestLaz(InFolder):
     def test_the_same_as_las(self):
@@ -67,14 +59,14 @@ class TestLaz(InFolder):
         self.assertLess(os.path.getsize(LAZ), 0.8 * os.path.getsize(LAS))
 
     def assert_damaged(self, whole, words="damaged or cut short"):
-        save(whole)
+        pathlib.Path(LAZ).write_bytes(whole)
         error = read_error(LAZ)
         self.assertIn(LAZ, error)
         self.assertRegex(error, words)
 
     def test_damaged_files(self):
         write(al.vtkAvianLidarLASWriter(), random_cloud(200, True), LAZ)
-        whole = content(LAZ)
+        whole = pathlib.Path(LAZ).read_bytes()
         data, length = struct.unpack_from("<I", whole, 96)[0], struct.unpack_from("<H", whole, 105)[0]
         record = whole.index(b"laszip encoded") - 2
         table = struct.unpack_from("<Q", whole, data)[0]
@@ -95,7 +87,7 @@ class TestLaz(InFolder):
     def test_points_far_into_the_file(self):
         """LASzip holds what comes before them."""
         write(al.vtkAvianLidarLASWriter(), random_cloud(200, True), LAZ)
-        whole = bytearray(content(LAZ))
+        whole = bytearray(pathlib.Path(LAZ).read_bytes())
         data, far = struct.unpack_from("<I", whole, 96)[0], 2**32 - 2**20
         table = struct.unpack_from("<Q", whole, data)[0]
         struct.pack_into("<I", whole, 96, far)
@@ -136,9 +128,9 @@ class TestWithout(InFolder):
         words = f"{LAZ}: LAZ needs LASzip, which this build is without: install liblaszip-dev"
         assert_refused(self, al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAZ, words)
         write(al.vtkAvianLidarLASWriter(), random_cloud(1, False), LAS)
-        whole = bytearray(content(LAS))
+        whole = bytearray(pathlib.Path(LAS).read_bytes())
         whole[104] |= 128
         for count in (1, 10**12):
             struct.pack_into("<Q", whole, 247, count)
-            save(whole)
+            pathlib.Path(LAZ).write_bytes(whole)
             self.assertIn(words, read_error(LAZ))

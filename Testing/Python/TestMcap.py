@@ -7,7 +7,6 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -16,6 +15,7 @@ import avianlidar
 from avianlidar.apps.sequences import _mcap
 from cloudtools import pose_line, write_sequence
 from echotools import InFolder
+from helpertools import run
 
 READER = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Testing" / "IO" / "mcap_to_json.js"
 MODULES = pathlib.Path(os.environ.get("NODE_PATH", "none"))
@@ -35,10 +35,6 @@ class TestMcap(InFolder):
 
     def put(self, name, text):
         (self.sequence / name).write_text(text, "utf-8")
-
-    def convert(self, source):
-        return subprocess.run([sys.executable, "-m", "avianlidar", "convert", str(source), str(self.out)],
-                              capture_output=True, text=True, check=False)
 
     def read(self):
         self.assertEqual(_mcap.write(self.sequence, self.out), 3)
@@ -137,9 +133,9 @@ class TestMcap(InFolder):
             self.assertIn(words, str(caught.exception))
             self.assertFalse(self.out.exists())
 
-        run = self.convert(self.folder)
-        self.assertEqual((run.returncode, run.stdout, self.out.exists()), (2, "", False))
-        self.assertIn(f"{self.folder}: is not a folder of a sequence", run.stderr)
+        code, out, errors = run("convert", self.folder, self.out)
+        self.assertEqual((code, out, self.out.exists()), (2, "", False))
+        self.assertIn(f"{self.folder}: is not a folder of a sequence", errors)
         refused("cloud.las: is not a folder of a sequence", "cloud.las")
         pose = pose_line(TURN, (0, 0, 0))
         for name, text, words, mended in (("times.txt", "0\n1\n", "has 3 scans, 2 times and 3 poses", ""),

@@ -18,12 +18,8 @@ from echotools import InFolder, Messages, array, box, given, group
 WALL = 200.0  # m north
 
 
-def made(source=None, **properties):
-    return given(source or vtkAvianLidarMedium(), **properties)
-
-
 def medium(source=None, **properties):
-    source = made(source, **properties)
+    source = given(source or vtkAvianLidarMedium(), **properties)
     source.Update()
     return source.GetOutput()
 
@@ -66,7 +62,7 @@ class Source(unittest.TestCase):
                 (None, {"Visibility": -1.0}, "medium 'medium': visibility: "), (None, {"Kind": 7}, "Kind is 7"),
                 (None, {"DisplaySize": 0.0}, "DisplaySize is 0"), (opened, {"Shape": 4}, "4 edges with one triangle")):
             with self.subTest(part):
-                source = made(source, **properties)
+                source = given(source or vtkAvianLidarMedium(), **properties)
                 errors = Messages(source).errors
                 source.Update()
                 self.assertIn(part, "".join(errors))

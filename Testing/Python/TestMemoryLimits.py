@@ -67,9 +67,6 @@ def way():
     for name in WRITERS:
         on(writer(name, "r"), data).Write()
 
-    def many_beams():
-        return echotools.given(echotools.sensor(columns=1000, channels=40), ElevationStep=0.1, FiringInterval=0)
-
     def scene(name):
         return make("SceneReader", FileName=scenetools.write_scene(".", name, {"version": 1, "objects": [
             {"file": name, "material": "Wall"}, {"file": name, "material": "Metal", "position": [200, 0, 0]}]}))
@@ -82,7 +79,8 @@ def way():
         "RangeImage": lambda: on(make("RangeImage", Columns=360, Rows=8), echoes.GetOutput(), beams.GetOutput()),
         **{name + " reader": lambda suffix=suffix: make("PointCloudReader", FileName="r" + suffix)
            for name, suffix in WRITERS.items() if suffix != ".geojson"},
-        "BeamSource": many_beams,
+        "BeamSource": lambda: echotools.given(echotools.sensor(columns=1000, channels=40), ElevationStep=0.1,
+                                              FiringInterval=0),
         **{name: lambda name=name: on(make(name), surfaces) for name in ("Material", "CollisionTree")},
         "EchoFilter": lambda: echotools.scan(surfaces, beams.GetOutput(), RaysPerBeam=10),
         "scene of OBJ": lambda: scene("ball.obj"), "scene of VTP": lambda: scene("ball.vtp")}

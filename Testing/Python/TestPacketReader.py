@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Packets of a VLP-16 in pcap and pcapng files: points in closed form, those of a real revolution as another program
 decoded it, files of every kind, and every way in which they can be wrong."""
-import contextlib
-import io
 import os
 import pathlib
 import struct
@@ -13,10 +11,10 @@ import numpy as np
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
 import avianlidar
-from avianlidar import _command
 from avianlidar import vtkAvianLidar as al
 from cloudtools import field, points, read, read_error, unit
 from echotools import InFolder, Messages, array
+from helpertools import error_of, run
 
 FILE = "TestPacketReader.pcap"
 REAL = pathlib.Path(os.environ.get("AVIANLIDAR_DATA_DIR", "none")) / "lidar_vlp16_mrpt"
@@ -205,11 +203,9 @@ class TestPacketReader(InFolder):
             self.assertEqual((cloud.number_of_points, set(cloud["distance_m"])), (768, {2.0}))
         with self.assertRaisesRegex(avianlidar.Error, "has no packets of the sensor 192.168.1.7, expected"):
             avianlidar.load_cloud(FILE, sensor_address="192.168.1.7")
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
-            for more, code, words in (([], 2, "(--sensor-address)"),
-                                      (["--sensor-address", "192.168.1.201:2369", "--time", "0"], 0, "")):
-                self.assertEqual(_command.main(["convert", FILE, "out.pcd", *more]), code)
-                self.assertIn(words, said.getvalue())
+        self.assertIn("(--sensor-address)", error_of("convert", FILE, "out.pcd"))
+        code, _, said = run("convert", FILE, "out.pcd", "--sensor-address", "192.168.1.201:2369", "--time", 0)
+        self.assertEqual(code, 0, said)
         self.assertEqual(avianlidar.load_cloud("out.pcd").number_of_points, 384)
 
     def test_two_sensors_of_one_address_are_an_error(self):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reports of plans that ask for less than TestReport's, sites by mix and strikes, reach of receivers, and plans that
 are wrong."""
-import csv
 import html
 import math
 import os
@@ -167,8 +166,7 @@ class Less(unittest.TestCase):
     def test_ranges_of_the_package_are_those_of_the_table(self):
         """For all sensors and species; one of them is computed again."""
         ranges = packaged("inputs/ranges.json")["ranges"]
-        with open(SOURCE / "Documentation" / "evidence" / "tables" / "coverage-ranges.csv", encoding="utf-8") as file:
-            table = list(csv.DictReader(file))
+        table = rows_of(SOURCE / "Documentation" / "evidence" / "tables" / "coverage-ranges.csv")
         self.assertEqual({(row["receiver"], row["bird"]) for row in table},
                          {(name, bird) for name in al.Sensor.presets() for bird in SPECIES})
         for row in table:

@@ -63,19 +63,17 @@ class SceneryData(unittest.TestCase):
             shutil.copyfileobj(source, target)
         self.addCleanup(os.remove, target.name)
         for name in ("neubrandenburg", "neubrandenburg_osm"):
-            self.check_town(self.check(name, "Runway", 6))
-
-    def check_town(self, scene):
-        # 15,338 buildings, most of them four walls; 3 have a height, all others the default of 8 m.
-        triangles = st.corners(scene.block("Buildings"))
-        self.assertAlmostEqual(len(triangles) / 252200, 1, delta=0.001)
-        report = " ".join(scene.strings("scene_report"))
-        self.assertRegex(report, r"Buildings: 1533\d features have no usable height attribute")
-        walls = abs(st.normals(triangles)[:, 2]) < 1e-9 * st.areas(triangles)
-        roofs = triangles[~walls & (triangles[:, 0, 2] > 0)]
-        self.assertGreater((roofs[:, 0, 2] == 8).mean(), 0.999)
-        # The runway of 2,093 m by 50 m.
-        self.assertAlmostEqual(st.areas(st.corners(scene.block("Runway"))).sum() / (2093 * 50), 1, delta=0.005)
+            scene = self.check(name, "Runway", 6)
+            # 15,338 buildings, most of them four walls; 3 have a height, all others the default of 8 m.
+            triangles = st.corners(scene.block("Buildings"))
+            self.assertAlmostEqual(len(triangles) / 252200, 1, delta=0.001)
+            report = " ".join(scene.strings("scene_report"))
+            self.assertRegex(report, r"Buildings: 1533\d features have no usable height attribute")
+            walls = abs(st.normals(triangles)[:, 2]) < 1e-9 * st.areas(triangles)
+            roofs = triangles[~walls & (triangles[:, 0, 2] > 0)]
+            self.assertGreater((roofs[:, 0, 2] == 8).mean(), 0.999)
+            # The runway of 2,093 m by 50 m.
+            self.assertAlmostEqual(st.areas(st.corners(scene.block("Runway"))).sum() / (2093 * 50), 1, delta=0.005)
 
 
 if __name__ == "__main__":

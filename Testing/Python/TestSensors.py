@@ -2,14 +2,11 @@
 """Lidars that can be bought: their patterns against real frames, their limits against their data sheets, what of them
 is assumed; and beams of one's own."""
 import copy
-import csv
 import json
 import os
 import pathlib
 import pickle
 import re
-import subprocess
-import sys
 import unittest
 
 import numpy as np
@@ -20,7 +17,7 @@ import echotools
 from echotools import InFolder
 from avianlidar import _display, reach, vtkAvianLidar
 from faulttools import text_array
-from helpertools import same, wall
+from helpertools import error_of, rows_of, run, same, wall
 
 FILES = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Filters" / "Sensors"
 DATA = os.environ.get("AVIANLIDAR_DATA_DIR", "")
@@ -120,11 +117,9 @@ class Manuals(InFolder):
         """Bins of distance with the least reflectance (%, whole numbers) in frames of others. For OS0 and OS1 the table
         has the prediction. With EnergyLimits a surface's least reflectance grows with the square of the range and the
         air."""
-        with open(pathlib.Path(DATA) / "lidars_measured" / "least_reflectance.csv", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        with open(FILES.parents[1] / "Documentation" / "evidence" / "tables" / "measured-least.csv",
-                  encoding="utf-8") as file:
-            ours = [(row["frame"], row["measured over predicted"]) for row in csv.DictReader(file)]
+        rows = rows_of(pathlib.Path(DATA) / "lidars_measured" / "least_reflectance.csv")
+        ours = [(row["frame"], row["measured over predicted"]) for row in rows_of(
+                    FILES.parents[1] / "Documentation" / "evidence" / "tables" / "measured-least.csv")]
         for kind, other, name in (("OS0-128", "OS0-32", "OS0_128"), ("OS1-128", "OS1-32", "OS1_64"),
                                   ("HDL-32E", "", "HDL32E")):
             with self.subTest(name):
@@ -170,12 +165,8 @@ class Manuals(InFolder):
             self.assertIn("not given", str(rows[key]), key)
         self.assertNotIn("not given", rows["wavelength"])
         self.assertIn("500 m at 10 %", rows["point 1 of the sheet"])
-        run = subprocess.run([sys.executable, "-m", "avianlidar", "reach", "--sensor", str(file)],
-                             capture_output=True, text=True)
-        self.assertIn("does not give azimuth_step, elevation_step", run.stderr)
-        self.assertNotEqual(run.returncode, 0)
-        shown = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "Mid360"], capture_output=True,
-                               text=True).stdout
+        self.assertIn("does not give azimuth_step, elevation_step", error_of("reach", "--sensor", file))
+        _, shown, _ = run("sensors", "Mid360")
         self.assertLessEqual(max(map(len, shown.splitlines())), 120)
         self.assertIn("61 %", shown)
         for name in al.Sensor.presets():

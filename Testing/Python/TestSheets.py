@@ -3,13 +3,12 @@
 """Receivers fitted to the points of a sheet: numbers that are known come back, boards at the fitted ranges are seen as
 often as the sheet says when they are simulated, and bad sheets are named."""
 import json
-import subprocess
-import sys
 
 import numpy as np
 
 import avianlidar as al
 from echotools import InFolder
+from helpertools import run
 from avianlidar import _sheet
 
 HALF = 2e-3  # rad
@@ -130,14 +129,12 @@ class Sheets(InFolder):
         description["values"]["range_gate"]["value"] = 600.0
         description["values"]["background_radiance"]["value"] = 0.0
         made.write_text(json.dumps({**description, "sheet": {"points": sheet}}), "utf-8")
-        run = subprocess.run([sys.executable, "-m", "avianlidar", "sensors", "--fit", str(made), "-o", str(fitted)],
-                             capture_output=True, text=True)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("ranges by this receiver have an error of about 0 %", run.stdout)
+        code, out, errors = run("sensors", "--fit", made, "-o", fitted)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("ranges by this receiver have an error of about 0 %", out)
         # Over itself: a fit of what is fitted is the same.
         before = fitted.read_text("utf-8")
-        again = [sys.executable, "-m", "avianlidar", "sensors", "--fit", str(fitted), "-o", str(fitted)]
-        self.assertEqual(subprocess.run(again, capture_output=True).returncode, 0)
+        self.assertEqual(run("sensors", "--fit", fitted, "-o", fitted)[0], 0)
         self.assertEqual(fitted.read_text("utf-8"), before)
         self.assertEqual(sorted(path.name for path in made.parent.iterdir()), sorted((made.name, fitted.name)))
         of = al.Sensor(fitted)

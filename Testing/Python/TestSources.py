@@ -138,8 +138,7 @@ for path in (*files("Filters/Kernel", ".h"), *files("Filters/VolumeTree", ".h"))
     assert held and tests.issuperset(held), f"{path} names {set(held) - tests}, which are not there"
 
 # VTK 9.1 and 9.2 do not read the default, Appended, back with today's libexpat: whoever leaves XML files chooses Binary
-# or
-# Ascii, within a few lines of the writer, or in the call of ParaView's Save Data.
+# or Ascii, within a few lines of the writer, or in the call of ParaView's Save Data.
 XML_WRITER = re.compile(r"\bvtkXML\w*Writer\b")
 PARAVIEW = re.compile(r"\b(?:SaveData|CreateWriter|XML\w*Writer)\((?:[^()]|\([^()]*\))*\)")
 OURS = re.compile(rf"(?:{'|'.join(map(re.escape, (*_suffixes.WRITERS, '.csv')))})\"")

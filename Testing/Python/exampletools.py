@@ -40,10 +40,7 @@ def number(data, name):
 
 def read_table(file):
     """{column: {row: text}} of a Markdown table."""
-    return parse_table(pathlib.Path(file).read_text("utf-8").splitlines())
-
-
-def parse_table(lines):
+    lines = pathlib.Path(file).read_text("utf-8").splitlines()
     rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
     return {name: {row[0]: row[i + 1] for row in rows[2:]} for i, name in enumerate(rows[0][1:])}
 

@@ -193,10 +193,6 @@ def produced_echoes(**fields):
     return Producer(scan(blocks, source, **SETTINGS), "AttenuationCoefficient", 3.5e-5, "AttenuationCoefficient")
 
 
-def produced_trails():
-    return Producer(make("Tracks"), "Radius", 500.0, "Radius", 1)
-
-
 NOTHING = ()
 OF_IMAGE = [("point", name, ways + ("missing",)) for name, ways in (
     ("beam_id", WHOLE), ("energy_received", FINITE), ("distance_m", FINITE), ("energy", FINITE), ("object_id", WHOLE))]
@@ -219,7 +215,8 @@ CLASSES = [
     ("BeamView", {"BeamId": 9}, (produced_beams, NOTHING), (produced_surfaces, NOTHING)),
     ("Coverage", {}, (lambda: produced_beams(18, 1), NOTHING), (produced_surfaces, NOTHING)),
     ("Medium", {"Shape": al.vtkAvianLidarMedium.SHAPE_SURFACE}, (produced_surfaces, NOTHING)),
-    ("Tracks", {"Pattern": al.vtkAvianLidarTracks.PATTERN_LINES}, (produced_trails, NOTHING)),
+    ("Tracks", {"Pattern": al.vtkAvianLidarTracks.PATTERN_LINES},
+     (lambda: Producer(make("Tracks"), "Radius", 500.0, "Radius", 1), NOTHING)),
     ("LASWriter", {}, (produced_echoes, [
         ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE),
         ("point", "number_of_returns", WHOLE), ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE),
