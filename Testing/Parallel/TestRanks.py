@@ -182,9 +182,8 @@ def test_movers_are_those_of_all_ranks():
 
 def test_one_surface_in_pieces():
     """With ghost cells or without. Points on the seams are there twice, so the checksum alone is another one."""
-    ball = echotools.given(vtk.vtkSphereSource(), Center=(60, 0, 0), Radius=30)
-    ball.Update()
-    surface = echotools.painted(ball.GetOutput(), "Metal")
+    ball = echotools.output(echotools.given(vtk.vtkSphereSource(), Center=(60, 0, 0), Radius=30))
+    surface = echotools.painted(ball, "Metal")
     expected = alone(surface)
     for ghosts in (0, 1):
         pieces = vtk.vtkExtractPolyDataPiece()

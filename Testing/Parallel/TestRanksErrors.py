@@ -35,9 +35,7 @@ def heard_by_all(messages):
 
 def echoes_of(surfaces, beams=None):
     """The result of one process."""
-    alone = echotools.scan(surfaces, beams, **SETTINGS)
-    alone.Update()
-    return in_order(point_arrays(alone.GetOutput()))
+    return in_order(point_arrays(echotools.output(echotools.scan(surfaces, beams, **SETTINGS))))
 
 
 def check_good(echo, expected=None):

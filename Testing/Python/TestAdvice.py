@@ -12,7 +12,7 @@ from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import avianlidar as al
 from avianlidar._measurement import DEFAULT, DIRECT, UNCONNECTED, Measurement, Trial, choose
-from echotools import given
+from echotools import given, output
 from exampletools import emptied
 from helpertools import error_of, run
 from scenetools import SHIPPED
@@ -26,8 +26,7 @@ CORNER = ([(-30, 50, -30), (0, 80, -30), (30, 50, -30), (-30, 50, 30), (0, 80, 3
 
 def sphere():
     source = given(vtkSphereSource(), Center=(0, 60, 0), Radius=20, ThetaResolution=32, PhiResolution=32)
-    source.Update()
-    return al.Scene(source.GetOutput(), material="Metal")
+    return al.Scene(output(source), material="Metal")
 
 
 def errors_of(found, truth, limit, ghosts=True):

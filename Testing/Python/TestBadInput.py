@@ -11,7 +11,7 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to
 from avianlidar import _cloud, _properties, vtkAvianLidar as al
 from avianlidar._scene import COEFFICIENTS
 from cloudtools import WRITERS, add_array, cloud
-from echotools import InFolder, Messages, assert_same_bits, box, given, sensor, town
+from echotools import InFolder, Messages, assert_same_bits, box, given, output, sensor, town
 from faulttools import CLASSES, INF, NAN, PLACE_OF_VALUE, algorithms, beams, copy_of, make, spoil, surfaces
 
 NOTHING = (0, 0)
@@ -317,9 +317,7 @@ class Legal(Faults):
         self.assertEqual(echo.GetOutput().GetPointData().GetArray("azimuth").GetValue(0), 0.0)
 
     def test_orientation_without_numbers(self):
-        source, text = make("BeamSource", BeamOutline=1), vtk.vtkStringArray()
-        source.Update()
-        slits = copy_of(source.GetOutput())
+        slits, text = copy_of(output(make("BeamSource", BeamOutline=1))), vtk.vtkStringArray()
         text.SetName("orientation")
         text.InsertNextValue("north")
         slits.GetFieldData().AddArray(text)

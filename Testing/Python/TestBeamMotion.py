@@ -8,7 +8,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import points
-from echotools import COSTS, RAYS, Messages, array, assert_same_bits, box, copy_of, given, scan, sensor, town
+from echotools import COSTS, RAYS, Messages, array, assert_same_bits, box, copy_of, given, output, scan, sensor, town
 
 FIELDS = ("sway_amplitude", "sway_frequency", "encoder_jitter", "motion_seed")
 
@@ -21,11 +21,6 @@ def at(algorithm, time):
     """A copy of the output at a time."""
     algorithm.UpdateTimeStep(time)
     return copy_of(algorithm.GetOutputDataObject(0))
-
-
-def output(algorithm):
-    algorithm.Update()
-    return algorithm.GetOutput()
 
 
 class Beams(unittest.TestCase):

@@ -11,7 +11,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 import avianlidar as al
 from avianlidar._cloud import add_array
 from avianlidar.vtkAvianLidar import vtkAvianLidarBeamSource, vtkAvianLidarBeamView, vtkAvianLidarTracks
-from echotools import Messages, array, given, scan
+from echotools import Messages, array, given, output, scan
 
 HALF = 5.6e-3  # rad
 
@@ -29,8 +29,7 @@ def both(*plates):
     append = vtkAppendPolyData()
     for data in plates:
         append.AddInputData(data)
-    append.Update()
-    return append.GetOutput()
+    return output(append)
 
 
 def north(**properties):

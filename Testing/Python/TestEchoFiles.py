@@ -15,7 +15,7 @@ import avianlidar
 from avianlidar import vtkAvianLidar as al
 from avianlidar._cloud import add_array
 from cloudtools import cloud, field, names, points, unit
-from echotools import Messages, array, assert_same_bits, given, scan, town
+from echotools import Messages, array, assert_same_bits, given, output, scan, town
 
 echo = scan(town())
 echo.Update()
@@ -26,8 +26,7 @@ def through_file(data, name):
     avianlidar.save(data, name)
     reader = vtk.vtkXMLPolyDataReader()
     reader.SetFileName(name)
-    reader.Update()
-    return reader.GetOutput()
+    return output(reader)
 
 
 # .vtp: the points, all arrays, and everything in field data.
@@ -61,8 +60,7 @@ for name in ("pulse_energy", "half_beamwidth", "azimuth_step", "elevation_step",
     getattr(source, "Set" + name.title().replace("_", ""))(again.GetArray(name).GetValue(0))
 source.SetNumberOfChannels(int(again.GetArray("number_of_channels").GetComponent(0, 0)))
 remade = scan(town(), source, RaysPerBeam=int(again.GetArray("rays_per_beam").GetValue(0)), Seed=0)
-remade.Update()
-assert_same_bits(echoes, remade.GetOutput())
+assert_same_bits(echoes, output(remade))
 
 # A tree stays behind where surfaces go into a file, and is built again, without a word.
 tree = al.vtkAvianLidarCollisionTree()
@@ -113,9 +111,7 @@ os.remove("TestEchoFiles.vtp")
 
 
 def renamed(source):
-    filter_ = given(al.vtkAvianLidarUnitNames(), InputData=source)
-    filter_.Update()
-    return filter_.GetOutputDataObject(0)
+    return output(given(al.vtkAvianLidarUnitNames(), InputData=source))
 
 
 # Names in a table get their unit, values are shared, order and input stay.

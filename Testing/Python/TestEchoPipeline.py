@@ -9,7 +9,7 @@ from vtk.util import numpy_support
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import names
-from echotools import RAYS, array, arrays, assert_same_bits, copy_of, given, scan, sensor, town
+from echotools import RAYS, array, arrays, assert_same_bits, copy_of, given, output, scan, sensor, town
 
 # By default all beams of this town are integrated, and none needs a ray: what is about rays traces them. Beams that
 # meet the wall, of which more than 100 triangles enter each, have cells.
@@ -36,9 +36,7 @@ def ran(*arguments, **properties):
 
 
 def shuffled_beams():
-    source = sensor()
-    source.Update()
-    beams, shuffled, points = source.GetOutput(), vtk.vtkPolyData(), vtk.vtkPoints()
+    beams, shuffled, points = output(sensor()), vtk.vtkPolyData(), vtk.vtkPoints()
     points.SetDataTypeToDouble()
     shuffled.SetPoints(points)
     shuffled.GetPointData().CopyAllocate(beams.GetPointData())

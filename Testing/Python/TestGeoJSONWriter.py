@@ -11,7 +11,7 @@ import numpy as np
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, assert_refused, cloud, echoes, field, geodetic, names, write
-from echotools import InFolder, array, given
+from echotools import InFolder, array, given, output
 
 FILE = "TestGeoJSONWriter.geojson"
 # Half of the ninth decimal of a degree and of the fourth of a metre, and a little for the digits.
@@ -80,8 +80,7 @@ class TestGeoJSONWriter(InFolder):
     def test_places_from_the_arrays_of_the_geodetic_transform(self):
         transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=self.data, MovePoints=True)
         transform.SetTargetFrameToUTM()
-        transform.Update()
-        self.write(transform.GetOutput())
+        self.write(output(transform))
         rows = features()
         self.assert_places(rows)
         self.assertNotIn("longitude", rows[0])

@@ -19,7 +19,7 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarGeodeticTransform as Transform
 
 import cloudtools
 from cloudtools import points as coordinates
-from echotools import Messages, array, given, group
+from echotools import Messages, array, given, group, output
 
 NANO, NANO_UTM, EARTH = 10e-9, 20e-9, 6378137.0
 ENU, GEODETIC, UTM, ECEF = Transform.FRAME_ENU, Transform.FRAME_GEODETIC, Transform.FRAME_UTM, Transform.FRAME_ECEF
@@ -43,8 +43,7 @@ def cloud(points, kind=vtkPolyData, origin=None):
 def run(data, **properties):
     transform = given(Transform(), InputDataObject=data, **properties)
     messages = Messages(transform)
-    transform.Update()
-    return transform.GetOutputDataObject(0), messages
+    return output(transform), messages
 
 
 def program(arguments, rows):

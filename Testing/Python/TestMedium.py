@@ -13,15 +13,13 @@ import scenetools as st
 from avianlidar.vtkAvianLidar import (vtkAvianLidarCollisionTree, vtkAvianLidarCoverage, vtkAvianLidarEchoFilter,
                                       vtkAvianLidarMedium)
 from cloudtools import field as texts
-from echotools import InFolder, Messages, array, box, given, group
+from echotools import InFolder, Messages, array, box, given, group, output
 
 WALL = 200.0  # m north
 
 
 def medium(source=None, **properties):
-    source = given(source or vtkAvianLidarMedium(), **properties)
-    source.Update()
-    return source.GetOutput()
+    return output(given(source or vtkAvianLidarMedium(), **properties))
 
 
 def wall():

@@ -35,8 +35,7 @@ def limit(more):
 def ball(resolution=120):
     """About 28,000 triangles around the sensor."""
     source = echotools.given(vtk.vtkSphereSource(), Radius=50, ThetaResolution=resolution, PhiResolution=resolution)
-    source.Update()
-    return echotools.painted(source.GetOutput(), "Wall")
+    return echotools.painted(echotools.output(source), "Wall")
 
 
 def on(algorithm, *inputs):

@@ -9,7 +9,7 @@ import vtk
 from avianlidar import vtkAvianLidar as al
 from avianlidar._cloud import add_array
 from cloudtools import add_field, field
-from echotools import InFolder, array, bird, box, given, group, scan, sensor
+from echotools import InFolder, array, bird, box, given, group, output, scan, sensor
 
 
 def thing(name, azimuth, classes=None, ids=None):
@@ -77,11 +77,9 @@ class ObjectClasses(InFolder):
         paint = al.vtkAvianLidarMaterial()
         paint.SetInputData(surfaces)
         paint.SetMaterialToGlass()
-        paint.Update()
-        self.check(paint.GetOutputDataObject(0), ["hangar", "faces 0", "faces 1"], ["hangar", "runway", "fence"])
+        self.check(output(paint), ["hangar", "faces 0", "faces 1"], ["hangar", "runway", "fence"])
         paint.SetNameOfObject("pane")  # each block is one object: of one class, or of none that is known
-        paint.Update()
-        self.check(paint.GetOutputDataObject(0), ["pane", "pane"], ["hangar", ""])
+        self.check(output(paint), ["pane", "pane"], ["hangar", ""])
 
     def test_a_new_class_is_seen(self):
         surfaces = group(thing("hangar", 0, ["hangar"]), thing("goose", 180, ["bird"]))
@@ -91,8 +89,7 @@ class ObjectClasses(InFolder):
             add_field(surfaces.GetBlock(1), "object_classes", classes[1:])
             surfaces.Modified()
             for echo in (plain, treed):
-                echo.Update()
-                self.assertEqual(field(echo.GetOutput(), "object_classes"), classes)
+                self.assertEqual(field(output(echo), "object_classes"), classes)
         self.assertEqual(tree.GetNumberOfBuilds(), 1)
         self.assertEqual(plain.GetNumberOfTracedRays(), 0)
 

@@ -16,7 +16,7 @@ import avianlidar
 from avianlidar import vtkAvianLidar as al
 from cloudtools import (add_array, assert_extremes, assert_refused, cloud, echoes, extremes, field, names, points, read,
                         read_error, write)
-from echotools import InFolder, array
+from echotools import InFolder, array, given, output
 
 FILE, OTHER = "TestPLY.ply", "TestPLY.pcd"
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4",
@@ -131,11 +131,9 @@ class Written(InFolder):
             np.testing.assert_array_equal(got["xyz"[axis]], points(self.data)[:, axis].astype("f4"))
         for name in set(names(self.data)) - {"rgb", "intensity"}:
             np.testing.assert_array_equal(got[name], array(self.data, name), name)
-        reader = vtkPLYReader()
-        reader.SetFileName(FILE)
-        reader.Update()
-        np.testing.assert_array_equal(points(reader.GetOutput()), points(self.data).astype("f4"))
-        np.testing.assert_array_equal(array(reader.GetOutput(), "RGB"), array(self.data, "rgb"))
+        by_vtk = output(given(vtkPLYReader(), FileName=FILE))
+        np.testing.assert_array_equal(points(by_vtk), points(self.data).astype("f4"))
+        np.testing.assert_array_equal(array(by_vtk, "RGB"), array(self.data, "rgb"))
         subprocess.run(["pcl_ply2pcd", FILE, OTHER], check=True, capture_output=True)
         through = read(OTHER)
         np.testing.assert_array_equal(points(through), points(self.data).astype("f4"))
@@ -146,12 +144,10 @@ class Written(InFolder):
         add_array(mesh, "two numbers", np.array([(1, 2), (3, 4), (5, 6), (7, 8)], dtype="i2"))
         for kind in (0, 1):
             self.assertEqual(write(self.writer, mesh, FILE, FileType=kind), [])
-            reader = vtkPLYReader()
-            reader.SetFileName(FILE)
-            reader.Update()
-            np.testing.assert_array_equal(points(reader.GetOutput()), points(mesh))
-            polys = reader.GetOutput().GetPolys()
-            np.testing.assert_array_equal(vtk_to_numpy(polys.GetConnectivityArray()), (0, 1, 2, 0, 2, 3))
+            by_vtk = output(given(vtkPLYReader(), FileName=FILE))
+            np.testing.assert_array_equal(points(by_vtk), points(mesh))
+            cells = by_vtk.GetPolys().GetConnectivityArray()
+            np.testing.assert_array_equal(vtk_to_numpy(cells), (0, 1, 2, 0, 2, 3))
             self.assertEqual(al.vtkAvianLidarPointCloudReader.CanReadFile(FILE), 0)
             np.testing.assert_array_equal(array(read(FILE), "two_numbers_1"), (2, 4, 6, 8))
         os.remove(FILE)

@@ -11,7 +11,7 @@ import numpy as np
 import avianlidar
 from avianlidar import vtkAvianLidar as al
 from cloudtools import add_array, add_field, cloud, echoes, field, names, points, read, read_error, unit, write
-from echotools import InFolder, Messages, array, given
+from echotools import InFolder, Messages, array, given, output
 from helpertools import WALL
 
 FILE = "TestPointCloudReader.las"
@@ -296,8 +296,7 @@ class TestPointCloudReader(InFolder):
         transform.SetTargetFrameToENU()
         for move in (False, True):
             transform.SetMovePoints(move)
-            transform.Update()
-            self.assertNotEqual(bool(transform.GetOutput().GetFieldData().HasArray("crs_wkt")), move)
+            self.assertNotEqual(bool(output(transform).GetFieldData().HasArray("crs_wkt")), move)
         self.assertTrue(away.GetFieldData().HasArray("crs_wkt"))
         np.testing.assert_allclose(points(transform.GetOutput()), points(echoes()), rtol=0, atol=1e-6)
 

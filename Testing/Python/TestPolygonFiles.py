@@ -5,7 +5,6 @@ which a polygon is made."""
 import math
 import pathlib
 import time
-import unittest
 
 import numpy as np
 import vtk
@@ -13,7 +12,7 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import scenetools as st
 from avianlidar import vtkAvianLidar as al
-from echotools import InFolder, Messages, painted
+from echotools import InFolder, Messages, output, painted
 
 COUNT = 150
 # with a window: 1088 m2
@@ -96,8 +95,7 @@ def tree_of(surfaces):
     tree = al.vtkAvianLidarCollisionTree()
     heard = Messages(tree)
     tree.SetInputDataObject(surfaces)
-    tree.Update()
-    return tree.GetOutput(), [text for text in heard.all() if "cell arrays" not in text or "Also, " in text]
+    return output(tree), [text for text in heard.all() if "cell arrays" not in text or "Also, " in text]
 
 
 def areas_of(surfaces, count):
@@ -238,8 +236,7 @@ class PolygonFiles(InFolder):
         heard = Messages(medium)
         medium.SetInputDataObject(poly_data(rings))
         medium.SetShapeToSurface()
-        medium.Update()
-        out = medium.GetOutput()
+        out = output(medium)
         self.assertEqual(heard.all(), [])
         triangles = vtk_to_numpy(out.GetPoints().GetData())[vtk_to_numpy(
                                                                 out.GetPolys().GetConnectivityArray()).reshape(-1, 3)]

@@ -5,7 +5,7 @@ import math
 import re
 
 from avianlidar import vtkAvianLidar as al
-from echotools import RAYS, Messages, assert_same_bits, given, scan, town
+from echotools import RAYS, Messages, assert_same_bits, given, output, scan, town
 
 OVERRIDDEN = ("RaysPerBeam", "Sampling", "NumberOfReflections", "NumberOfConnections")
 EXPECTED = {"Draft": (25, 1, 3, 0), "Standard": (200, 1, 3, 2), "Reference": (3200, 1, 3, 8), "Preview": (100, 1, 1, 0),
@@ -47,9 +47,7 @@ for preset, expected in EXPECTED.items():
     assert used[preset] == {**own, **dict(zip(OVERRIDDEN, expected)), **method}, used[preset]
     assert echo.GetOutput().GetNumberOfPoints() > 20
     # What field data say makes the same file again as a custom setting.
-    again = scan(surfaces, **used[preset])
-    again.Update()
-    assert_same_bits(echo.GetOutput(), again.GetOutput())
+    assert_same_bits(echo.GetOutput(), output(scan(surfaces, **used[preset])))
 assert rays[1] > 5 * rays[0], rays
 
 
@@ -71,9 +69,4 @@ triangles = paper.GetOutput().GetNumberOfCells()
 assert (paper.GetNumberOfLeaves(), paper.GetNumberOfNodes(), paper.GetDepth()) == (
     triangles, 2 * triangles - 1, math.ceil(math.log2(triangles)))
 assert default.GetNumberOfLeaves() < triangles
-echoes = []
-for tree in (default, paper):
-    echo = scan(tree.GetOutput(), Preset=FILTER.PRESET_PAPER)
-    echo.Update()
-    echoes.append(echo.GetOutput())
-assert_same_bits(*echoes)
+assert_same_bits(*(output(scan(tree.GetOutput(), Preset=FILTER.PRESET_PAPER)) for tree in (default, paper)))

@@ -10,7 +10,7 @@ from vtk.util.vtkAlgorithm import VTKPythonAlgorithmBase
 
 from avianlidar import vtkAvianLidar as al
 from cloudtools import field
-from echotools import array, assert_same_bits, box, copy_of, given, scan, sensor, town
+from echotools import array, assert_same_bits, box, copy_of, given, output, scan, sensor, town
 
 PIPELINE = vtk.vtkStreamingDemandDrivenPipeline
 
@@ -65,9 +65,7 @@ def steps_of(algorithm, port=0):
 
 
 def sensor_output(columns):
-    lidar = sensor(columns, 4)
-    lidar.Update()
-    return lidar.GetOutput()
+    return output(sensor(columns, 4))
 
 
 def sweeping(columns=36, channels=4, revolutions=3, steps=9, rate=2.0):

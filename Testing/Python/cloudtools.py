@@ -8,7 +8,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from avianlidar import _cloud, _suffixes, vtkAvianLidar as al
-from echotools import Messages, array, copy_of, given, scan, sensor, town
+from echotools import Messages, array, copy_of, given, output, scan, sensor, town
 
 # The package's own table, so that a new writer is in every test of all: {"LAS": ".las", ...}, the first suffix of each.
 WRITERS = {}
@@ -61,9 +61,7 @@ def echoes(origin=ORIGIN, orientation=(30.0, 2.0, 1.0), columns=90, channels=4, 
     """Echoes of a town of boxes with classes, as from a scene with an origin; a copy to change."""
     beams = given(sensor(columns, channels), Position=(10.0, 20.0, 3.0), Orientation=orientation,
                   HalfBeamwidth=0.03)  # wide enough for several returns
-    filter_ = scan(town(), beams, **settings)
-    filter_.Update()
-    data = copy_of(filter_.GetOutput())
+    data = copy_of(output(scan(town(), beams, **settings)))
     if origin:
         add_field(data, "geodetic_origin", origin, "deg deg m")
     classes = ("terminal", "ground", "runway", "fence", "no such word")
@@ -155,8 +153,7 @@ def geodetic(data, frame):
     """The points in another frame, by the filter that is tested against other programs."""
     transform = given(al.vtkAvianLidarGeodeticTransform(), InputData=data, MovePoints=True)
     getattr(transform, "SetTargetFrameTo" + frame)()
-    transform.Update()
-    return points(transform.GetOutput())
+    return points(output(transform))
 
 
 def assert_same_arrays(one, two, left_out=()):

@@ -52,18 +52,16 @@ class Messages:
 def box(center, half, material=None, name=None):
     """A box as vtkPolyData of quads, with a material if one is named."""
     x, y, z = (2 * side for side in half)
-    source = given(vtk.vtkCubeSource(), Center=center, XLength=x, YLength=y, ZLength=z,
-                   OutputPointsPrecision=vtk.vtkAlgorithm.DOUBLE_PRECISION)
-    source.Update()
-    return source.GetOutput() if material is None else painted(source.GetOutput(), material, NameOfObject=name or "")
+    cube = output(given(vtk.vtkCubeSource(), Center=center, XLength=x, YLength=y, ZLength=z,
+                        OutputPointsPrecision=vtk.vtkAlgorithm.DOUBLE_PRECISION))
+    return cube if material is None else painted(cube, material, NameOfObject=name or "")
 
 
 def painted(data, material, **properties):
     """Surfaces with a material."""
     paint = given(al.vtkAvianLidarMaterial(), InputDataObject=data, **properties)
     getattr(paint, f"SetMaterialTo{material}")()
-    paint.Update()
-    return paint.GetOutputDataObject(0)
+    return output(paint)
 
 
 def group(*parts):
@@ -94,6 +92,12 @@ def copy_of(data):
     copy = data.NewInstance()
     copy.DeepCopy(data)
     return copy
+
+
+def output(algorithm):
+    """The first output of an algorithm, up to date."""
+    algorithm.Update()
+    return algorithm.GetOutputDataObject(0)
 
 
 def given(algorithm, **properties):

@@ -92,6 +92,13 @@ class Server:
             connection.sendall(b"HTTP/1.0 404 none\r\n\r\n")
             connection.close()
 
+    def asked(self):
+        """How many have asked, with this request."""
+        with socket.create_connection(self.listener.getsockname()) as connection:
+            connection.sendall(b"GET / HTTP/1.0\r\n\r\n")
+            assert b"404" in connection.recv(100)
+        return self.requests.value
+
 
 def warned(call):
     """What a call gives, and the texts of its warnings."""
