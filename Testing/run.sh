@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The suite: installs the packages that are missing, builds with ParaView's VTK, and runs the tests. Works on a bare Debian 12 or 13
-# as root. Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to ctest. Other builds, the
-# packages and what takes long are for run_more.sh and run_nightly.sh. At the end: the slowest tests.
+# The suite: installs the packages that are missing, builds with ParaView's VTK, and runs the tests. Works on a bare
+# Debian 12 or 13 as root. Tests on the rich sceneries run if AVIANLIDAR_DATA_DIR names their folder. Arguments go to
+# ctest. Other builds, the packages and what takes long are for run_more.sh and run_nightly.sh. At the end: the slowest
+# tests.
 set -eu
 
 cd "$(dirname "$0")/.."

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Which lines and branches of IO, Filters and the Python package the tests take: builds them with gcc's counters in
 # build/coverage (the kernel without: its loops would take many times as long), runs the tests and writes the tables of
-# Documentation/evidence/reliability.md. The kernel is built a second time with counters, for its own tests. The program that reads meshes
-# ends without writing its counters. Branches of exceptions that pass through are not counted. Left out are tests with the labels
-# `nightly`, `bare`, `install` (packages hold no paths of a build tree, counters do) and `plugin` (ParaView's windows take minutes),
-# and those on three and four ranks. Arguments go to ctest; with --report nothing is built or run.
+# Documentation/evidence/reliability.md. The kernel is built a second time with counters, for its own tests. The program
+# that reads meshes ends without writing its counters. Branches of exceptions that pass through are not counted. Left
+# out are tests with the labels `nightly`, `bare`, `install` (packages hold no paths of a build tree, counters do) and
+# `plugin` (ParaView's windows take minutes), and those on three and four ranks. Arguments go to ctest; with --report
+# nothing is built or run.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -35,8 +36,8 @@ include = $package/avianlidar/*.py, $package/avianlidar/apps/*.py, $package/avia
 parallel = True
 sigterm = True
 EOF
-  # Every Python that looks there imports it when it starts, whatever its environment. At its end the counts are written,
-  # also where a test has made the disk small.
+  # Every Python that looks there imports it when it starts, whatever its environment. At its end the counts are
+  # written, also where a test has made the disk small.
   cat > "$package/sitecustomize.py" << EOF
 import atexit, os, resource
 os.environ["COVERAGE_PROCESS_START"] = "$tree/python/rc"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# What must hold for every change beside the suite (run.sh): a bare Debian 13, on Debian 12 VTK 9.1, the kernel under the sanitizers
-# with inputs that fuzzers found, packages, instruction sets and long statistics. Needs root. With --nightly instead: the tests with the
-# labels `nightly` and `bare` of all builds, the kernel's in full.
+# What must hold for every change beside the suite (run.sh): a bare Debian 13, on Debian 12 VTK 9.1, the kernel under
+# the sanitizers with inputs that fuzzers found, packages, instruction sets and long statistics. Needs root. With
+# --nightly instead: the tests with the labels `nightly` and `bare` of all builds, the kernel's in full.
 set -eu
 
 cd "$(dirname "$0")/.."

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# What takes too long for every change: before a release, and whenever what it tests was touched. All tests with the labels
-# `nightly` and `bare` (packages and the README's commands on bare Debians, examples, the site, the probers' other seeds), the sanitizers
-# on the VTK classes and on threads, and the fuzzers for so many seconds (an hour without an argument).
-# usage: Testing/run_nightly.sh [seconds of fuzzing]
+# What takes too long for every change: before a release, and whenever what it tests was touched. All tests with the
+# labels `nightly` and `bare` (packages and the README's commands on bare Debians, examples, the site, the probers'
+# other seeds), the sanitizers on the VTK classes and on threads, and the fuzzers for so many seconds (an hour without
+# an argument). usage: Testing/run_nightly.sh [seconds of fuzzing]
 set -eu
 
 cd "$(dirname "$0")/.."

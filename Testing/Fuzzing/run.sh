@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the fuzzers and runs those named (all without a name) for so many seconds each (an hour without an argument), all at
-# once, at the lowest priority. What they find is left in build/fuzz/run: inputs that reach new code, crash-*, timeout-* and
-# oom-* files, logs. An input that fails goes into the corpus once it is mended, and a test of what failed beside it. Each run
-# adds a line to runs.csv, and the table of Documentation/evidence/reliability.md sums them up.
+# Builds the fuzzers and runs those named (all without a name) for so many seconds each (an hour without an argument),
+# all at once, at the lowest priority. What they find is left in build/fuzz/run: inputs that reach new code, crash-*,
+# timeout-* and oom-* files, logs. An input that fails goes into the corpus once it is mended, and a test of what failed
+# beside it. Each run adds a line to runs.csv, and the table of Documentation/evidence/reliability.md sums them up.
 # usage: Testing/Fuzzing/run.sh [seconds [Geometry] [PointCloud] [SceneReader]]
 set -eu
 

@@ -12,7 +12,8 @@ import re
 import sys
 
 FORBIDDEN = re.compile(r"-(ffast-math|Ofast|funsafe-math-optimizations|fassociative-math|freciprocal-math|"
-                       r"ffinite-math-only|fno-signed-zeros|fno-rounding-math|mfma|march=\S+|mtune=native|mfpmath=387)$")
+                       r"ffinite-math-only|fno-signed-zeros|fno-rounding-math|mfma|march=\S+|mtune=native|"
+                       r"mfpmath=387)$")
 IN_SOURCE = re.compile(r"FP_CONTRACT|fast-math|associative-math|float_control|optimize\s*\(")
 # std::fma is the same on every machine and written where it is meant. Highway's MulAdd is fused or not as the machine
 # has it: only for what decides where to look.

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a scan keeps of its beams belongs to all that they depend on: whoever adds a member to sensor, settings, needs or
-setup must say so, or the kernel does not compile (a setting has a row that says what it changes). Each is tried with a
-member more, in copies of the headers."""
+"""The keys of kept beams cover all members of sensor, settings, needs and setup: with another member, the kernel must
+not compile until the keys account for the member. Each structure gets another member in copies of the headers. (A
+setting has a row that says what it changes.)"""
 import argparse
 import json
 import pathlib
@@ -15,7 +15,8 @@ import tempfile
 # Header, struct, and the files that must not compile with a member more.
 GUARDED = [("Sensor/Sensor.h", "Sensor", ["Sensor/Sensor.cxx", "Scan/TraceCache.cxx"]),
            ("Setup/EchoSettings.h", "EchoSettings", ["Setup/EchoSettings.cxx"]),
-           ("Setup/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]), ("Setup/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
+           ("Setup/ScanSetup.h", "ModelNeeds", ["Scan/LitBeam.cxx"]),
+           ("Setup/ScanSetup.h", "ScanSetup", ["Scan/LitBeam.cxx"])]
 
 
 def compiles(entry, folder, text):
@@ -24,7 +25,8 @@ def compiles(entry, folder, text):
     first = next(i for i, word in enumerate(words) if re.search(r"(g|clang)\+\+|c\+\+", word))  # ccache comes before it
     last = words.index("-o")
     words = [words[first], f"-I{folder}", *words[first + 1:last], "-fsyntax-only", "-w", "-x", "c++", "-"]
-    return subprocess.run(words, cwd=entry["directory"], input=text, text=True, capture_output=True, check=False).returncode == 0
+    done = subprocess.run(words, cwd=entry["directory"], input=text, text=True, capture_output=True, check=False)
+    return done.returncode == 0
 
 
 def main():
@@ -40,10 +42,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for header in kernel.rglob("*.h"):  # all together, as a header looks for others beside itself first
             shutil.copy(header, folder)
-        wrong += [f"{name} as it is does not compile" for name, text in texts.items() if not compiles(entry, folder, text)]
+        wrong += [f"{name} as it is does not compile" for name, text in texts.items()
+                  if not compiles(entry, folder, text)]
         for header, struct, names in GUARDED:
             copy, text = pathlib.Path(folder, pathlib.Path(header).name), (kernel / header).read_text()
-            changed, count = re.subn(rf"(struct {struct}\n{{\n.*?\n)(}};)", r"\1  double another = 0.0;\n\2", text, flags=re.DOTALL)
+            changed, count = re.subn(rf"(struct {struct}\n{{\n.*?\n)(}};)", r"\1  double another = 0.0;\n\2", text,
+                                     flags=re.DOTALL)
             assert count == 1, (header, struct)
             copy.write_text(changed)
             wrong += [f"{name} knows nothing of a new member of {struct}, and compiles" for name in names

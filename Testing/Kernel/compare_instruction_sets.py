@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs avianlidarInstructionSets with every instruction set that can be had here, and compares all that it prints.
+"""Runs avianlidarInstructionSets with every available instruction set, and compares the printed numbers.
 
-The kernel chooses its loops by the processor when it starts (Filters/Kernel/Core/Multiversion.h), so another choice needs
-another processor: this one, and those that qemu emulates, which go up to AVX2. AVX-512 is compared where this processor
-has it.
+The kernel chooses its loops by the processor when it starts (Filters/Kernel/Core/Multiversion.h). The other processors
+are emulated by qemu, up to AVX2. AVX-512 is compared if this processor has it.
 
-glibc chooses too: its elementary functions differ in the last bit with and without fused multiply-adds. It can be told
-not to use them (GLIBC_TUNABLES). Runs without them must have all bits in common: every instruction set takes part in that
-comparison. With them whole numbers (triangles, objects, numbers of returns, trees) must be the same, others to 1e-12, but
-to 1e-6 where planes are integrated, whose bounds are differences of sums: the scenes have no ray so near an edge that it
-goes over.
+glibc's elementary functions differ in the last bit with and without fused multiply-adds, which GLIBC_TUNABLES can
+switch off. Without them, all runs must have the same bits with every instruction set. With them, integers (triangles,
+objects, numbers of returns, trees) must be the same. Other numbers must agree to 1e-12, and to 1e-6 where planes are
+integrated, because the bounds of planes are differences of sums. No ray of the scenes is near enough to an edge to
+cross it.
 
-Exit code 77, which means skipped, without qemu 7.2 or later, the first to emulate AVX2."""
+The exit code is 77 (skipped) without qemu 7.2, the first version that emulates AVX2, or a later version."""
 import argparse
 import concurrent.futures
 import math
@@ -23,8 +22,10 @@ import sys
 
 SKIPPED = 77
 WITHOUT_FMA = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
-# Model that qemu emulates (empty: this processor), whether libm may fuse, instruction set that must be chosen (None: any).
-RUNS = (("Nehalem", False, "x86-64"), ("Haswell", False, "x86-64-v3"), ("", False, None), ("max", True, "x86-64-v3"), ("", True, None))
+# Model that qemu emulates (empty: this processor), whether libm may fuse, instruction set that must be chosen (None:
+# any).
+RUNS = (("Nehalem", False, "x86-64"), ("Haswell", False, "x86-64-v3"), ("", False, None), ("max", True, "x86-64-v3"),
+        ("", True, None))
 
 
 def has_avx2(qemu):
@@ -72,9 +73,10 @@ def main():
         printed = list(pool.map(lambda run: lines_of(arguments.program, arguments.qemu, *run[:2]), RUNS))
     failed = False
     for (model, fuses, expected), (chosen, *lines) in zip(RUNS, printed):
-        errors = list(differences(printed[0][1:], lines, fuses)) + [f"not {expected}"] * (expected not in (None, chosen))
-        print(f"{model or 'this processor'}, libm {'with' if fuses else 'without'} FMA: {chosen}, {len(lines):,} lines,",
-              f"{len(errors)} errors", *errors[:5], sep="\n" if errors else " ")
+        errors = list(differences(printed[0][1:], lines, fuses))
+        errors += [f"not {expected}"] * (expected not in (None, chosen))
+        print(f"{model or 'this processor'}, libm {'with' if fuses else 'without'} FMA: {chosen}, "
+              f"{len(lines):,} lines, {len(errors)} errors", *errors[:5], sep="\n" if errors else " ")
         failed = failed or bool(errors)
     return failed
 

@@ -1,9 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# On a bare Debian of this system's release, with today's updates, made by debootstrap and thrown away: installs, uses, upgrades
-# and purges the packages of the folder $1 (TestPackages.py fills it), then follows the README's commands in a clone of what is
-# here.
-# Needs root, the network, 9 GB in $TMPDIR and a display (xvfb-run).
+# On a bare Debian of this system's release, with today's updates, made by debootstrap and thrown away: installs, uses,
+# upgrades and purges the packages of the folder $1 (TestPackages.py fills it), then follows the README's commands in a
+# clone of what is here. Needs root, the network, 9 GB in $TMPDIR and a display (xvfb-run).
 set -eu
 
 given=$(cd "$1" && pwd)

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds what is here on a bare, up-to-date Debian 13, which is thrown away afterwards, by the airport's command, loads the plugin
-# into pvpython and runs some tests of every layer. With arguments these are the command to run in the clone instead, such as
-# Testing/run.sh.
-# The system with its packages is kept in /var/cache/avian-lidar. It is made again when the list of packages has changed, and after a
-# week. If that fails, as it does without a network, the one that is there is used; if there is none, it is tried three times. Needs root.
+# Builds what is here on a bare, up-to-date Debian 13, which is thrown away afterwards, by the airport's command, loads
+# the plugin into pvpython and runs some tests of every layer. With arguments these are the command to run in the clone
+# instead, such as Testing/run.sh. The system with its packages is kept in /var/cache/avian-lidar. It is made again when
+# the list of packages has changed, and after a week. If that fails, as it does without a network, the one that is there
+# is used; if there is none, it is tried three times. Needs root.
 set -eu
 
 cd "$(dirname "$0")/../.."

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Run by debian13.sh in the clone: the airport's command, then the build with its tests, the plugin in pvpython, and some tests of each
-# layer, which take no more than eight minutes.
+# Run by debian13.sh in the clone: the airport's command, then the build with its tests, the plugin in pvpython, and
+# some tests of each layer, which take no more than eight minutes.
 set -eu
 
 cd "$(dirname "$0")/../.."

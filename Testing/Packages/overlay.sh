@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs a command as root on a copy of a system that is thrown away afterwards: an overlay on the folder $1, in memory or
-# in the folder AVIANLIDAR_OVERLAY, in a mount namespace of its own. /dev and /sys are the machine's, files from outside lie in the read-only folder /given
-# ($2). Exits with 77 where mounts are not permitted.
-# Arguments: lower folder, folder to show as /given, command ...
+# in the folder AVIANLIDAR_OVERLAY, in a mount namespace of its own. /dev and /sys are the machine's, files from outside
+# lie in the read-only folder /given ($2). Exits with 77 where mounts are not permitted. Arguments: lower folder, folder
+# to show as /given, command ...
 set -eu
 
 if [ "${AVIANLIDAR_IN_NAMESPACE:-}" != "$$" ]; then
