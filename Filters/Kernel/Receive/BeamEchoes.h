@@ -8,8 +8,8 @@
  * Differs: the paper gives one point per perceived range unit, without labels. Returns are defined
  * in BeamReceiver.h.
  * Valid: the standard error is NaN where StandardError.h gives no error. For an integrated beam the
- * standard error includes the bound of PolygonQuadrature.h. Test: TestScanReport.cxx, TestScan.cxx,
- * TestEchoClosedForms.cxx.
+ * standard error includes the bound of PolygonQuadrature.h.
+ * Test: TestScanReport.cxx, TestScan.cxx, TestEchoClosedForms.cxx.
  */
 #ifndef avianlidar_BeamEchoes_h
 #define avianlidar_BeamEchoes_h
