@@ -60,6 +60,13 @@ VERBS = {
   avianlidar convert drive.pcap revolution.ply --sensor-address 192.168.1.201 --time 12.5
   avianlidar convert sequences/sequences/00 sequence.mcap
 """),
+    "view": ("a scene with echoes, birds and coverage as one page that any browser opens",
+        "Writes one page of HTML with a scene in three dimensions, which works without the internet: surfaces, echoes "
+        "by energy, distance or class, the birds of a sequence, maps of coverage and tracks. One can turn, zoom, "
+        "click, measure and save a picture.", """\
+  avianlidar view airport.lidarscene.json echoes.vtp -o view.html
+  avianlidar view airport.lidarscene.json --sequence sequences --coverage maps -o view.html
+"""),
     "airport": ("a scene and plans of an airport from a map",
         "Writes a scene file, plans of coverage and siting, a scenario and a picture of an airport, from an extract "
         "of OpenStreetMap or another map. A second run keeps files that you have edited.", """\
@@ -237,6 +244,15 @@ def parser() -> Parser:
     add("--fit", metavar="FILE", help="a sensor file with a data sheet, or a name of a sensor, whose receiver is "
         "fitted to all points of the data sheet; needs SciPy")
     _out(verb["sensors"], "file: the sensor with the fitted receiver (.lidarsensor.json)", required=False)
+
+    add = verb["view"].add_argument
+    add("scene", help="a mesh or a .lidarscene.json file")
+    add("echoes", nargs="*", type=pathlib.Path, help=f"clouds of echoes: {READ}")
+    add("--sequence", type=pathlib.Path, metavar="FOLDER",
+        help="folder that `avianlidar sequence` has made, or one sequence in the folder; default sequence: the first")
+    add("--coverage", type=pathlib.Path, metavar="FOLDER", help="maps that `avianlidar coverage` has made")
+    add("--tracks", type=pathlib.Path, metavar="FILE", help="tracks.csv of `avianlidar track`")
+    _out(verb["view"], "file: .html")
 
     add = verb["airport"].add_argument
     add("extract", type=pathlib.Path, help="extract of a map: .osm, .osm.pbf, .geojson, .gpkg")

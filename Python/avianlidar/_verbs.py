@@ -209,6 +209,20 @@ def info(options) -> None:
         warn(text)
 
 
+def view(options) -> None:
+    if options.out.suffix.lower() != ".html":
+        raise ValueError(f"{options.out}: expected a name that ends in .html")
+    check_target(options.out, [pathlib.Path(options.scene), *options.echoes])
+    from .apps.view import _view
+    scene = Scene(options.scene, progress=_percent_of("scene"))
+    clouds = [(file.name, _cloud(file, {})) for file in options.echoes]
+    content = _view.page(scene, pathlib.Path(options.scene).name.partition(".")[0], clouds, options.sequence,
+                         options.coverage, options.tracks)
+    _view.write(options.out, content)
+    tell(f"{options.out}: {scene.number_of_triangles} triangles, {sum(cloud.number_of_points for _, cloud in clouds)} "
+         f"echoes, {len(content) / 1e6:.1f} MB; any browser opens the page")
+
+
 def _compared(*clouds) -> Any:
     """The comparison of two point sets of VTK."""
     measure = _wrapped.vtkAvianLidarCloudComparison()

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The look of pictures and pages: colours of classes and species, and units of energy."""
+
+# Colour of each class. Each pair of colours is at least 14 apart in CIELAB, and at least 7 for eyes without the cones of
+# long or of middle wavelengths.
+CLASSES = {"grass": "#c7ffb3", "water": "#8abfce", "parking": "#9b9b9b", "road": "#727272", "apron": "#c8c4bc",
+           "taxiway": "#4c4c4c", "runway": "#282828", "vegetation": "#27a77b", "tree": "#004c23",
+           "terminal": "#c2140e", "hangar": "#8e44ad", "tower": "#fd7f0b", "mast": "#f5d000", "pole": "#ff2dce",
+           "fence": "#000000", "structure": "#8e6d4f", "building": "#a0522d", "house": "#db9763"}
+GROUND = ("terrain", "ground", "grass", "water", "parking", "road", "apron", "taxiway", "runway")  # from below
+LAND, BIRD, UNKNOWN = "#dfe6cf", "#e7298a", "#bbbbbb"
+# ColorBrewer's Dark2, which differs from surfaces and from most echoes
+SPECIES = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a", "#66a61e", "#e6ab02", "#a6761d", "#666666")
+SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15}
+
+
+def class_colour(word: str) -> str:
+    """The colour of a class; land is light, and everything unknown is a building."""
+    return LAND if word in ("terrain", "ground") else CLASSES.get(word, CLASSES["building"] if word else UNKNOWN)
+
+
+def scale_of(most: float) -> tuple[str, float]:
+    """The unit in which an energy (J) is at least 1, and the number of these units in a joule."""
+    return next(((unit, scale) for unit, scale in SCALES.items() if most * scale >= 1), ("J", 1.0))

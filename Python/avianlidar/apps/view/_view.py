@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One page of HTML with a scene in three dimensions: surfaces, echoes, sequences, coverage and tracks."""
+from __future__ import annotations
+
+import base64
+import json
+import pathlib
+import re
+import zlib
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+
+import numpy as np
+from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges
+
+from ..._cloud import Cloud, as_numpy, field_values, triangles_of, with_points
+from ..._disk import write_whole
+from ..._files import numbers_of
+from ..._look import BIRD, CLASSES, GROUND, SPECIES, UNKNOWN, class_colour, scale_of
+from ..._pipeline import Error
+from ..._plot import hue_colors
+from ..._scene import Scene
+from ..inputs._tables import read_table
+from ..places._regions import Runway, end_names
+from ..sequences._labels import CLASSES as LABELS
+
+SCRIPTS = pathlib.Path("/usr/share/javascript/three")  # where Debian's libjs-three puts its files
+THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
+MOST_BYTES = 20_000_000  # size of a page
+MOST_EDGES = 100_000  # lines along edges of buildings
+MOST_BEAMS = 400  # drawn beams
+MOST_NAMES = 12  # names of buildings in the picture
+SHARP = 30.0  # angle between faces from which on their common edge is drawn, deg
+
+
+def _block(values: np.ndarray) -> Dict[str, Any]:
+    """Numbers for the page: compressed, little-endian."""
+    values = np.ascontiguousarray(values)
+    kind = values.dtype.newbyteorder("<")
+    packed = zlib.compress(values.astype(kind).tobytes(), 6)
+    return {"type": values.dtype.name, "values": base64.b64encode(packed).decode()}
+
+
+def _in_steps(points: np.ndarray) -> Dict[str, Any]:
+    """Points as whole steps of 1/65535 of their extent along each axis."""
+    low = points.min(axis=0, initial=np.inf) if len(points) else np.zeros(3)
+    step = (points.max(axis=0) - low if len(points) else np.zeros(3)) / 65535
+    steps = np.rint((points - low) / np.where(step > 0.0, step, 1.0)).astype(np.uint16)
+    return {"low": low.tolist(), "step": step.tolist(), "places": _block(steps)}
+
+
+def _surfaces(scene: Scene, centre: np.ndarray) -> Dict[str, Any]:
+    """Triangles by object, colours by class, and sharp edges of what stands on the ground."""
+    data = scene._merged()
+    points, cells = triangles_of(data)
+    fields = field_values(data)
+    names, classes = list(fields.get("object_names", ())), list(fields.get("object_classes", ()))
+    of = as_numpy(data.GetCellData().GetArray("object_id")).astype(np.int64)
+    of = np.where((of >= 0) & (of < len(names)), of, len(names))
+    words = [*classes, *[""] * (len(names) + 1 - len(classes))]
+    layer = np.array([GROUND.index(word) + 1 if word in GROUND else len(GROUND) + 1 for word in words])
+    sorting = np.argsort(layer[of], kind="stable")
+    cells, of = cells[sorting], of[sorting]
+    standing = np.flatnonzero(layer[of] > len(GROUND))
+    return {"points": _block((points - centre).astype(np.float32)), "cells": _block(cells.astype(np.uint32)),
+            "objects": _block(of.astype(np.uint16)), "names": [*names, "surface"],
+            "classes": [word or "surface" for word in words], "layers": layer.tolist(),
+            "colours": [class_colour(word) for word in words],
+            "edges": _block((_edges(points, cells[standing]) - centre).astype(np.float32))}
+
+
+def _edges(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Ends of the sharp edges and borders of triangles, two for each edge; none if there are too many edges."""
+    if not len(cells) or len(cells) > 3 * MOST_EDGES:
+        return np.zeros((0, 3))
+    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonDataModel import vtkCellArray
+    data, polygons = with_points(points), vtkCellArray()
+    polygons.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(cells, dtype=np.int64).ravel(), deep=True))
+    data.SetPolys(polygons)
+    clean, find = vtkCleanPolyData(), vtkFeatureEdges()
+    clean.SetInputData(data)
+    find.SetInputConnection(clean.GetOutputPort())
+    find.SetFeatureAngle(SHARP)
+    find.NonManifoldEdgesOff()
+    find.ColoringOff()
+    find.Update()
+    found = find.GetOutput()
+    if not found.GetNumberOfLines() or found.GetNumberOfLines() > MOST_EDGES:
+        return np.zeros((0, 3))
+    ends = as_numpy(found.GetLines().GetConnectivityArray())
+    return as_numpy(found.GetPoints().GetData())[ends]
+
+
+def _labels(scene: Scene) -> List[Dict[str, Any]]:
+    """Names of runway ends, and of the largest buildings that have a name of their own."""
+    data = scene._merged()
+    points, cells = triangles_of(data)
+    fields = field_values(data)
+    of = as_numpy(data.GetCellData().GetArray("object_id"))
+    runways, buildings = [], []
+    for number, (name, word) in enumerate(zip(fields.get("object_names", ()), fields.get("object_classes", ()))):
+        corners = points[np.unique(cells[of == number])]
+        if not len(corners):
+            continue
+        if word == "runway":
+            flat = corners[:, :2] - corners[:, :2].mean(axis=0)
+            axis = np.linalg.svd(flat, full_matrices=False)[2][0]
+            ends = [corners[:, :2].mean(axis=0) + axis * end for end in ((flat @ axis).min(), (flat @ axis).max())]
+            if np.hypot(*(ends[1] - ends[0])) > 0.0:
+                runways.append((Runway(re.sub("(?i)^runway ", "", name), *map(tuple, ends), 0.0), corners[:, 2].max()))
+        elif word not in GROUND and not re.fullmatch(r"(?i)(building|hangar|structure|house|tree)s?( \d+)?", name):
+            size = corners.max(axis=0) - corners.min(axis=0)
+            top = (corners.max(axis=0) + corners.min(axis=0)) / 2
+            buildings.append((float(size[0] * size[1]), name, [*top[:2].tolist(), float(corners[:, 2].max())]))
+    found = [{"text": name, "at": [*end, float(height)]}
+             for (runway, height), names in zip(runways, end_names([runway for runway, _ in runways]))
+             for name, end in zip(names, (runway.start, runway.end))]
+    return found + [{"text": name, "at": place} for _, name, place in sorted(buildings, reverse=True)[:MOST_NAMES]]
+
+
+def _echoes(cloud: Cloud, name: str, generator: np.random.Generator) -> Dict[str, Any]:
+    """A cloud of echoes in a random order, so that the first points are a fair choice of all."""
+    points = cloud.points
+    kept = np.flatnonzero(np.isfinite(points).all(axis=1))
+    kept = kept[generator.permutation(len(kept))]
+    fields, found = cloud.fields, {"name": name, "count": len(kept), "left": len(points) - len(kept)}
+    found.update(_in_steps(points[kept]))
+    if "energy" in cloud:
+        energy = cloud["energy"][kept]
+        low = fields.get("lower_energy_limit", energy[energy > 0.0].min(initial=np.inf))
+        high = fields.get("upper_energy_limit", energy.max(initial=0.0))
+        low, high = (float(np.ravel(limit)[0]) for limit in (low, high))
+        if 0.0 < low < high:
+            unit, scale = scale_of(high)
+            whole = np.log(np.clip(energy, low, high) / low) / np.log(high / low)
+            found["energy"] = {"low": low * scale, "high": high * scale, "unit": unit,
+                               "steps": _block(np.rint(65535 * whole).astype(np.uint16))}
+    if "object_id" in cloud:
+        ids, names = cloud["object_id"][kept], list(fields.get("object_names", ()))
+        classes = list(fields.get("object_classes", ()))
+        ids = np.where(ids == -1, len(names), np.where(ids == -2, len(names) + 1, np.where(
+            (ids < 0) | (ids >= len(names)), len(names) + 2, ids)))
+        found["objects"] = {"names": [*names, "false alarm", "air", "unknown"], "of": _block(ids.astype(np.uint16)),
+                            "classes": [*classes, *["unknown"] * (len(names) - len(classes)), "noise", "air",
+                                        "unknown"]}
+        found["objects"]["colours"] = [class_colour(word) for word in found["objects"]["classes"]]
+    elif "semantic_label" in cloud:
+        labels = cloud["semantic_label"][kept].astype(np.int64)
+        known, of = np.unique(labels, return_inverse=True)
+        words = [LABELS[label].name if label in LABELS else f"label {label}" for label in known.tolist()]
+        found["objects"] = {"names": words, "classes": words, "of": _block(of.astype(np.uint16)), "colours": [
+            _label_colour(label) for label in known.tolist()]}
+    if "position" in fields:
+        found["lidar"] = np.ravel(fields["position"])[:3].tolist()
+    return found
+
+
+def _label_colour(label: int) -> str:
+    return "#%02x%02x%02x" % tuple(reversed(LABELS[label].color)) if label in LABELS else UNKNOWN
+
+
+def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
+    """Birds and other movers of a sequence by scan. @param folder a sequence, or a folder that holds sequences, of which
+    the first is taken"""
+    inner = sorted(folder.glob("sequences/[0-9]*/truth.csv"))
+    file = folder / "truth.csv" if (folder / "truth.csv").is_file() or not inner else inner[0]
+    rows = read_table(file, ("scan", "bird", "species", "time_s", "x_m", "y_m", "z_m", "points"),
+                      "expected the truth.csv of a sequence of `avianlidar sequence`")
+    birds: Dict[str, Dict[str, Any]] = {}
+    for row in rows:
+        bird = birds.setdefault(row["bird"], {"name": f"{row['species']} {row['bird']}", "species": row["species"],
+                                              "path": []})
+        bird["path"].append([float(row[key]) for key in ("time_s", "x_m", "y_m", "z_m", "points")])
+    times = numbers_of(file.with_name("times.txt"), 1).ravel()
+    species = sorted({bird["species"] for bird in birds.values()})
+    colours = {name: SPECIES[number % len(SPECIES)] for number, name in enumerate(species)}
+    others: Dict[str, Dict[str, Any]] = {}
+    for number, time in enumerate(times.tolist()):
+        boxes = file.parent / "boxes" / f"{number:06d}.txt"
+        for line in boxes.read_text(encoding="utf-8").splitlines() if boxes.is_file() else ():
+            words = line.split()
+            if words and words[0] != "bird":
+                x, y, z, *size, heading = map(float, words[3:10])
+                box = others.setdefault(words[10], {"name": f"{words[0]} {words[10]}", "size": size, "path": []})
+                box["path"].append([time, x, y, z, heading])
+    return {"name": file.parent.name, "from": float(times[0]), "to": float(times[-1]),
+            "birds": [{**bird, "colour": colours[bird["species"]]} for bird in birds.values()],
+            "species": colours, "others": list(others.values())}
+
+
+def _coverage(folder: pathlib.Path, origin: Optional[Sequence[float]]) -> Dict[str, Any]:
+    """Detection probability by height."""
+    from ..places._gdal import gdal
+    files = {float(match[1]): file for file in folder.glob("detection_probability_*m.tif")
+             if (match := re.fullmatch(r"detection_probability_(.+)m\.tif", file.name))}
+    if not files:
+        raise Error(f"{folder}: no detection_probability_*m.tif, expected the maps of `avianlidar coverage`")
+    maps: List[Dict[str, Any]] = []
+    for height, file in sorted(files.items()):
+        image = gdal.Open(str(file))
+        west, step, _, north, _, down = image.GetGeoTransform()
+        values = image.ReadAsArray()
+        maps.append({"height": height, "west": west, "north": north, "step": [step, -down], "shape": values.shape,
+                     "values": _block(np.rint(255 * np.clip(np.nan_to_num(values), 0.0, 1.0)).astype(np.uint8))})
+    return {"maps": maps}
+
+
+def _tracks(file: pathlib.Path) -> List[Dict[str, Any]]:
+    """Lines of the tracks in a table."""
+    rows = read_table(file, ("track", "time_s", "x_m", "y_m", "z_m"), "expected tracks.csv of `avianlidar track`")
+    lines: Dict[Tuple[str, ...], List[List[float]]] = {}
+    for row in rows:
+        key = tuple(row.get(name, "") for name in ("input", "sequence", "track"))
+        lines.setdefault(key, []).append([float(row[name]) for name in ("time_s", "x_m", "y_m", "z_m")])
+    return [{"name": f"track {key[-1]}", "path": path} for key, path in lines.items()]
+
+
+def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), sequence: Optional[pathlib.Path] = None,
+         coverage: Optional[pathlib.Path] = None, tracks: Optional[pathlib.Path] = None) -> bytes:
+    """The page. @param echoes names and clouds @param sequence folder of a sequence @param coverage folder of maps
+    @param tracks table of tracks. @throws Error that names the input"""
+    import jinja2
+    from markupsafe import Markup
+    if not scene.number_of_triangles:
+        raise Error(f"{title}: no surfaces to show")
+    bounds = np.reshape(scene.bounds, (3, 2))
+    centre = np.round(bounds.mean(axis=1))
+    generator = np.random.default_rng(0)
+    shown = [_echoes(cloud, name, generator) for name, cloud in echoes]
+    lidar = next((one["lidar"] for one in shown if "lidar" in one), scene.lidar_position)
+    data = {"title": title, "centre": centre.tolist(), "bounds": bounds.tolist(), "lidar": lidar,
+            "surfaces": _surfaces(scene, centre), "labels": _labels(scene), "echoes": shown, "bird": BIRD,
+            "beams": MOST_BEAMS, "hues": [_hex(row) for row in hue_colors().colors],
+            "shades": _gradient(), "classes": CLASSES,
+            "sequence": _sequence(sequence) if sequence else None,
+            "coverage": _coverage(coverage, scene.geodetic_origin) if coverage else None,
+            "tracks": _tracks(tracks) if tracks else []}
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    text = text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    here = pathlib.Path(__file__).parent
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(here), autoescape=True,
+                                     undefined=jinja2.StrictUndefined)
+    return environment.get_template("view.html.jinja").render(
+        title=title, data=Markup(text), scripts=[Markup(script) for script in _scripts(here)]).encode()
+
+
+def _hex(row: Iterable[float]) -> str:
+    return "#%02x%02x%02x" % tuple(int(round(255 * value)) for value in list(row)[:3])
+
+
+def _gradient() -> List[str]:
+    """256 colours of a share, from 0 to 1."""
+    from matplotlib import colormaps
+    return [_hex(row) for row in colormaps["viridis"](np.linspace(0.0, 1.0, 256))]
+
+
+def _scripts(here: pathlib.Path) -> List[str]:
+    """The scripts of the page: three.js, its controls and our own."""
+    missing = [str(SCRIPTS / name) for name in THREE if not (SCRIPTS / name).is_file()]
+    if missing:
+        raise Error(f"{missing[0]}: no such file: a page needs three.js (Debian's package libjs-three)")
+    return [*((SCRIPTS / name).read_text(encoding="utf-8") for name in THREE),
+            (here / "view.js").read_text(encoding="utf-8")]
+
+
+def write(file: pathlib.Path, content: bytes) -> None:
+    """Writes a page. @throws Error if the page is too large"""
+    if len(content) > MOST_BYTES:
+        raise Error(f"{file}: the page would have {len(content) / 1e6:.1f} MB, expected at most {MOST_BYTES / 1e6:g} "
+                    "MB: give fewer echoes")
+    write_whole(file, content)
+
