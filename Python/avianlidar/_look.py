@@ -3,10 +3,10 @@
 
 # Colour of each class. Each pair of colours is at least 14 apart in CIELAB, and at least 7 for eyes without the cones of
 # long or of middle wavelengths.
-CLASSES = {"grass": "#c7ffb3", "water": "#8abfce", "parking": "#9b9b9b", "road": "#727272", "apron": "#c8c4bc",
-           "taxiway": "#4c4c4c", "runway": "#282828", "vegetation": "#27a77b", "tree": "#004c23",
-           "terminal": "#c2140e", "hangar": "#8e44ad", "tower": "#fd7f0b", "mast": "#f5d000", "pole": "#ff2dce",
-           "fence": "#000000", "structure": "#8e6d4f", "building": "#a0522d", "house": "#db9763"}
+CLASSES = {"grass": "#cfe3b4", "water": "#a9cfe8", "parking": "#c4c4cc", "road": "#909090", "apron": "#e4dccd",
+           "taxiway": "#6b6b6b", "runway": "#3a3a3a", "vegetation": "#80b77c", "tree": "#2f6b3a",
+           "terminal": "#db9c95", "hangar": "#b39ad0", "tower": "#f0a860", "mast": "#e3c94a", "pole": "#da78ba",
+           "fence": "#101010", "structure": "#a08d74", "building": "#d2b594", "house": "#a8705a"}
 GROUND = ("terrain", "ground", "grass", "water", "parking", "road", "apron", "taxiway", "runway")  # from below
 LAND, BIRD, UNKNOWN = "#dfe6cf", "#e7298a", "#bbbbbb"
 # ColorBrewer's Dark2, which differs from surfaces and from most echoes

@@ -8,6 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
 
 from . import vtkAvianLidar as _wrapped
+from ._look import scale_of
 
 LABELS = {"distance_m": "distance (m)", "candidates": "triangles tested", "skipped_bound": "skipped, at most (J)"}
 
@@ -47,7 +48,6 @@ def _status_colours(axes):
 
 
 DECADES = 100.0  # ratio of energies above which the scale is logarithmic
-SCALES = {"J": 1.0, "mJ": 1e3, "\u00b5J": 1e6, "nJ": 1e9, "pJ": 1e12, "fJ": 1e15}
 
 
 def _label(name: str, unit: str) -> str:
@@ -69,7 +69,7 @@ def _values(cloud, name: str):
         if low is not None and high is not None:
             most = min(high, most) if decades and most > low else high
             limits = {"vmin": low, "vmax": most}
-        unit, scale = next(((unit, scale) for unit, scale in SCALES.items() if most * scale >= 1), ("J", 1.0))
+        unit, scale = scale_of(most)
         options = {"cmap": hue_colors(), **{key: limit * scale for key, limit in limits.items()}}
         return values * scale, {**options, "norm": "log"} if decades else options, _label(name, unit)
     if name == "object_id":

@@ -20,7 +20,7 @@ import avianlidar as al
 import exampletools
 import helpertools
 import scenetools
-from avianlidar import siting
+from avianlidar import _look, siting
 from avianlidar._cloud import field_values
 from avianlidar._command import parser
 from avianlidar.apps.airport import _ground, _pages as airport_pages, _write as airport
@@ -312,9 +312,9 @@ class Extracts(unittest.TestCase):
     def test_colours_of_the_picture_are_told_apart(self):
         """Those of any two classes, by the distance of CIE 1976; also with two kinds of cones."""
         classes = {kind["class"] for kind in KNOWN["kinds"].values()}
-        self.assertEqual(classes - set(airport_pages.PARTS), set())
+        self.assertEqual(classes - set(_look.CLASSES), set())
         for eye, least in (("all", 14), ("without long", 7), ("without middle", 7)):
-            seen = {word: lab(colour, eye) for word, (colour, _) in airport_pages.PARTS.items()}
+            seen = {word: lab(colour, eye) for word, colour in _look.CLASSES.items()}
             for one, other in itertools.combinations(seen, 2):
                 self.assertGreater(np.linalg.norm(seen[one] - seen[other]), least, (eye, one, other))
         np.testing.assert_allclose(lab("#ff0000", "all"), (53.24, 80.09, 67.20), atol=0.05)

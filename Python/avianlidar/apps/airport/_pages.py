@@ -9,6 +9,7 @@ from typing import Any, Counter, Dict, Iterable, Iterator, Tuple
 import numpy as np
 
 from ..._cloud import field_values, leaves_of, triangles_of
+from ..._look import GROUND, class_colour
 from ..._scene import Scene
 from ..._writers import as_csv
 from ..pages._placing import Label, place_labels
@@ -18,13 +19,6 @@ from ..places._regions import end_names, ends_of
 from ._extract import CROSSING, CUT, OUTSIDE, UNKNOWN
 from ._plans import AirportScene, Place
 
-# Classes in the picture: colour, and drawing order from below. Each pair of colours is at least 14 apart in CIELAB, and
-# at least 7 for eyes without the cones of long or of middle wavelengths.
-PARTS = {"grass": ("#c7ffb3", 1), "water": ("#8abfce", 2), "parking": ("#9b9b9b", 2), "road": ("#727272", 3),
-         "apron": ("#c8c4bc", 4), "taxiway": ("#4c4c4c", 5), "runway": ("#282828", 6), "vegetation": ("#27a77b", 7),
-         "tree": ("#004c23", 8), "terminal": ("#c2140e", 8), "hangar": ("#8e44ad", 8), "tower": ("#fd7f0b", 8),
-         "mast": ("#f5d000", 8), "pole": ("#ff2dce", 8), "fence": ("#000000", 8), "structure": ("#8e6d4f", 8),
-         "building": ("#a0522d", 8), "house": ("#db9763", 8)}
 SMALL = {"mast", "pole"}  # drawn with a wider line
 
 
@@ -41,9 +35,9 @@ def draw(axes, found: AirportScene, place: Place) -> None:
                                     cmap=LinearSegmentedColormap.from_list("ground", ("#c3d3b4", "#f6f1df")))
             axes.figure.colorbar(shades, ax=axes, shrink=0.5, label="ground, m above the origin")
             continue
-        colour, order = PARTS.get(word, PARTS["building"])
-        shown[word] = colour
-        line = 0.2 if order < 8 else 2.5 if word in SMALL else 1.0
+        colour = shown[word] = class_colour(word)
+        order = 1 + (GROUND.index(word) if word in GROUND else len(GROUND) + (word != "vegetation"))
+        line = 2.5 if word in SMALL else 0.2 if word in (*GROUND, "vegetation") else 1.0
         axes.add_collection(PolyCollection(list(triangles[:, :, :2]), facecolors=colour, edgecolors=colour,
                                            linewidths=line, zorder=order))
     axes.plot(*place.position[:2], "r^", markersize=11, markeredgecolor="white", zorder=20)

@@ -8,9 +8,9 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..._cloud import as_numpy, field_values, leaves_of, triangles_of
+from ..._look import CLASSES, GROUND
 
-TALL = 5.0  # height above the ground at the sensor from which on surfaces are drawn as buildings, m ...
-FLAT = ("ground", "terrain", "apron", "runway", "taxiway", "road", "water", "grass")  # ... except these classes
+TALL = 5.0  # height above the ground at the sensor from which on surfaces are drawn as buildings, m, except GROUND
 PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
 
 
@@ -26,7 +26,7 @@ def draw_land(axes, plan: Any) -> None:
         points = vtk_to_numpy(block.GetPoints().GetData())[:, :2]
         offsets = vtk_to_numpy(polygons.GetOffsetsArray())
         cells = np.split(points[vtk_to_numpy(polygons.GetConnectivityArray())], offsets[1:-1])
-        for wanted, colour in ((np.isin(of, PLANTS), "#b5d6a7"), (of == "water", "#a9cfe8")):
+        for wanted, colour in ((np.isin(of, PLANTS), CLASSES["vegetation"]), (of == "water", CLASSES["water"])):
             if wanted.any():
                 drawn = [cells[i] for i in np.flatnonzero(wanted)]
                 axes.add_collection(PolyCollection(drawn, facecolors=colour, edgecolors=colour, zorder=0.5))
@@ -44,7 +44,7 @@ def draw_airport(axes, plan: Any, colour: str = "0.25") -> None:
         roofs = points[cells][:, :, 2].min(axis=1) > (plan.ground or 0.0) + TALL
         classes = field_values(surfaces).get("object_classes", ())
         if len(classes):
-            roofs &= ~np.isin(classes, FLAT)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
+            roofs &= ~np.isin(classes, GROUND)[as_numpy(surfaces.GetCellData().GetArray("object_id"))]
         if roofs.any():
             axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()),
                            cmap=ListedColormap([colour]))
