@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A page in Chromium, without a display and without a network."""
 import base64
+import io
 import json
 import pathlib
 
+import numpy as np
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
 
 class Browser:
-    """Opens a file; closed at the end of a `with`. @param width of the window, pixels"""
+    """Opens a file; closed at the end of a `with`. @param width, height of the window, pixels @param graphics whether
+    pages draw with WebGL, by software"""
 
-    def __init__(self, width=1150, height=900):
+    def __init__(self, width=1150, height=900, graphics=False):
         options = webdriver.ChromeOptions()
         options.binary_location = "/usr/bin/chromium"
-        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                         "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9"):
+        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
+                         *(("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader") if graphics
+                           else ("--disable-gpu",)), "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND", "--proxy-server=127.0.0.1:9"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
@@ -40,9 +44,15 @@ class Browser:
         """What the console says since the page was opened."""
         return self.driver.get_log("browser")
 
-    def run(self, script):
+    def run(self, script, *arguments):
         """What a script (JavaScript) returns."""
-        return self.driver.execute_script(script)
+        return self.driver.execute_script(script, *arguments)
+
+    def pixels(self):
+        """What is shown, rows x columns x 3, 0 to 255."""
+        from matplotlib.image import imread
+        picture = imread(io.BytesIO(self.driver.get_screenshot_as_png()))
+        return np.rint(255 * picture[:, :, :3]).astype(int)
 
     def picture_between(self, first, end, file):
         """Write what is shown from an element to before another (CSS selectors), as PNG."""

@@ -163,7 +163,9 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
     """Birds and other movers of a sequence by scan. @param folder a sequence, or a folder that holds sequences, of which
     the first is taken"""
     inner = sorted(folder.glob("sequences/[0-9]*/truth.csv"))
-    file = folder / "truth.csv" if (folder / "truth.csv").is_file() or not inner else inner[0]
+    file = next((one for one in (folder / "truth.csv", *inner) if one.is_file()), None)
+    if file is None:
+        raise Error(f"{folder}: holds no truth.csv, expected a folder that `avianlidar sequence` has made")
     rows = read_table(file, ("scan", "bird", "species", "time_s", "x_m", "y_m", "z_m", "points"),
                       "expected the truth.csv of a sequence of `avianlidar sequence`")
     birds: Dict[str, Dict[str, Any]] = {}

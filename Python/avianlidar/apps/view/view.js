@@ -8,6 +8,7 @@
   const say = (text) => { find("picked").textContent = text; find("picked").hidden = !text; };
   const MOVING_POINTS = 60000; // number of points that are drawn while the camera moves
   const REACH = 8; // distance in pixels at which a click still meets a point
+  const BIRD_SIZE = 14; // length of a bird, pixels
   const types = { float32: Float32Array, uint32: Uint32Array, uint16: Uint16Array, uint8: Uint8Array };
 
   // Numbers of the page -------------------------------------------------------------------------------------------
@@ -56,7 +57,7 @@
 
   // Drawing happens when something has changed. While the camera moves, clouds are drawn with fewer points.
   let asked = false, restful = 0;
-  const clouds = [];
+  const clouds = [], movers = [];
   function draw() {
     if (!asked) {
       asked = true;
@@ -64,9 +65,16 @@
     }
   }
   function render() {
+    movers.filter(({ of }) => !of.size).forEach(({ body }) => { // birds are as large as a letter from everywhere
+      body.scale.setScalar(BIRD_SIZE * pixelAt(body.position));
+    });
     renderer.render(stage, camera);
     placeNames();
     counted.frames += 1;
+  }
+  /// Length of a pixel at a place, m.
+  function pixelAt(place) {
+    return 2 * Math.tan(camera.fov * Math.PI / 360) * place.distanceTo(camera.position) / window.innerHeight;
   }
   const counted = { frames: 0 };
   function thin(moving) {
@@ -312,11 +320,9 @@
 
   // Movers --------------------------------------------------------------------------------------------------------
   // A bird's path has rows of time, x, y, z and number of points. A box has rows of time, x, y, z and heading.
-  const movers = [];
   let now = 0;
-  function addMovers(sequence, radius) {
-    const size = Math.max(1.5, radius / 400);
-    const shape = new THREE.ConeBufferGeometry(size / 2, 1.6 * size, 5);
+  function addMovers(sequence) {
+    const shape = new THREE.ConeBufferGeometry(0.35, 1, 6);
     shape.rotateZ(-Math.PI / 2); // the tip points east
     sequence.birds.forEach((bird) => {
       const body = new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: bird.colour }));
@@ -613,7 +619,7 @@
       addLidar(2.5 * reach);
     }
     if (data.sequence) {
-      addMovers(data.sequence, reach);
+      addMovers(data.sequence);
     }
     if (data.coverage) {
       await addCoverage(data.coverage);
@@ -625,7 +631,7 @@
     view(1.0);
     say("");
     render();
-    window.avianLidar = { counted, camera, controls, pick, render, thin, ready: performance.now() };
+    window.avianLidar = { counted, centre, camera, controls, pick, render, thin, ready: performance.now() };
   }
   begin().catch((error) => say(`The page cannot be shown: ${error.message}`));
 })();

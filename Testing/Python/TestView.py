@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of `avianlidar view` in a browser without a network: what it shows, what a click and a measurement say, and
+that names in files stay names."""
+import json
+import time
+import unittest
+
+import numpy as np
+
+import avianlidar as al
+import exampletools
+import helpertools
+from browser import Browser
+
+EVIL = "<img src=x onerror=\"document.title='taken'\"></script><script>document.title='taken'</script>"
+WALL = 40.0  # m north of the lidar
+HERE = exampletools.emptied("TestView")
+
+
+def write_inputs():
+    """A scene with a wall, echoes of a scan, a sequence of one bird, and maps at two heights."""
+    corners = [(-10, WALL, 0), (10, WALL, 0), (10, WALL, 8), (-10, WALL, 8)]
+    (HERE / "wall.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "f 1 2 3\nf 1 3 4\n", "utf-8")
+    (HERE / "field.lidarscene.json").write_text(json.dumps({
+        "version": 1, "lidar": {"position": [0, 0, 3]}, "objects": [
+            {"name": "Field", "class": "grass", "ground": {"size": 160, "height": 0}, "material": "Grass"},
+            {"name": EVIL, "class": "hangar", "file": "wall.obj", "material": "Concrete"}]}), "utf-8")
+    scan = al.Scan(al.Scene(HERE / "field.lidarscene.json"), al.Sensor("Airport16", position=(0, 0, 3)))
+    al.save(scan.echoes, HERE / "echoes.vtp")
+    sequence = HERE / "sequences" / "sequences" / "00"
+    sequence.mkdir(parents=True)
+    (sequence / "times.txt").write_text("0.0\n1.0\n2.0\n", "utf-8")
+    rows = "".join(f"{scan},10000,{EVIL.replace(',', ' ')},{scan}.0,{10.0 * scan},-30,12,3\n" for scan in range(3))
+    (sequence / "truth.csv").write_text("scan,bird,species,time_s,x_m,y_m,z_m,points\n" +
+                                        rows.replace(EVIL, '"' + EVIL.replace('"', '""') + '"'), "utf-8")
+    from avianlidar.apps.coverage._maps import write_geotiff
+    (HERE / "maps").mkdir()
+    for height, share in ((10, 0.25), (20, 0.75)):
+        write_geotiff(HERE / "maps" / f"detection_probability_{height}m.tif", np.full((8, 8), share), (-70, -70),
+                      (20, 20), None, "detection_probability")
+    return scan
+
+
+def setUpModule():
+    global SCAN
+    SCAN = write_inputs()
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        code, out, error = helpertools.run(
+            "view", HERE / "field.lidarscene.json", HERE / "echoes.vtp", "--sequence", HERE / "sequences",
+            "--coverage", HERE / "maps", "-o", HERE / "view.html")
+        assert code == 0, error
+        cls.browser = Browser(1280, 720, graphics=True)
+        cls.addClassCleanup(cls.browser.driver.quit)
+        cls.loaded = cls.browser.open(HERE / "view.html")
+        end = time.monotonic() + 60
+        while not cls.browser.run("return Boolean(window.avianLidar)"):
+            assert time.monotonic() < end, cls.browser.run("return document.body.innerText")
+            time.sleep(0.1)
+
+    def pixel_of(self, place):
+        """The pixel at which a place (m) is seen."""
+        return self.browser.run("""
+            const a = window.avianLidar, p = new THREE.Vector3(...arguments[0]).sub(new THREE.Vector3(...a.centre));
+            p.project(a.camera);
+            return [(p.x + 1) / 2 * innerWidth, (1 - p.y) / 2 * innerHeight];""", place)
+
+    def said_at(self, place):
+        """What a click at a place (m) says."""
+        x, y = self.pixel_of(place)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+                "type": kind, "x": x, "y": y, "button": "left", "clickCount": 1})
+        return self.browser.run("return document.getElementById('picked').textContent")
+
+    def set(self, control, value):
+        """Moves a slider, ticks a box or chooses an entry."""
+        self.browser.run("""
+            const [id, value] = arguments, one = document.getElementById(id);
+            one[one.type === 'checkbox' ? 'checked' : 'value'] = value;
+            one.dispatchEvent(new Event('input'));
+            one.dispatchEvent(new Event('change'));""", control, value)
+
+    def test_asks_for_nothing_and_runs_no_text(self):
+        self.assertEqual([url[:60] for url in self.loaded if not url.startswith(("file:", "data:", "blob:"))], [])
+        self.assertEqual([one for one in self.browser.complaints() if one["level"] == "SEVERE"], [])
+        self.assertEqual(self.browser.run("return document.title"), "field")
+        self.assertEqual(self.browser.run("return document.images.length"), 0)
+        self.assertIn(EVIL, self.browser.run("return document.getElementById('legend').innerText"))  # a species
+
+    def test_a_click_names_the_echo(self):
+        points, energy = SCAN.echoes.points, SCAN.echoes["energy"]
+        of_wall = np.flatnonzero(np.abs(points[:, 1] - WALL) < 0.5)
+        which = of_wall[np.argmin(np.linalg.norm(points[of_wall] - (0, WALL, 3), axis=1))]
+        said = self.said_at(points[which].tolist())
+        self.assertIn(f"echo of {EVIL}", said)
+        self.assertIn(f"range {np.linalg.norm(points[which] - (0, 0, 3)):.1f} m", said)
+        self.assertRegex(said, rf"energy {1e6 * energy[which]:.3g}0* µJ")
+
+    def test_a_measured_distance(self):
+        self.set("layer echoes", False)
+        self.browser.run("document.getElementById('measure').click()")
+        self.said_at((-30.0, 0.0, 0.0))
+        said = self.said_at((30.0, 0.0, 0.0))
+        self.browser.run("document.getElementById('measure').click()")
+        self.set("layer echoes", True)
+        self.assertAlmostEqual(float(said.split()[1]), 60.0, delta=0.5)  # a pixel is 0.2 m
+
+    def test_birds_move_with_the_slider(self):
+        self.set("time", 1.5)
+        self.assertIn(EVIL, self.said_at((15.0, -30.0, 12.0)))
+        self.assertIn("at 15.0 m east, -30.0 m north, 12.0 m up", self.said_at((15.0, -30.0, 12.0)))
+
+    def test_the_slice_of_coverage(self):
+        self.set("layer coverage", True)
+        for number, share in ((0, "0.25"), (1, "0.75")):
+            self.set("height", number)
+            self.assertIn(f"{share} of the scans detect the bird", self.said_at((40.0, -40.0, 10.0 + 10 * number)))
+        self.set("layer coverage", False)
+
+    def test_the_picture_shows_the_colours(self):
+        """The wall's echoes by energy have the colours of the paper's hue, and by class the class's own colour."""
+        def colours():
+            pixels = self.browser.pixels()
+            return {tuple(row) for row in np.unique(pixels.reshape(-1, 3), axis=0).tolist()}
+        from avianlidar._look import CLASSES
+        hangar = tuple(int(CLASSES["hangar"][i:i + 2], 16) for i in (1, 3, 5))
+        self.set("layer surfaces", False)
+        self.set("colouring", "class")
+        self.assertIn(hangar, colours())
+        self.set("colouring", "energy")
+        hues = {tuple(np.rint(255 * np.asarray(row[:3])).astype(int).tolist()) for row in al.hue_colors().colors}
+        self.assertNotIn(hangar, colours())
+        self.assertTrue(hues & colours())
+        self.set("layer surfaces", True)
+
+
+class Inputs(unittest.TestCase):
+    def test_faults_are_named(self):
+        scene = HERE / "field.lidarscene.json"
+        for words, expected in (
+                ((scene, "-o", HERE / "view.txt"), "view.txt: expected a name that ends in .html"),
+                ((scene, "--coverage", HERE, "-o", HERE / "x.html"), "expected the maps of `avianlidar coverage`"),
+                ((scene, "--sequence", HERE, "-o", HERE / "x.html"), "expected a folder that `avianlidar sequence` has made"),
+                ((scene, "--tracks", HERE / "none.csv", "-o", HERE / "x.html"), "none.csv")):
+            code, _, error = helpertools.run("view", *words)
+            self.assertEqual(code, 2)
+            self.assertIn(expected, error)
+            self.assertFalse((HERE / "x.html").exists())
+
+
