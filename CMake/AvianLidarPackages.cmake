@@ -65,7 +65,7 @@ string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
   python3-tqdm)
 # Imports of some helpers, for pictures, maps, reports, plans and scenarios, fits, tables.
 string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
-  python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas)
+  python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas libjs-three)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   "${avianlidar_debian}/postinst"
   "${avianlidar_debian}/prerm")

@@ -17,7 +17,7 @@ vtk_module_wrap_python(
 # The wrapping makes only the extension module. The lines below make the package with its helpers in Python.
 set(folder "${PROJECT_SOURCE_DIR}/Python/avianlidar")
 file(GLOB_RECURSE avianlidar_python_files RELATIVE "${folder}" CONFIGURE_DEPENDS
-  "${folder}/*.py" "${folder}/*.json" "${folder}/*.jinja" "${folder}/*.ini" "${folder}/py.typed")
+  "${folder}/*.py" "${folder}/*.json" "${folder}/*.jinja" "${folder}/*.js" "${folder}/*.ini" "${folder}/py.typed")
 set(avianlidar_python_package "${AVIANLIDAR_PYTHON_BUILD_DIR}/avianlidar")
 # Removes modules of an earlier build, because Python would still find renamed modules.
 file(GLOB old "${avianlidar_python_package}/*.py")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import pathlib
 import re
 import zlib
@@ -26,6 +27,7 @@ from ..sequences._labels import CLASSES as LABELS
 SCRIPTS = pathlib.Path("/usr/share/javascript/three")  # where Debian's libjs-three puts its files
 THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
 MOST_BYTES = 20_000_000  # size of a page
+MOST_ECHOES = 1_200_000  # echoes of a page; of more, a random choice is shown
 MOST_EDGES = 100_000  # lines along edges of buildings
 MOST_BEAMS = 400  # drawn beams
 MOST_NAMES = 12  # names of buildings in the picture
@@ -118,12 +120,12 @@ def _labels(scene: Scene) -> List[Dict[str, Any]]:
     return found + [{"text": name, "at": place} for _, name, place in sorted(buildings, reverse=True)[:MOST_NAMES]]
 
 
-def _echoes(cloud: Cloud, name: str, generator: np.random.Generator) -> Dict[str, Any]:
-    """A cloud of echoes in a random order, so that the first points are a fair choice of all."""
+def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generator) -> Dict[str, Any]:
+    """A share of a cloud of echoes in a random order, so that the first points are a fair choice of all."""
     points = cloud.points
     kept = np.flatnonzero(np.isfinite(points).all(axis=1))
-    kept = kept[generator.permutation(len(kept))]
-    fields, found = cloud.fields, {"name": name, "count": len(kept), "left": len(points) - len(kept)}
+    kept = kept[generator.permutation(len(kept))[:math.ceil(share * len(kept))]]
+    fields, found = cloud.fields, {"name": name, "count": len(kept), "of": len(points)}
     found.update(_in_steps(points[kept]))
     if "energy" in cloud:
         energy = cloud["energy"][kept]
@@ -228,7 +230,8 @@ def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), seq
     bounds = np.reshape(scene.bounds, (3, 2))
     centre = np.round(bounds.mean(axis=1))
     generator = np.random.default_rng(0)
-    shown = [_echoes(cloud, name, generator) for name, cloud in echoes]
+    share = min(1.0, MOST_ECHOES / max(1, sum(cloud.number_of_points for _, cloud in echoes)))
+    shown = [_echoes(cloud, name, share, generator) for name, cloud in echoes]
     lidar = next((one["lidar"] for one in shown if "lidar" in one), scene.lidar_position)
     data = {"title": title, "centre": centre.tolist(), "bounds": bounds.tolist(), "lidar": lidar,
             "surfaces": _surfaces(scene, centre), "labels": _labels(scene), "echoes": shown, "bird": BIRD,

@@ -517,6 +517,11 @@
   }
   function addControls() {
     if (clouds.length) {
+      const [shown, all] = clouds.reduce(([a, b], { of }) => [a + of.count, b + of.of], [0, 0]);
+      const line = document.createElement("div");
+      line.textContent = shown < all ? `${shown.toLocaleString("en")} of ${all.toLocaleString("en")} echoes` :
+        `${all.toLocaleString("en")} echoes`;
+      find("controls").appendChild(line);
       const label = document.createElement("label"), select = document.createElement("select");
       const ways = [["energy", (cloud) => cloud.energy], ["distance", (cloud) => cloud.lidar], ["class", (cloud) =>
         cloud.objects]].filter(([, has]) => clouds.some(has)).map(([name]) => name);
