@@ -22,8 +22,10 @@ TREE = "AvianLidarCollisionTree"
 SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes of many sources
 PARTS = (TREE, "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
-# Filters that show a part of a result.
-SOME = ("Threshold", "Cut", "Contour")
+# Filters that show a part of a result, and the filter that shows edges of surfaces.
+SOME, EDGES = ("Threshold", "Cut", "Contour"), "FeatureEdges"
+SHARP = 30  # angle between faces from which on their edge is drawn, deg
+AMBIENT = 0.35  # share of the light that has no direction
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
 # Views that macros put beside another view.
 REASONS, SHARES = "Reasons", "Shares of the beam"
@@ -31,8 +33,8 @@ REASONS, SHARES = "Reasons", "Shares of the beam"
 HEIGHT = 3
 DISTANCE = 0.1
 SENSOR_SIZE = 12  # size of the sensor's point, pixels
-# Diffuse reflectances kd drawn as black and as white. Concrete is then a middle grey, and echoes are easy to see.
-GREY_RANGE = (-0.05, 0.6)
+# Diffuse reflectances kd drawn as black and as white, for surfaces without classes.
+GREY_RANGE = (-0.05, 0.8)
 MARGIN = 1.15
 
 
@@ -319,23 +321,63 @@ def colour_by(display, kind, array, preset, limits, logarithmic=False):
 
 
 def legend(table, view, title):
-    """The legend of a table of colours, with one format for all numbers."""
+    """The legend of a table of colours in dark letters, with one format for all numbers."""
     bar = simple.GetScalarBar(table, view)
+    bar.TitleColor = bar.LabelColor = [0.1] * 3
     bar.Title, bar.ComponentTitle = title, ""
     bar.AutomaticLabelFormat = 0
     bar.LabelFormat = bar.RangeLabelFormat = "%.3g"
     return bar
 
 
-def show_grey(tree, view):
-    """Shows the surfaces in shades of grey. Lighter surfaces reflect more."""
+def rgb(colour):
+    """Red, green and blue (0 to 1) of a colour #rrggbb."""
+    return [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
+
+
+def texts_of(source, name):
+    """The texts of an array of the field data, which a server sends without cells and points."""
+    empty = servermanager.filters.Threshold(Input=source, Scalars=["CELLS", "object_id"],
+                                            ThresholdMethod="Above Upper Threshold", UpperThreshold=1e9)
+    empty.UpdatePipeline()
+    found = servermanager.Fetch(empty).GetFieldData().GetAbstractArray(name)
+    return [found.GetValue(i) for i in range(found.GetNumberOfValues())] if found else []
+
+
+def show_surfaces(tree, view):
+    """Shows the surfaces on a light background, in the colours of their classes or, without classes, in shades of grey:
+    lighter surfaces reflect more."""
+    look = data("look.json")
+    view.UseColorPaletteForBackground = 0
+    view.BackgroundColorMode, view.Background = "Single Color", rgb(look["sky"])
+    view.OrientationAxesLabelColor = [0.0] * 3
     display = show(tree, view, Representation="Surface")
-    colour_by(display, "CELLS", "kd", "Grayscale", GREY_RANGE)
+    names = tree.GetFieldDataInformation().GetArray("object_classes")
+    classes = texts_of(tree, "object_classes") if names else []
+    if not any(classes):
+        colour_by(display, "CELLS", "kd", "Grayscale", GREY_RANGE)
+    else:
+        colours = [look["land"] if word in look["ground"][:2] else
+                   look["classes"].get(word, look["classes"]["building"] if word else look["unknown"])
+                   for word in classes]
+        simple.ColorBy(display, ("CELLS", "object_id"))
+        table = simple.GetColorTransferFunction("object_id")
+        table.InterpretValuesAsCategories = table.AnnotationsInitialized = 1
+        table.Annotations = [text for number, word in enumerate(classes) for text in (str(number), word or "surface")]
+        table.IndexedColors = [value for colour in colours for value in rgb(colour)]
+        table.IndexedOpacities = [1.0] * len(colours)
     display.SetScalarBarVisibility(view, False)
+    display.Ambient, display.Diffuse = AMBIENT, 1 - AMBIENT / 2  # the colours of the classes, with shades
+    edges = next((one for one in of_kind(EDGES) if one.Input == tree), None)
+    if edges is None:
+        edges = simple.FeatureEdges(registrationName=free_name("Edges", tree.Input), Input=tree, FeatureAngle=SHARP,
+                                    NonManifoldEdges=0, Coloring=0)
+    show(edges, view, rgb(look["edges"]))
 
 
 def show_sensor(beams, view, as_ball=1):
-    show(beams, view, Representation="Points", PointSize=SENSOR_SIZE, RenderPointsAsSpheres=as_ball)
+    show(beams, view, rgb(data("look.json")["lidar"]), Representation="Points", PointSize=SENSOR_SIZE,
+         RenderPointsAsSpheres=as_ball)
 
 
 def axes_of_camera(azimuth, elevation):

@@ -16,7 +16,7 @@ import math
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, frame, free_name, hide_scans, how_to_move, lidar_place, neighbour, run, say, say_place, show,
-    show_grey, show_sensor, start, surfaces_and_tree)
+    show_surfaces, show_sensor, start, surfaces_and_tree)
 
 TITLE = "airport scan"
 WIDE = 50e3  # m, extent from which on surfaces may be in millimetres
@@ -60,7 +60,7 @@ def look(view, beams, tree, echoes, seen, elevation):
 def show_scan(surfaces, tree, beams, echoes, view, colour, elevation=CAMERA_ELEVATION):
     """Shows grey surfaces, the sensor as a large point, and coloured echoes."""
     simple.Hide(surfaces, view)
-    show_grey(tree, view)
+    show_surfaces(tree, view)
     # The ground cuts a square, but not a ball. ParaView does not draw a ball that is nearer than all other objects.
     show_sensor(beams, view, int(inside(beams.Position, tree.GetDataInformation().GetBounds())))
     seen = echoes.GetDataInformation().GetNumberOfPoints() > 0

@@ -15,7 +15,7 @@ In ParaView: select surfaces, or nothing, and click the button in the toolbar. I
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, SPECIES_COLOURS, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place,
-    show, show_grey, show_sensor, start, surfaces_and_tree, update_first_step)
+    show, show_surfaces, show_sensor, start, surfaces_and_tree, update_first_step)
 
 TITLE = "birds over the airport"
 REVOLUTIONS = 10
@@ -82,7 +82,7 @@ def scan(view=None, surfaces=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WI
     update_first_step(echoes)
     hide_scans(view)
     simple.Hide(scene, view)
-    show_grey(tree, view)
+    show_surfaces(tree, view)
     show_sensor(beams, view)
     colour(echoes, view)
     show(echoes, view, Representation="Points", PointSize=CLUTTER_SIZE)

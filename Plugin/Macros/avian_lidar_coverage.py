@@ -18,7 +18,7 @@ import math
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     REASONS, colour_by, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place, show,
-    show_grey, show_sensor, start, surfaces_and_tree)
+    show_surfaces, show_sensor, start, surfaces_and_tree)
 
 TITLE = "coverage"
 STATUS = "avian_lidar_status_colours"
@@ -120,7 +120,7 @@ def cover(view=None, surfaces=None):
     hide_scans(view, other)
     for each in (view, other):
         simple.Hide(scene, each)
-        show_grey(tree, each)
+        show_surfaces(tree, each)
         show_sensor(beams, each)
     show_probability(probable, surface, view)
     show_reasons(status, level, other)

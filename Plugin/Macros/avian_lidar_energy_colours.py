@@ -15,7 +15,7 @@ In ParaView: select the echoes, and click the button in the toolbar. In a script
 import math
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import colour_by, legend, output_with, run
+from avian_lidar_plugin import colour_by, data, legend, output_with, run
 
 PRESET = "Avian lidar HSB"
 ARRAY = "energy"
@@ -41,6 +41,20 @@ def energy_limits(source):
 def decades(low, high):
     """The powers of ten between the limits. The legend's own labels on a logarithmic scale overlap."""
     return [10.0 ** power for power in range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)]
+
+
+def steps(low, high):
+    """The limits, and round numbers between them that keep their distance."""
+    step = next(size * 10.0 ** power for power in range(-30, 9) for size in (1, 2, 5)
+                if (high - low) / (size * 10.0 ** power) <= 5)
+    inside = [step * number for number in range(math.ceil(low / step), math.floor(high / step) + 1)]
+    return [low, *(one for one in inside if one - low > step / 3 and high - one > step / 3), high]
+
+
+def unit_of(most):
+    """The unit in which an energy (J) is at least 1, and the number of these units in a joule."""
+    units = data("look.json")["units_of_energy"].items()
+    return next(((unit, scale) for unit, scale in units if most * scale >= 1), ("J", 1.0))
 
 
 def is_image(source):
@@ -113,9 +127,14 @@ def colour(source, view=None):
     table = colour_by(display, "POINTS", ARRAY, PRESET, (low, high), logarithmic)
     simple.GetOpacityTransferFunction(ARRAY).RescaleTransferFunction(low, high)
     table.NanOpacity = 0  # cells without an echo
-    bar = legend(table, view, "energy (J)")
-    bar.UseCustomLabels = int(logarithmic)
-    bar.CustomLabels = decades(low, high) if logarithmic else []
+    unit, scale = unit_of(high)
+    bar = legend(table, view, f"energy ({unit})")
+    # Texts stand in for the legend's own numbers, which are in joules.
+    bar.DrawTickLabels = bar.AddRangeLabels = 0
+    bar.DrawAnnotations = 1
+    table.AnnotationsInitialized = 1
+    table.Annotations = [text for value in (decades(low, high) if logarithmic else steps(low, high))
+                         for text in (repr(value), f"{value * scale:.3g}")]
     if is_image(source):
         bar.Orientation, bar.WindowLocation = "Horizontal", "Lower Center"
     display.SetScalarBarVisibility(view, True)

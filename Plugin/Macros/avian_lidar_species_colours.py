@@ -8,12 +8,9 @@ In ParaView: select the tracks, and choose the macro in the menu Macros. In a sc
 """
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import legend, run, show
+from avian_lidar_plugin import data, legend, rgb, run, show
 
 ARRAY, NAMES = "species_id", "species_names"
-# Colours that differ from surfaces (grey) and from most echoes (blue to red), in the order of the built-in species.
-COLOURS = [(0.2, 0.9, 0.4), (0.6, 0.4, 1.0), (1.0, 1.0, 1.0), (1.0, 0.6, 0.1), (0.9, 0.1, 0.5), (0.5, 0.9, 1.0)]
-
 
 def species_of(tracks):
     """{id: name} of the species in a source of tracks."""
@@ -23,9 +20,15 @@ def species_of(tracks):
     return {number: names.GetValue(number) for number in found}
 
 
+def colour_of_species(number):
+    """The colour of a species, in the order of the built-in species."""
+    colours = data("look.json")["species"]
+    return rgb(colours[number % len(colours)])
+
+
 def colour_of(tracks):
     """The colour of the first species in a source of tracks."""
-    return COLOURS[min(species_of(tracks), default=0) % len(COLOURS)]
+    return colour_of_species(min(species_of(tracks), default=0))
 
 
 def colour(sources, view=None, **properties):
@@ -43,7 +46,7 @@ def colour(sources, view=None, **properties):
     table.InterpretValuesAsCategories = 1
     table.AnnotationsInitialized = 1
     table.Annotations = [text for number in sorted(species) for text in (str(number), species[number])]
-    table.IndexedColors = [value for number in sorted(species) for value in COLOURS[number % len(COLOURS)]]
+    table.IndexedColors = [value for number in sorted(species) for value in colour_of_species(number)]
     table.IndexedOpacities = [1.0] * len(species)
     bar = legend(table, view, "species")
     bar.WindowLocation = "Upper Right Corner"

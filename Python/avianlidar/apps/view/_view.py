@@ -16,7 +16,7 @@ from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges
 from ..._cloud import Cloud, as_numpy, field_values, triangles_of, with_points
 from ..._disk import write_whole
 from ..._files import numbers_of
-from ..._look import BIRD, CLASSES, GROUND, SPECIES, UNKNOWN, class_colour, scale_of
+from ..._look import GROUND, SPECIES, UNKNOWN, class_colour, scale_of
 from ..._pipeline import Error
 from ..._plot import hue_colors
 from ..._scene import Scene
@@ -234,9 +234,9 @@ def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), seq
     shown = [_echoes(cloud, name, share, generator) for name, cloud in echoes]
     lidar = next((one["lidar"] for one in shown if "lidar" in one), scene.lidar_position)
     data = {"title": title, "centre": centre.tolist(), "bounds": bounds.tolist(), "lidar": lidar,
-            "surfaces": _surfaces(scene, centre), "labels": _labels(scene), "echoes": shown, "bird": BIRD,
+            "surfaces": _surfaces(scene, centre), "labels": _labels(scene), "echoes": shown,
             "beams": MOST_BEAMS, "hues": [_hex(row) for row in hue_colors().colors],
-            "shades": _gradient(), "classes": CLASSES,
+            "shades": _gradient(),
             "sequence": _sequence(sequence) if sequence else None,
             "coverage": _coverage(coverage, scene.geodetic_origin) if coverage else None,
             "tracks": _tracks(tracks) if tracks else []}
