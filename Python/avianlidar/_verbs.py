@@ -217,7 +217,7 @@ def view(options) -> None:
     scene = Scene(options.scene, progress=_percent_of("scene"))
     clouds = [(file.name, _cloud(file, {})) for file in options.echoes]
     content = _view.page(scene, pathlib.Path(options.scene).name.partition(".")[0], clouds, options.sequence,
-                         options.coverage, options.tracks)
+                         _view.maps_in(options.coverage) if options.coverage else (), options.tracks)
     _view.write(options.out, content)
     tell(f"{options.out}: {scene.number_of_triangles} triangles, {sum(cloud.number_of_points for _, cloud in clouds)} "
          f"echoes, {len(content) / 1e6:.1f} MB; any browser opens the page")

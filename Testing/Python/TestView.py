@@ -28,7 +28,9 @@ def write_inputs():
     scan = al.Scan(al.Scene(HERE / "field.lidarscene.json"), al.Sensor("Airport16", position=(0, 0, 3)))
     al.save(scan.echoes, HERE / "echoes.vtp")
     sequence = HERE / "sequences" / "sequences" / "00"
-    sequence.mkdir(parents=True)
+    (sequence / "velodyne").mkdir(parents=True)
+    for number in range(3):
+        np.array([5, 5, 1, 0.5], "<f4").tofile(sequence / "velodyne" / f"{number:06d}.bin")
     (sequence / "times.txt").write_text("0.0\n1.0\n2.0\n", "utf-8")
     rows = "".join(f"{scan},10000,{EVIL.replace(',', ' ')},{scan}.0,{10.0 * scan},-30,12,3\n" for scan in range(3))
     (sequence / "truth.csv").write_text("scan,bird,species,time_s,x_m,y_m,z_m,points\n" +

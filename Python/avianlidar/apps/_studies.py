@@ -29,6 +29,7 @@ from .pages._drawing import gradient
 from .pages._words import counted
 from .sequences._sequence import Sequence
 from .sequences._tracks import BirdTracks
+from .view import _view
 
 
 @contextlib.contextmanager
@@ -75,9 +76,12 @@ def sequence(options) -> None:
                                   lambda *_: bar(what, next(done), sequence.scans_to_do))
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
+        shown = _view.beside(options.out / "view.html", sequence.scene, pathlib.Path(options.scenario).name.split(".")[0],
+                             sequence=options.out)
         tell(f"{options.out}: {counted(sum(p['scans'] for p in parts), 'scan')} in "
              f"{counted(len(parts), 'sequence')}, birds seen in "
-             f"{sum(p['scans_with_birds_seen'] for p in parts)} of these scans; datasheet.md gives details")
+             f"{sum(p['scans_with_birds_seen'] for p in parts)} of these scans; datasheet.md gives details"
+             f"{', view.html shows the first sequence' if shown else ''}")
 
 
 def track(options) -> None:

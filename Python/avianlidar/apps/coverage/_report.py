@@ -28,6 +28,7 @@ from ..places._candidates import NOT_CHECKED
 from ..places._geojson import to_geodetic
 from ..places._regions import rounded
 from ..sequences._card import read_card
+from ..view import _view
 from . import _answer
 from . import _pictures as pictures
 from . import _sites_page
@@ -391,6 +392,7 @@ class Report:
         write_table(folder / "shares.csv", [{"receiver": view.title, **row} for view in views for row in view.shares])
         write_table(folder / "ends.csv", [{"receiver": view.title, **row} for view in views for row in view.by_end])
         write_table(folder / "range.csv", [row for found in reaches for row in found["table"]])
+        there = self._in_three_dimensions(answering[0], folder / "view.html")
         known = field_values(first.regions.data)
         made = ("file", "hours", "options", *(["year"] if "metar" in self.plan else []))
         asked = {name: part for name, part in self.plan.items() if name not in made}
@@ -418,7 +420,19 @@ class Report:
             statuses=list(zip(first.coverage.status_names, pictures.STATUS_COLOURS)), tracks=self.tracks,
             scene={"name": pathlib.Path(self.plan["scene"]).name, "comment": _lines(self.scene.get("comment")),
                    "attribution": _lines(self.scene.get("attribution"))},
-            files=folder.name, version=__version__, json=text)
+            files=folder.name, version=__version__, json=text, view=there)
+
+    def _in_three_dimensions(self, view: Plan, file: pathlib.Path) -> bool:
+        """Writes a page with the scene, the sensor and the maps in three dimensions. @return whether it is there"""
+        maps = []
+        for height in view.heights:
+            cover = view.map_at(height)
+            (west, south), step = cover.data.GetOrigin()[:2], cover.data.GetSpacing()[:2]
+            values = view.mixed(cover)[0][::-1]
+            north = south + (len(values) - 0.5) * step[1]
+            maps.append(_view.map_of(height, west - step[0] / 2, north, step, values))
+        return _view.beside(file, view.scene, self.plan.get("description") or file.parent.name, coverage=maps,
+                            lidar=view.sensor.position)
 
 
 def _half(p: np.ndarray) -> str:

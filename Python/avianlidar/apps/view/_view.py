@@ -7,17 +7,19 @@ import json
 import math
 import pathlib
 import re
+import warnings
 import zlib
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges
 
+from ... import vtkAvianLidar as _wrapped
 from ..._cloud import Cloud, as_numpy, field_values, triangles_of, with_points
 from ..._disk import write_whole
 from ..._files import numbers_of
 from ..._look import GROUND, SPECIES, UNKNOWN, class_colour, scale_of
-from ..._pipeline import Error
+from ..._pipeline import Error, callers_level, update
 from ..._plot import hue_colors
 from ..._scene import Scene
 from ..inputs._tables import read_table
@@ -187,26 +189,35 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
                 x, y, z, *size, heading = map(float, words[3:10])
                 box = others.setdefault(words[10], {"name": f"{words[0]} {words[10]}", "size": size, "path": []})
                 box["path"].append([time, x, y, z, heading])
-    return {"name": file.parent.name, "from": float(times[0]), "to": float(times[-1]),
+    reader = _wrapped.vtkAvianLidarSequenceReader()
+    reader.SetFileName(str(file.with_name("times.txt")))
+    update(reader)
+    return {"name": file.parent.name, "scan": Cloud(reader.GetOutput()), "from": float(times[0]), "to": float(times[-1]),
             "birds": [{**bird, "colour": colours[bird["species"]]} for bird in birds.values()],
             "species": colours, "others": list(others.values())}
 
 
-def _coverage(folder: pathlib.Path, origin: Optional[Sequence[float]]) -> Dict[str, Any]:
-    """Detection probability by height."""
+def map_of(height: float, west: float, north: float, step: Sequence[float], values: np.ndarray) -> Dict[str, Any]:
+    """A map of probabilities for a page. @param west, north border, m @param step width and height of a pixel, m
+    @param values rows (from north to south) x columns"""
+    shares = np.clip(np.nan_to_num(values), 0.0, 1.0)
+    return {"height": height, "west": west, "north": north, "step": list(step), "shape": values.shape,
+            "values": _block(np.rint(255 * shares).astype(np.uint8))}
+
+
+def maps_in(folder: pathlib.Path) -> List[Dict[str, Any]]:
+    """The maps of detection probabilities in a folder, by height."""
     from ..places._gdal import gdal
     files = {float(match[1]): file for file in folder.glob("detection_probability_*m.tif")
              if (match := re.fullmatch(r"detection_probability_(.+)m\.tif", file.name))}
     if not files:
         raise Error(f"{folder}: no detection_probability_*m.tif, expected the maps of `avianlidar coverage`")
-    maps: List[Dict[str, Any]] = []
+    maps = []
     for height, file in sorted(files.items()):
         image = gdal.Open(str(file))
         west, step, _, north, _, down = image.GetGeoTransform()
-        values = image.ReadAsArray()
-        maps.append({"height": height, "west": west, "north": north, "step": [step, -down], "shape": values.shape,
-                     "values": _block(np.rint(255 * np.clip(np.nan_to_num(values), 0.0, 1.0)).astype(np.uint8))})
-    return {"maps": maps}
+        maps.append(map_of(height, west, north, (step, -down), image.ReadAsArray()))
+    return maps
 
 
 def _tracks(file: pathlib.Path) -> List[Dict[str, Any]]:
@@ -220,9 +231,10 @@ def _tracks(file: pathlib.Path) -> List[Dict[str, Any]]:
 
 
 def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), sequence: Optional[pathlib.Path] = None,
-         coverage: Optional[pathlib.Path] = None, tracks: Optional[pathlib.Path] = None) -> bytes:
-    """The page. @param echoes names and clouds @param sequence folder of a sequence @param coverage folder of maps
-    @param tracks table of tracks. @throws Error that names the input"""
+         coverage: Sequence[Dict[str, Any]] = (), tracks: Optional[pathlib.Path] = None, lidar=None) -> bytes:
+    """The page. @param echoes names and clouds @param sequence folder of a sequence, whose first scan is shown, too
+    @param coverage maps by map_of() @param tracks table of tracks @param lidar position, m; default: that of the echoes
+    or of the scene. @throws Error that names the input"""
     import jinja2
     from markupsafe import Markup
     if not scene.number_of_triangles:
@@ -230,15 +242,16 @@ def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), seq
     bounds = np.reshape(scene.bounds, (3, 2))
     centre = np.round(bounds.mean(axis=1))
     generator = np.random.default_rng(0)
+    birds = _sequence(sequence) if sequence else None
+    echoes = [*echoes, *([("scan 0", birds.pop("scan"))] if birds else [])]
     share = min(1.0, MOST_ECHOES / max(1, sum(cloud.number_of_points for _, cloud in echoes)))
     shown = [_echoes(cloud, name, share, generator) for name, cloud in echoes]
-    lidar = next((one["lidar"] for one in shown if "lidar" in one), scene.lidar_position)
+    lidar = lidar or next((one["lidar"] for one in shown if "lidar" in one), scene.lidar_position)
     data = {"title": title, "centre": centre.tolist(), "bounds": bounds.tolist(), "lidar": lidar,
             "surfaces": _surfaces(scene, centre), "labels": _labels(scene), "echoes": shown,
             "beams": MOST_BEAMS, "hues": [_hex(row) for row in hue_colors().colors],
             "shades": _gradient(),
-            "sequence": _sequence(sequence) if sequence else None,
-            "coverage": _coverage(coverage, scene.geodetic_origin) if coverage else None,
+            "sequence": birds, "coverage": {"maps": list(coverage)} if coverage else None,
             "tracks": _tracks(tracks) if tracks else []}
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     text = text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
@@ -266,6 +279,17 @@ def _scripts(here: pathlib.Path) -> List[str]:
         raise Error(f"{missing[0]}: no such file: a page needs three.js (Debian's package libjs-three)")
     return [*((SCRIPTS / name).read_text(encoding="utf-8") for name in THREE),
             (here / "view.js").read_text(encoding="utf-8")]
+
+
+def beside(file: pathlib.Path, *things: Any, **more: Any) -> bool:
+    """Writes a page beside other results, or warns if the page cannot be made. @param things as for page() @return
+    whether the page was written"""
+    try:
+        write(file, page(*things, **more))
+    except Error as error:
+        warnings.warn(f"{file.name} is left out: {error}", RuntimeWarning, stacklevel=callers_level())
+        return False
+    return True
 
 
 def write(file: pathlib.Path, content: bytes) -> None:
