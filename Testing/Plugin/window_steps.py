@@ -109,7 +109,7 @@ def look(source, view, representation, mode):
     assert list(display.ColorArrayName) == ["POINTS", "energy"], display.ColorArrayName
     assert representation in display.Representation, display.Representation
     assert (table.RGBPoints[0], table.RGBPoints[-4]) == (2e-6, 6.25e-5), table.RGBPoints
-    assert (bar.Title, bar.Visibility) == ("energy (J)", 1), bar.Title
+    assert (bar.Title, bar.Visibility) == ("energy (\u00b5J)", 1), bar.Title
     assert mode in view.InteractionMode, view.InteractionMode
 
 
