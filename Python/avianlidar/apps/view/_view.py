@@ -109,9 +109,10 @@ def _labels(scene: Scene) -> List[Dict[str, Any]]:
         if word == "runway":
             flat = corners[:, :2] - corners[:, :2].mean(axis=0)
             axis = np.linalg.svd(flat, full_matrices=False)[2][0]
-            ends = [corners[:, :2].mean(axis=0) + axis * end for end in ((flat @ axis).min(), (flat @ axis).max())]
-            if np.hypot(*(ends[1] - ends[0])) > 0.0:
-                runways.append((Runway(re.sub("(?i)^runway ", "", name), *map(tuple, ends), 0.0), corners[:, 2].max()))
+            along, middle = flat @ axis, corners[:, :2].mean(axis=0)
+            (x0, y0), (x1, y1) = middle + axis * along.min(), middle + axis * along.max()
+            if along.max() > along.min():
+                runways.append((Runway(re.sub("(?i)^runway ", "", name), (x0, y0), (x1, y1), 0.0), corners[:, 2].max()))
         elif word not in GROUND and not re.fullmatch(r"(?i)(building|hangar|structure|house|tree)s?( \d+)?", name):
             size = corners.max(axis=0) - corners.min(axis=0)
             top = (corners.max(axis=0) + corners.min(axis=0)) / 2
@@ -127,8 +128,8 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
     points = cloud.points
     kept = np.flatnonzero(np.isfinite(points).all(axis=1))
     kept = kept[generator.permutation(len(kept))[:math.ceil(share * len(kept))]]
-    fields, found = cloud.fields, {"name": name, "count": len(kept), "of": len(points)}
-    found.update(_in_steps(points[kept]))
+    fields = cloud.fields
+    found: Dict[str, Any] = {"name": name, "count": len(kept), "of": len(points), **_in_steps(points[kept])}
     if "energy" in cloud:
         energy = cloud["energy"][kept]
         low = fields.get("lower_energy_limit", energy[energy > 0.0].min(initial=np.inf))
@@ -144,10 +145,9 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
         classes = list(fields.get("object_classes", ()))
         ids = np.where(ids == -1, len(names), np.where(ids == -2, len(names) + 1, np.where(
             (ids < 0) | (ids >= len(names)), len(names) + 2, ids)))
+        words = [*classes, *["unknown"] * (len(names) - len(classes)), "noise", "air", "unknown"]
         found["objects"] = {"names": [*names, "false alarm", "air", "unknown"], "of": _block(ids.astype(np.uint16)),
-                            "classes": [*classes, *["unknown"] * (len(names) - len(classes)), "noise", "air",
-                                        "unknown"]}
-        found["objects"]["colours"] = [class_colour(word) for word in found["objects"]["classes"]]
+                            "classes": words, "colours": [class_colour(word) for word in words]}
     elif "semantic_label" in cloud:
         labels = cloud["semantic_label"][kept].astype(np.int64)
         known, of = np.unique(labels, return_inverse=True)
@@ -164,8 +164,8 @@ def _label_colour(label: int) -> str:
 
 
 def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
-    """Birds and other movers of a sequence by scan. @param folder a sequence, or a folder that holds sequences, of which
-    the first is taken"""
+    """The first scan of a sequence, and birds and other movers by scan. @param folder a sequence, or a folder that holds
+    sequences, of which the first is taken"""
     inner = sorted(folder.glob("sequences/[0-9]*/truth.csv"))
     file = next((one for one in (folder / "truth.csv", *inner) if one.is_file()), None)
     if file is None:
@@ -192,7 +192,8 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
     reader = _wrapped.vtkAvianLidarSequenceReader()
     reader.SetFileName(str(file.with_name("times.txt")))
     update(reader)
-    return {"name": file.parent.name, "scan": Cloud(reader.GetOutput()), "from": float(times[0]), "to": float(times[-1]),
+    return {"name": file.parent.name, "scan": Cloud(reader.GetOutput()), "from": float(times[0]),
+            "to": float(times[-1]),
             "birds": [{**bird, "colour": colours[bird["species"]]} for bird in birds.values()],
             "species": colours, "others": list(others.values())}
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of `avianlidar view`: a scene in three dimensions, with three.js. Lengths are in metres, with x east, y north
-// and z up from the middle of the scene. Texts of files become nodes of text, never markup.
+// The page of `avianlidar view`: a scene in three dimensions, with three.js. Lengths are in metres, with x east, y
+// north and z up from the middle of the scene. Texts of files become nodes of text, never markup.
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -230,7 +230,7 @@
 
   // Legend --------------------------------------------------------------------------------------------------------
   function row(parent, colour, text) {
-    const line = document.createElement("div"), box = document.createElement("i"), words = document.createElement("span");
+    const [line, box, words] = ["div", "i", "span"].map((kind) => document.createElement(kind));
     box.style.background = colour;
     words.textContent = text;
     line.append(box, words);
@@ -296,13 +296,13 @@
     mark.renderOrder = 9;
     group.add(mark);
     addName("lidar", mark.position.clone(), group);
-    const rings = layer("range rings"), step = [50, 100, 200, 500, 1000, 2000, 5000].find((one) => radius < 4.5 * one) ||
-      10000;
+    const rings = layer("range rings");
+    const step = [50, 100, 200, 500, 1000, 2000, 5000].find((one) => radius < 4.5 * one) || 10000;
     for (let range = step; range < radius; range += step) {
       const corners = [];
       for (let k = 0; k <= 180; ++k) {
-        corners.push(new THREE.Vector3(at.x + range * Math.cos(k * Math.PI / 90), at.y + range * Math.sin(k * Math.PI / 90),
-          at.z));
+        const angle = k * Math.PI / 90;
+        corners.push(new THREE.Vector3(at.x + range * Math.cos(angle), at.y + range * Math.sin(angle), at.z));
       }
       rings.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(corners), new THREE.LineBasicMaterial({
         color: 0x4a6a8a, transparent: true, opacity: 0.7 })));
@@ -326,8 +326,9 @@
     shape.rotateZ(-Math.PI / 2); // the tip points east
     sequence.birds.forEach((bird) => {
       const body = new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ color: bird.colour }));
-      const trail = new THREE.Line(new THREE.BufferGeometry().setFromPoints(bird.path.map((one) => local(one.slice(1)))),
-        new THREE.LineBasicMaterial({ color: bird.colour, transparent: true, opacity: 0.45 }));
+      const way = new THREE.BufferGeometry().setFromPoints(bird.path.map((one) => local(one.slice(1))));
+      const trail = new THREE.Line(way, new THREE.LineBasicMaterial({ color: bird.colour, transparent: true,
+        opacity: 0.45 }));
       layer("birds").add(body);
       layer("trails").add(trail);
       movers.push({ of: bird, body });
@@ -361,7 +362,8 @@
   const slices = [];
   async function addCoverage(coverage) {
     for (const map of coverage.maps) {
-      const values = await numbers(map.values), [rows, columns] = map.shape, texels = new Uint8Array(4 * rows * columns);
+      const values = await numbers(map.values), [rows, columns] = map.shape;
+      const texels = new Uint8Array(4 * rows * columns);
       for (let i = 0; i < rows * columns; ++i) {
         texels.set(shares[values[i]], 4 * i);
         texels[4 * i + 3] = values[i] ? 190 : 0;
@@ -500,7 +502,7 @@
 
   // Controls ------------------------------------------------------------------------------------------------------
   function control(kind, words, settings, change) {
-    const label = document.createElement("label"), input = document.createElement("input"), text = document.createElement("span");
+    const [label, input, text] = ["label", "input", "span"].map((kind) => document.createElement(kind));
     Object.assign(input, { type: kind }, settings);
     text.textContent = words;
     label.append(...(kind === "checkbox" ? [input, text] : [text, input]));
@@ -558,8 +560,8 @@
     }
     if (slices.length) {
       const heights = data.coverage.maps.map((map) => map.height);
-      const slider = control("range", "", { id: "height", min: 0, max: heights.length - 1, step: 1, value: 0 }, (input) =>
-        showHeight(Number(input.value)));
+      const slider = control("range", "", { id: "height", min: 0, max: heights.length - 1, step: 1, value: 0 },
+        (input) => showHeight(Number(input.value)));
       const showHeight = (number) => {
         slider.text.textContent = `coverage at ${heights[number]} m above the origin`;
         showSlice(number);
