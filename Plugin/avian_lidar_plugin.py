@@ -321,9 +321,10 @@ def colour_by(display, kind, array, preset, limits, logarithmic=False):
 
 
 def legend(table, view, title):
-    """The legend of a table of colours in dark letters, with one format for all numbers."""
+    """The legend of a table of colours in letters that the background shows, with one format for all numbers."""
     bar = simple.GetScalarBar(table, view)
-    bar.TitleColor = bar.LabelColor = [0.1] * 3
+    is_light = not view.UseColorPaletteForBackground and sum(view.Background) > 1.5
+    bar.TitleColor = bar.LabelColor = [0.1 if is_light else 1.0] * 3
     bar.Title, bar.ComponentTitle = title, ""
     bar.AutomaticLabelFormat = 0
     bar.LabelFormat = bar.RangeLabelFormat = "%.3g"

@@ -15,7 +15,7 @@ In ParaView: select surfaces, or nothing, and click the button in the toolbar. I
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, SPECIES_COLOURS, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place,
-    show, show_surfaces, show_sensor, start, surfaces_and_tree, update_first_step)
+    show, show_sensor, show_surfaces, start, surfaces_and_tree, update_first_step)
 
 TITLE = "birds over the airport"
 REVOLUTIONS = 10

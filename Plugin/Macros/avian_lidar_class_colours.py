@@ -8,7 +8,7 @@ In ParaView: select the points, and choose the macro in the menu Macros. In a sc
 """
 
 from paraview import simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import data, run, show
+from avian_lidar_plugin import data, legend, run, show
 
 ARRAY = "semantic_label"
 READER = "AvianLidarSequenceReader"
@@ -31,8 +31,7 @@ def colour(source, view=None):
     table.Annotations = [text for label, name, _ in classes for text in (str(label), name)]
     table.IndexedColors = [value / 255 for _, _, bgr in classes for value in reversed(bgr)]
     table.IndexedOpacities = [1.0] * len(classes)
-    bar = simple.GetScalarBar(table, view)
-    bar.Title, bar.ComponentTitle = "class", ""
+    bar = legend(table, view, "class")
     bar.LabelFontSize, bar.ScalarBarLength, bar.WindowLocation = FONT_SIZE, LEGEND, "Upper Left Corner"
     display.SetScalarBarVisibility(view, True)
     if source.SMProxy.GetXMLName() == READER:

@@ -17,8 +17,8 @@ import math
 
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
-    REASONS, colour_by, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place, show,
-    show_surfaces, show_sensor, start, surfaces_and_tree)
+    REASONS, colour_by, frame, free_name, ground_below, hide_scans, legend, lidar_place, neighbour, run, say_place,
+    show, show_sensor, show_surfaces, start, surfaces_and_tree)
 
 TITLE = "coverage"
 STATUS = "avian_lidar_status_colours"
@@ -67,12 +67,10 @@ def second_view(view):
 
 def show_legend(display, table, view, title, horizontal):
     """Shows the legend, with letters of one size."""
-    bar = simple.GetScalarBar(table, view)
-    bar.Title, bar.ComponentTitle = title, ""
+    bar = legend(table, view, title)
     bar.TitleFontSize = bar.LabelFontSize = FONT_SIZE
     if horizontal:
         bar.Orientation, bar.WindowLocation, bar.ScalarBarLength = "Horizontal", "Lower Center", 0.5
-        bar.AutomaticLabelFormat = 0
         bar.LabelFormat = bar.RangeLabelFormat = "%.1f"
     else:
         bar.Orientation, bar.WindowLocation, bar.ScalarBarLength = "Vertical", "Lower Right Corner", 0.35

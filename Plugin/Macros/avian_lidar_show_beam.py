@@ -11,7 +11,7 @@ In ParaView: choose the macro in the menu Macros. In a script: show_beam(echoes,
 """
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import SHARES, colour_by, free_name, plugin_folder, run, say, show, start, upstream
+from avian_lidar_plugin import SHARES, colour_by, free_name, legend, plugin_folder, run, say, show, start, upstream
 
 TITLE = "show beam"
 ARRAY, SHARE = "beam_id", "energy_share"
@@ -86,8 +86,7 @@ def show_parts(beam, view):
     place = "Translation" if "Translation" in display.ListProperties() else "Position"
     display.SetPropertyWithName(place, [-(NEARER / length + NEARER_SHARE) * (a - b) for a, b in zip(middle, apex)])
     table = colour_by(display, "CELLS", SHARE, "Viridis (matplotlib)", (0.0, 1.0))
-    bar = simple.GetScalarBar(table, view)
-    bar.Title, bar.ComponentTitle, bar.WindowLocation = "share of the energy", "", "Upper Right Corner"
+    legend(table, view, "share of the energy").WindowLocation = "Upper Right Corner"
     display.SetScalarBarVisibility(view, True)
 
 

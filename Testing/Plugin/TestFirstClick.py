@@ -18,7 +18,7 @@ SENSOR = os.path.join(SOURCE_DIR, "Filters", "Sensors", "VLP16.lidarsensor.json"
 SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidarscene.json")
 WINDOW = "pqClientMainWindow"
 APPLY = "propertiesDock/propertiesPanel/Accept"
-AIRPORT = {"Airport Hongqiao", "Collision tree"}
+AIRPORT = {"Airport Hongqiao", "Collision tree", "Edges"}
 BIRDS = {"Birds", "Gulls", "Crows", "Starlings", "Echoes of gulls", "Echoes of crows", "Echoes of starlings"}
 # Names in the pipeline after the first click on each macro.
 MACROS = {"airport_scan": AIRPORT | {"Airport 16", "Scan"},
@@ -76,7 +76,7 @@ class FirstClick(unittest.TestCase):
             events += [click(button("energy_colours")), click(button("status_colours"))]
         state, messages = play(PARAVIEW, events)
         self.assertEqual(messages, [])
-        self.assertEqual({name for name in names(state) if name.startswith(("Airport Hongqiao", "Collision tree"))},
+        self.assertEqual({name for name in names(state) if name.startswith(tuple(AIRPORT))},
                          AIRPORT)
 
     def test_surfaces_are_not_selected(self):

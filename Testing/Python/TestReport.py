@@ -52,7 +52,7 @@ class Page(unittest.TestCase):
         self.assertIn("{&#34;by&#34;: &#34;&lt;me&gt;&#34;}", self.text)
         self.assertNotIn(str(PLAN.parent), self.text)
         self.assertEqual(self.browser.run("return [...document.querySelectorAll('#first a')].filter(a => "
-                                          "!document.querySelector(a.hash)).length"), 0)
+                                          "a.hash && !document.querySelector(a.hash)).length"), 0)
         self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
         self.assertEqual(self.browser.run("return getComputedStyle(document.querySelector('#first')).breakAfter"),
                          "page")

@@ -174,6 +174,8 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
                       "expected the truth.csv of a sequence of `avianlidar sequence`")
     birds: Dict[str, Dict[str, Any]] = {}
     for row in rows:
+        if not row["x_m"]:  # the bird is not there yet, or no more
+            continue
         bird = birds.setdefault(row["bird"], {"name": f"{row['species']} {row['bird']}", "species": row["species"],
                                               "path": []})
         bird["path"].append([float(row[key]) for key in ("time_s", "x_m", "y_m", "z_m", "points")])
