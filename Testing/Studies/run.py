@@ -36,7 +36,7 @@ PICTURES = {
     "check_fit": {"silver-metallic-paint": "materials-silver-metallic-paint"},
     "corridor": {"corridor": "corridor-corridor"},
     "design": {"head": "design-head"},
-    "labels": {"labels": "sequences-labels"},
+    "first_picture": {"airport": "airport-birds", "moving": "airport-birds-moving"},
     "paper": {"facade": "paper-facade", "terminal-1": "paper-terminal-1"},
     "patterns": {"prisms": "sensors-prisms", "rotors": "sensors-rotors"},
     "predicted_measured": {"least": "measured-least"},
@@ -66,7 +66,8 @@ def pages(words):
         if run:
             importlib.import_module(name).main(["--out", str(out)])
         for picture, target in PICTURES.get(name, {}).items():
-            shutil.copyfile(out / f"{picture}.png", page_tables.DOCUMENTATION / "images" / f"{target}.png")
+            (file,) = (file for file in out.glob(f"{picture}.*") if file.suffix in (".png", ".webp"))
+            shutil.copyfile(file, page_tables.DOCUMENTATION / "images" / f"{target}{file.suffix}")
         for name_of_file, target in [DATA[name]] if name in DATA else ():
             shutil.copyfile(out / name_of_file, HERE.parents[1] / target / name_of_file)
         for table in out.glob("*.md"):

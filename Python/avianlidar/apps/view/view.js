@@ -19,7 +19,7 @@
     return new types[block.type](await new Response(stream).arrayBuffer());
   }
   const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.substr(at, 2), 16));
-  const figures = (value, count) => Number(value.toPrecision(count)).toLocaleString("en");
+  const figures = (value, count) => value.toLocaleString("en", { maximumSignificantDigits: count });
 
   // Stage ---------------------------------------------------------------------------------------------------------
   /// True if no graphics card draws. Smooth edges then cost four times as much.
@@ -199,6 +199,8 @@
     const { low, high } = cloud.of.energy;
     return low * Math.pow(high / low, cloud.energy[i] / 65535);
   }
+  // What a cloud needs so that its echoes can be coloured in a way; other clouds are then hidden.
+  const WAYS = { energy: (cloud) => cloud.energy, distance: (cloud) => cloud.lidar, class: (cloud) => cloud.objects };
   let colouring = "energy";
   function colourEchoes() {
     let farthest = 0;
@@ -208,6 +210,7 @@
       }
     });
     clouds.forEach((cloud) => {
+      cloud.points.visible = WAYS[colouring] ? Boolean(WAYS[colouring](cloud)) : true;
       const ofObjects = cloud.of.objects ? cloud.of.objects.colours.map(rgb) : null;
       for (let i = 0; i < cloud.count; ++i) {
         let colour = [60, 60, 60];
@@ -525,8 +528,7 @@
         `${all.toLocaleString("en")} echoes`;
       find("controls").appendChild(line);
       const label = document.createElement("label"), select = document.createElement("select");
-      const ways = [["energy", (cloud) => cloud.energy], ["distance", (cloud) => cloud.lidar], ["class", (cloud) =>
-        cloud.objects]].filter(([, has]) => clouds.some(has)).map(([name]) => name);
+      const ways = Object.keys(WAYS).filter((name) => clouds.some(WAYS[name]));
       ways.forEach((name) => select.add(new Option(name, name)));
       label.append("echoes by ", select);
       colouring = ways[0] || "";
