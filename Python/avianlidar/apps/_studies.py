@@ -22,6 +22,7 @@ from .coverage._maps import write_maps
 from .coverage._plan import Plan
 from .coverage._report import Report
 from .coverage._sites import Sites
+from .inputs._json import load_json
 from .inputs._on_sale import farthest, idea
 from .inputs._read import PROPERTIES, read_plan, read_scenario
 from .inputs._tables import write_table
@@ -76,8 +77,8 @@ def sequence(options) -> None:
                                   lambda *_: bar(what, next(done), sequence.scans_to_do))
     if ranks.rank == 0:
         parts = manifest["sequences"].values()
-        shown = _view.beside(options.out / "view.html", sequence.scene, pathlib.Path(options.scenario).name.split(".")[0],
-                             sequence=options.out)
+        name = pathlib.Path(options.scenario).name.split(".")[0]
+        shown = _view.beside(options.out / "view.html", sequence.scene, name, sequence=options.out)
         tell(f"{options.out}: {counted(sum(p['scans'] for p in parts), 'scan')} in "
              f"{counted(len(parts), 'sequence')}, birds seen in "
              f"{sum(p['scans_with_birds_seen'] for p in parts)} of these scans; datasheet.md gives details"
@@ -93,7 +94,11 @@ def track(options) -> None:
         card = tracks.write(options.out, ranks, None if ranks.rank else bar)
     if ranks.rank == 0:
         table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
-        tell(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
+        name, folder = next(iter(tracks.folders.items()))
+        shown = _view.beside(options.out / "view.html", load_json(folder / "manifest.json")["scenario"]["scene"], name,
+                             sequence=folder, tracks=options.out / "tracks.csv", tracks_of=name)
+        tell(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it"
+             f"{', view.html shows the first sequence' if shown else ''}")
 
 
 def bench(options) -> None:

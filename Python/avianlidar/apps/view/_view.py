@@ -9,7 +9,7 @@ import pathlib
 import re
 import warnings
 import zlib
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges
@@ -164,7 +164,7 @@ def _label_colour(label: int) -> str:
 
 
 def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
-    """The first scan of a sequence, and birds and other movers by scan. @param folder a sequence, or a folder that holds
+    """The first scan of a sequence, and birds and other movers by scan. @param folder a sequence, or a folder of
     sequences, of which the first is taken"""
     inner = sorted(folder.glob("sequences/[0-9]*/truth.csv"))
     file = next((one for one in (folder / "truth.csv", *inner) if one.is_file()), None)
@@ -223,20 +223,24 @@ def maps_in(folder: pathlib.Path) -> List[Dict[str, Any]]:
     return maps
 
 
-def _tracks(file: pathlib.Path) -> List[Dict[str, Any]]:
-    """Lines of the tracks in a table."""
+def _tracks(file: pathlib.Path, of: str = "") -> List[Dict[str, Any]]:
+    """Lines of the tracks in a table. @param of name of an input, whose first sequence is taken; default: all tracks"""
     rows = read_table(file, ("track", "time_s", "x_m", "y_m", "z_m"), "expected tracks.csv of `avianlidar track`")
     lines: Dict[Tuple[str, ...], List[List[float]]] = {}
     for row in rows:
         key = tuple(row.get(name, "") for name in ("input", "sequence", "track"))
+        if of and key[:2] != (of, "00"):
+            continue
         lines.setdefault(key, []).append([float(row[name]) for name in ("time_s", "x_m", "y_m", "z_m")])
     return [{"name": f"track {key[-1]}", "path": path} for key, path in lines.items()]
 
 
 def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), sequence: Optional[pathlib.Path] = None,
-         coverage: Sequence[Dict[str, Any]] = (), tracks: Optional[pathlib.Path] = None, lidar=None) -> bytes:
+         coverage: Sequence[Dict[str, Any]] = (), tracks: Optional[pathlib.Path] = None, tracks_of: str = "",
+         lidar=None) -> bytes:
     """The page. @param echoes names and clouds @param sequence folder of a sequence, whose first scan is shown, too
-    @param coverage maps by map_of() @param tracks table of tracks @param lidar position, m; default: that of the echoes
+    @param coverage maps by map_of() @param tracks table of tracks @param tracks_of name of an input in the table whose
+    first sequence is shown; default: all @param lidar position, m; default: that of the echoes
     or of the scene. @throws Error that names the input"""
     import jinja2
     from markupsafe import Markup
@@ -255,7 +259,7 @@ def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), seq
             "beams": MOST_BEAMS, "hues": [_hex(row) for row in hue_colors().colors],
             "shades": _gradient(),
             "sequence": birds, "coverage": {"maps": list(coverage)} if coverage else None,
-            "tracks": _tracks(tracks) if tracks else []}
+            "tracks": _tracks(tracks, tracks_of) if tracks else []}
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     text = text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     here = pathlib.Path(__file__).parent
@@ -284,12 +288,12 @@ def _scripts(here: pathlib.Path) -> List[str]:
             (here / "view.js").read_text(encoding="utf-8")]
 
 
-def beside(file: pathlib.Path, *things: Any, **more: Any) -> bool:
-    """Writes a page beside other results, or warns if the page cannot be made. @param things as for page() @return
-    whether the page was written"""
+def beside(file: pathlib.Path, scene: Union[Scene, str], *things: Any, **more: Any) -> bool:
+    """Writes a page beside other results, or warns if the page cannot be made. @param scene a scene, or its file @param
+    things as for page() @return whether the page was written"""
     try:
-        write(file, page(*things, **more))
-    except Error as error:
+        write(file, page(scene if isinstance(scene, Scene) else Scene(scene), *things, **more))
+    except (Error, OSError) as error:
         warnings.warn(f"{file.name} is left out: {error}", RuntimeWarning, stacklevel=callers_level())
         return False
     return True
