@@ -24,7 +24,7 @@ class Ranks(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(json.loads((home / "made" / "manifest.json").read_text())["sequences"], wanted)
         self.assertEqual({path.name for path in (home / "made").iterdir()},
-                         {"datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences"})
+                         {"datasheet.md", "manifest.json", "semantic-kitti.yaml", "sequences", "view.html"})
         al.BirdTracks([home / "made"], learning_scans=1).write(home / "tracks")
         done = on_ranks("-m", "avianlidar", "track", home / "made", "-o", home / "together", "--learn", "1")
         self.assertEqual(done.returncode, 0, done.stderr)
