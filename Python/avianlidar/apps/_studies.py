@@ -22,7 +22,6 @@ from .coverage._maps import write_maps
 from .coverage._plan import Plan
 from .coverage._report import Report
 from .coverage._sites import Sites
-from .inputs._json import load_json
 from .inputs._on_sale import farthest, idea
 from .inputs._read import PROPERTIES, read_plan, read_scenario
 from .inputs._tables import write_table
@@ -95,7 +94,7 @@ def track(options) -> None:
     if ranks.rank == 0:
         table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
         name, folder = next(iter(tracks.folders.items()))
-        shown = _view.beside(options.out / "view.html", load_json(folder / "manifest.json")["scenario"]["scene"], name,
+        shown = _view.beside(options.out / "view.html", read_scenario(folder / "manifest.json")["scene"], name,
                              sequence=folder, tracks=options.out / "tracks.csv", tracks_of=name)
         tell(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it"
              f"{', view.html shows the first sequence' if shown else ''}")
