@@ -14,8 +14,10 @@ UNKNOWN: str = _LOOK["unknown"]
 
 
 def class_colour(word: str) -> str:
-    """The colour of a class: land is light, and an unknown class counts as a building."""
-    return _LOOK["land"] if word in GROUND[:2] else CLASSES.get(word, CLASSES["building"] if word else UNKNOWN)
+    """The colour of a class: land is light, and the class of an unknown solid counts as a building."""
+    if word in GROUND[:2]:
+        return _LOOK["land"]
+    return {**CLASSES, **_LOOK["points"]}.get(word, CLASSES["building"] if word else UNKNOWN)
 
 
 def scale_of(most: float) -> tuple[str, float]:

@@ -13,9 +13,9 @@ namespace echotest
 struct Instrument
 {
   double energy, wavelength, halfBeamwidth; ///< J, m, rad
-  double diameter, efficiency;              ///< of the aperture, m; of the detector
-  double radiance, bandwidth;               ///< W/(m2 sr nm), nm
-  double beams, gate;                       ///< beams of a scan; m
+  double diameter, efficiency; ///< diameter of the aperture, m; efficiency of the detector
+  double radiance, bandwidth;  ///< W/(m2 sr nm), nm
+  double beams, gate;          ///< beams of a scan; m
 };
 
 constexpr Instrument Search905{ 3.6e-4, 905e-9, 5.6e-3, 0.1, 0.4, 0.05, 10.0, 15360.0, 4000.0 };

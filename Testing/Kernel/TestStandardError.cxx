@@ -25,8 +25,8 @@ struct LitDisc
   bool filling = false; ///< fills the beam: what rays see bounds what they do not see
 };
 
-/// Of the beams of which a ray sees anything, or of all: the share whose estimate +-1.96 standard
-/// errors holds the truth.
+/// Share of beams whose true energy lies within 1.96 standard errors of the estimate. @param
+/// ofSeenAlone true: only beams with a ray that meets the target count
 double coverage(
   Sampling sampling, std::size_t rays, int beams, const LitDisc& target, bool ofSeenAlone = false)
 {

@@ -2,6 +2,7 @@
 """The page of `avianlidar view` in a browser without a network: what it shows, what a click and a measurement say, and
 that names in files stay names."""
 import json
+import shutil
 import time
 import unittest
 
@@ -10,6 +11,8 @@ import numpy as np
 import avianlidar as al
 import exampletools
 import helpertools
+from avianlidar._look import class_colour
+from avianlidar.apps.view import _view
 from browser import Browser
 
 EVIL = "<img src=x onerror=\"document.title='taken'\"></script><script>document.title='taken'</script>"
@@ -146,11 +149,48 @@ class Inputs(unittest.TestCase):
         for words, expected in (
                 ((scene, "-o", HERE / "view.txt"), "view.txt: expected a name that ends in .html"),
                 ((scene, "--coverage", HERE, "-o", HERE / "x.html"), "expected the maps of `avianlidar coverage`"),
-                ((scene, "--sequence", HERE, "-o", HERE / "x.html"), "expected a folder that `avianlidar sequence` has made"),
+                ((scene, "--sequence", HERE, "-o", HERE / "x.html"), "folder that `avianlidar sequence` has made"),
                 ((scene, "--tracks", HERE / "none.csv", "-o", HERE / "x.html"), "none.csv")):
             code, _, error = helpertools.run("view", *words)
             self.assertEqual(code, 2)
             self.assertIn(expected, error)
             self.assertFalse((HERE / "x.html").exists())
+
+    def test_damaged_numbers_are_named(self):
+        """Garbage and NaN in tables, maps that are no maps, and times without a scan."""
+        home = HERE / "damaged"
+        shutil.copytree(HERE / "sequences" / "sequences" / "00", home)
+        (home / "boxes").mkdir()
+        (HERE / "garbage").mkdir()
+        truth, times = home / "truth.csv", home / "times.txt"
+        for file, content, option, folder in (
+                (truth, truth.read_text("utf-8").replace("10.0", "nan"), "--sequence", home),
+                (truth, truth.read_text("utf-8").replace("10.0", "ten"), "--sequence", home),
+                (times, "", "--sequence", home),
+                (home / "boxes" / "000000.txt", "car 0 0 1 2\n", "--sequence", home),
+                (HERE / "garbage" / "detection_probability_5m.tif", "no map", "--coverage", HERE / "garbage"),
+                (HERE / "tracks.csv", "track,time_s,x_m,y_m,z_m\n1,0,inf,0,0\n", "--tracks", HERE / "tracks.csv")):
+            before = file.read_bytes() if file.exists() else None
+            file.write_text(content, "utf-8")
+            code, _, error = helpertools.run("view", HERE / "field.lidarscene.json", option, folder, "-o",
+                                             HERE / "x.html")
+            self.assertEqual((code, len(error.splitlines())), (2, 1), error)
+            self.assertIn(file.name, error)
+            self.assertFalse((HERE / "x.html").exists())
+            file.unlink() if before is None else file.write_bytes(before)
+
+    def test_sharp_edges_and_borders(self):
+        """A box without a lid, from triangles that share no points: its twelve edges, and no diagonal."""
+        points, cells = helpertools.box((0, 0, 0), (1, 2, 3))
+        lid = (points[cells][:, :, 2] == 3).all(axis=1)
+        triangles = points[cells[~lid]]
+        found = _view._edges(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)).reshape(-1, 2, 3)
+        self.assertEqual(sorted(np.abs(found[:, 0] - found[:, 1]).sum(axis=1).tolist()),
+                         [1.0] * 4 + [2.0] * 4 + [3.0] * 4)
+
+    def test_birds_and_false_alarms_have_colours_of_their_own(self):
+        walls = {class_colour(word) for word in ("building", "hangar", "terminal", "")}
+        for word in ("bird", "noise", "air"):
+            self.assertNotIn(class_colour(word), walls)
 
 

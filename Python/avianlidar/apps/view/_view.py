@@ -9,19 +9,19 @@ import pathlib
 import re
 import warnings
 import zlib
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges
 
 from ... import vtkAvianLidar as _wrapped
-from ..._cloud import Cloud, as_numpy, field_values, triangles_of, with_points
+from ..._cloud import Cloud, as_numpy, field_values, triangles_of
 from ..._disk import write_whole
 from ..._files import numbers_of
 from ..._look import GROUND, SPECIES, UNKNOWN, class_colour, scale_of
 from ..._pipeline import Error, callers_level, update
 from ..._plot import hue_colors
 from ..._scene import Scene
+from ..inputs._json import naming
 from ..inputs._tables import read_table
 from ..places._regions import Runway, end_names
 from ..sequences._labels import CLASSES as LABELS
@@ -33,6 +33,8 @@ MOST_ECHOES = 1_200_000  # echoes of a page; of more, a random choice is shown
 MOST_EDGES = 100_000  # lines along edges of buildings
 MOST_BEAMS = 400  # drawn beams
 MOST_NAMES = 12  # names of buildings in the picture
+SLENDER = 0.1  # greatest width of a runway, as a share of its length
+WIDE = 0.25  # extent of a thing too wide for a name, as a share of the scene's extent
 SHARP = 30.0  # angle between faces from which on their common edge is drawn, deg
 
 
@@ -64,35 +66,32 @@ def _surfaces(scene: Scene, centre: np.ndarray) -> Dict[str, Any]:
     layer = np.array([GROUND.index(word) + 1 if word in GROUND else len(GROUND) + 1 for word in words])
     sorting = np.argsort(layer[of], kind="stable")
     cells, of = cells[sorting], of[sorting]
-    standing = np.flatnonzero(layer[of] > len(GROUND))
+    edges = _edges(points, cells[layer[of] > len(GROUND)])
     return {"points": _block((points - centre).astype(np.float32)), "cells": _block(cells.astype(np.uint32)),
-            "objects": _block(of.astype(np.uint16)), "names": [*names, "surface"],
+            "objects": _block(of.astype(np.uint32)), "names": [*names, "surface"],
             "classes": [word or "surface" for word in words], "layers": layer.tolist(),
             "colours": [class_colour(word) for word in words],
-            "edges": _block((_edges(points, cells[standing]) - centre).astype(np.float32))}
+            "edges": _block((edges[:2 * MOST_EDGES] - centre).astype(np.float32)),
+            "edges_left_out": max(0, len(edges) // 2 - MOST_EDGES)}
 
 
 def _edges(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Ends of the sharp edges and borders of triangles, two for each edge; none if there are too many edges."""
-    if not len(cells) or len(cells) > 3 * MOST_EDGES:
+    """Ends of the sharp edges and borders of triangles, two for each edge. (vtkFeatureEdges takes minutes where many
+    triangles share a point.)"""
+    if not len(cells):
         return np.zeros((0, 3))
-    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-    data, polygons = with_points(points), vtkCellArray()
-    polygons.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(cells, dtype=np.int64).ravel(), deep=True))
-    data.SetPolys(polygons)
-    clean, find = vtkCleanPolyData(), vtkFeatureEdges()
-    clean.SetInputData(data)
-    find.SetInputConnection(clean.GetOutputPort())
-    find.SetFeatureAngle(SHARP)
-    find.NonManifoldEdgesOff()
-    find.ColoringOff()
-    find.Update()
-    found = find.GetOutput()
-    if not found.GetNumberOfLines() or found.GetNumberOfLines() > MOST_EDGES:
-        return np.zeros((0, 3))
-    ends = as_numpy(found.GetLines().GetConnectivityArray())
-    return as_numpy(found.GetPoints().GetData())[ends]
+    places, same = np.unique(points[cells.ravel()], axis=0, return_inverse=True)
+    corners = same.reshape(-1, 3)
+    normals = np.cross(*(places[corners[:, k]] - places[corners[:, 0]] for k in (1, 2)))
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    pairs = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
+    order = np.lexsort(pairs.T[::-1])
+    triangle = np.tile(np.arange(len(corners)), 3)[order]
+    ends, first, count = np.unique(pairs[order], axis=0, return_index=True, return_counts=True)
+    next_one = triangle[np.minimum(first + 1, len(triangle) - 1)]
+    cosine = np.abs(np.einsum("ij,ij->i", normals[triangle[first]], normals[next_one]))
+    shown = (count == 1) | ((count == 2) & (cosine < math.cos(math.radians(SHARP))))
+    return places[ends[shown & (ends[:, 0] != ends[:, 1])]].reshape(-1, 3)
 
 
 def _labels(scene: Scene) -> List[Dict[str, Any]]:
@@ -102,8 +101,11 @@ def _labels(scene: Scene) -> List[Dict[str, Any]]:
     fields = field_values(data)
     of = as_numpy(data.GetCellData().GetArray("object_id"))
     runways, buildings = [], []
-    for number, (name, word) in enumerate(zip(fields.get("object_names", ()), fields.get("object_classes", ()))):
-        corners = points[np.unique(cells[of == number])]
+    order = np.argsort(of, kind="stable")
+    words = list(zip(fields.get("object_names", ()), fields.get("object_classes", ())))
+    limits = np.searchsorted(of[order], np.arange(len(words) + 1))
+    for (name, word), begin, end in zip(words, limits, limits[1:]):
+        corners = points[np.unique(cells[order[begin:end]])]
         if not len(corners):
             continue
         if word == "runway":
@@ -111,10 +113,13 @@ def _labels(scene: Scene) -> List[Dict[str, Any]]:
             axis = np.linalg.svd(flat, full_matrices=False)[2][0]
             along, middle = flat @ axis, corners[:, :2].mean(axis=0)
             (x0, y0), (x1, y1) = middle + axis * along.min(), middle + axis * along.max()
-            if along.max() > along.min():
+            across = np.ptp(flat @ (-axis[1], axis[0]))
+            if across < SLENDER * np.ptp(along):  # else there are several runways in one object
                 runways.append((Runway(re.sub("(?i)^runway ", "", name), (x0, y0), (x1, y1), 0.0), corners[:, 2].max()))
         elif word not in GROUND and not re.fullmatch(r"(?i)(building|hangar|structure|house|tree)s?( \d+)?", name):
             size = corners.max(axis=0) - corners.min(axis=0)
+            if (size[:2] > WIDE * np.ptp(points[:, :2], axis=0)).any():
+                continue
             top = (corners.max(axis=0) + corners.min(axis=0)) / 2
             buildings.append((float(size[0] * size[1]), name, [*top[:2].tolist(), float(corners[:, 2].max())]))
     found = [{"text": name, "at": [*end, float(height)]}
@@ -131,11 +136,11 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
     fields = cloud.fields
     found: Dict[str, Any] = {"name": name, "count": len(kept), "of": len(points), **_in_steps(points[kept])}
     if "energy" in cloud:
-        energy = cloud["energy"][kept]
+        energy = np.nan_to_num(cloud["energy"][kept].astype(float), posinf=0.0, neginf=0.0)
         low = fields.get("lower_energy_limit", energy[energy > 0.0].min(initial=np.inf))
         high = fields.get("upper_energy_limit", energy.max(initial=0.0))
         low, high = (float(np.ravel(limit)[0]) for limit in (low, high))
-        if 0.0 < low < high:
+        if 0.0 < low < high < np.inf:
             unit, scale = scale_of(high)
             whole = np.log(np.clip(energy, low, high) / low) / np.log(high / low)
             found["energy"] = {"low": low * scale, "high": high * scale, "unit": unit,
@@ -146,7 +151,7 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
         ids = np.where(ids == -1, len(names), np.where(ids == -2, len(names) + 1, np.where(
             (ids < 0) | (ids >= len(names)), len(names) + 2, ids)))
         words = [*classes, *["unknown"] * (len(names) - len(classes)), "noise", "air", "unknown"]
-        found["objects"] = {"names": [*names, "false alarm", "air", "unknown"], "of": _block(ids.astype(np.uint16)),
+        found["objects"] = {"names": [*names, "false alarm", "air", "unknown"], "of": _block(ids.astype(np.uint32)),
                             "classes": words, "colours": [class_colour(word) for word in words]}
     elif "semantic_label" in cloud:
         labels = cloud["semantic_label"][kept].astype(np.int64)
@@ -161,6 +166,19 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
 
 def _label_colour(label: int) -> str:
     return "#%02x%02x%02x" % tuple(reversed(LABELS[label].color)) if label in LABELS else UNKNOWN
+
+
+def _finite(words: Sequence[str]) -> List[float]:
+    numbers = [float(word) for word in words]
+    if not np.isfinite(numbers).all():
+        raise ValueError("expected finite numbers")
+    return numbers
+
+
+def _numbers(file: pathlib.Path, row: Mapping[str, str], names: Sequence[str]) -> List[float]:
+    """Numbers of a row of a table. @throws Error that names the file and the columns"""
+    with naming(f"{file}: {', '.join(names)}"):
+        return _finite([row[name] for name in names])
 
 
 def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
@@ -178,8 +196,10 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
             continue
         bird = birds.setdefault(row["bird"], {"name": f"{row['species']} {row['bird']}", "species": row["species"],
                                               "path": []})
-        bird["path"].append([float(row[key]) for key in ("time_s", "x_m", "y_m", "z_m", "points")])
+        bird["path"].append(_numbers(file, row, ("time_s", "x_m", "y_m", "z_m", "points")))
     times = numbers_of(file.with_name("times.txt"), 1).ravel()
+    if not len(times):
+        raise Error(f"{file.with_name('times.txt')}: is empty, expected the time of each scan")
     species = sorted({bird["species"] for bird in birds.values()})
     colours = {name: SPECIES[number % len(SPECIES)] for number, name in enumerate(species)}
     others: Dict[str, Dict[str, Any]] = {}
@@ -188,8 +208,10 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
         for line in boxes.read_text(encoding="utf-8").splitlines() if boxes.is_file() else ():
             words = line.split()
             if words and words[0] != "bird":
-                x, y, z, *size, heading = map(float, words[3:10])
-                box = others.setdefault(words[10], {"name": f"{words[0]} {words[10]}", "size": size, "path": []})
+                with naming(f"{boxes}: '{line}'"):
+                    x, y, z, *size, heading = _finite(words[3:10])
+                    box_id = words[10]
+                box = others.setdefault(box_id, {"name": f"{words[0]} {box_id}", "size": size, "path": []})
                 box["path"].append([time, x, y, z, heading])
     reader = _wrapped.vtkAvianLidarSequenceReader()
     reader.SetFileName(str(file.with_name("times.txt")))
@@ -210,14 +232,14 @@ def map_of(height: float, west: float, north: float, step: Sequence[float], valu
 
 def maps_in(folder: pathlib.Path) -> List[Dict[str, Any]]:
     """The maps of detection probabilities in a folder, by height."""
-    from ..places._gdal import gdal
+    from ..places._gdal import gdal, open_file
     files = {float(match[1]): file for file in folder.glob("detection_probability_*m.tif")
              if (match := re.fullmatch(r"detection_probability_(.+)m\.tif", file.name))}
     if not files:
         raise Error(f"{folder}: no detection_probability_*m.tif, expected the maps of `avianlidar coverage`")
     maps = []
     for height, file in sorted(files.items()):
-        image = gdal.Open(str(file))
+        image = open_file(file, "a map", ["GTiff"], gdal.OF_RASTER)
         west, step, _, north, _, down = image.GetGeoTransform()
         maps.append(map_of(height, west, north, (step, -down), image.ReadAsArray()))
     return maps
@@ -231,7 +253,7 @@ def _tracks(file: pathlib.Path, of: str = "") -> List[Dict[str, Any]]:
         key = tuple(row.get(name, "") for name in ("input", "sequence", "track"))
         if of and key[:2] != (of, "00"):
             continue
-        lines.setdefault(key, []).append([float(row[name]) for name in ("time_s", "x_m", "y_m", "z_m")])
+        lines.setdefault(key, []).append(_numbers(file, row, ("time_s", "x_m", "y_m", "z_m")))
     return [{"name": f"track {key[-1]}", "path": path} for key, path in lines.items()]
 
 
@@ -293,7 +315,7 @@ def beside(file: pathlib.Path, scene: Union[Scene, str], *things: Any, **more: A
     things as for page() @return whether the page was written"""
     try:
         write(file, page(scene if isinstance(scene, Scene) else Scene(scene), *things, **more))
-    except (Error, OSError) as error:
+    except (RuntimeError, OSError, ValueError, ImportError, MemoryError) as error:
         warnings.warn(f"{file.name} is left out: {error}", RuntimeWarning, stacklevel=callers_level())
         return False
     return True
@@ -303,6 +325,6 @@ def write(file: pathlib.Path, content: bytes) -> None:
     """Writes a page. @throws Error if the page is too large"""
     if len(content) > MOST_BYTES:
         raise Error(f"{file}: the page would have {len(content) / 1e6:.1f} MB, expected at most {MOST_BYTES / 1e6:g} "
-                    "MB: give fewer echoes")
+                    "MB: give fewer echoes, or a scene with fewer triangles")
     write_whole(file, content)
 

@@ -520,13 +520,18 @@
     find("controls").appendChild(one);
     return one;
   }
+  function addLine(text) {
+    const line = document.createElement("div");
+    line.textContent = text;
+    find("controls").appendChild(line);
+  }
   function addControls() {
+    if (data.surfaces.edges_left_out) {
+      addLine(`${data.surfaces.edges_left_out.toLocaleString("en")} edges are not drawn`);
+    }
     if (clouds.length) {
       const [shown, all] = clouds.reduce(([a, b], { of }) => [a + of.count, b + of.of], [0, 0]);
-      const line = document.createElement("div");
-      line.textContent = shown < all ? `${shown.toLocaleString("en")} of ${all.toLocaleString("en")} echoes` :
-        `${all.toLocaleString("en")} echoes`;
-      find("controls").appendChild(line);
+      addLine((shown < all ? `${shown.toLocaleString("en")} of ` : "") + `${all.toLocaleString("en")} echoes`);
       const label = document.createElement("label"), select = document.createElement("select");
       const ways = Object.keys(WAYS).filter((name) => clouds.some(WAYS[name]));
       ways.forEach((name) => select.add(new Option(name, name)));
