@@ -24,6 +24,7 @@ PARTS = (TREE, "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTrack
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # Filters that show a part of a result, and the filter that shows edges of surfaces.
 SOME, EDGES = ("Threshold", "Cut", "Contour"), "FeatureEdges"
+MOST_EDGED = 100_000  # triangles up to which edges take at most a second to find; at 750,000 they take minutes
 SHARP = 30  # angle between faces from which on their edge is drawn, deg
 AMBIENT = 0.35  # share of the light that has no direction
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
@@ -347,7 +348,7 @@ def texts_of(source, name):
 
 def show_surfaces(tree, view):
     """Shows the surfaces on a light background, in the colours of their classes or, without classes, in shades of grey:
-    lighter surfaces reflect more."""
+    lighter surfaces reflect more. Edges are drawn unless there are too many triangles."""
     look = data("look.json")
     view.UseColorPaletteForBackground = 0
     view.BackgroundColorMode, view.Background = "Single Color", rgb(look["sky"])
@@ -369,6 +370,8 @@ def show_surfaces(tree, view):
         table.IndexedOpacities = [1.0] * len(colours)
     display.SetScalarBarVisibility(view, False)
     display.Ambient, display.Diffuse = AMBIENT, 1 - AMBIENT / 2  # the colours of the classes, with shades
+    if tree.GetDataInformation().GetNumberOfCells() > MOST_EDGED:
+        return
     edges = next((one for one in of_kind(EDGES) if one.Input == tree), None)
     if edges is None:
         edges = simple.FeatureEdges(registrationName=free_name("Edges", tree.Input), Input=tree, FeatureAngle=SHARP,

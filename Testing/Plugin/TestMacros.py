@@ -203,6 +203,15 @@ class Macros(Case):
             numpy.testing.assert_allclose(simple.GetActiveSource().Beams.Position, place, atol=0.01)
             self.assertRegex(text, "the sensor .*tick Show Point")
 
+    def test_large_surfaces_have_no_edges(self):
+        """Their edges would take minutes to find."""
+        plugin = sys.modules["avian_lidar_plugin"]
+        with unittest.mock.patch.object(plugin, "MOST_EDGED", 11):
+            run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))
+        self.assertNotIn("Edges", self.names())
+        run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))
+        self.assertIn("Edges", self.names())
+
     def test_surfaces_without_echoes(self):
         """The camera sees them and the sensor."""
         macro = load_macro(AIRPORT)
