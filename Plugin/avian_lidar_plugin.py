@@ -35,7 +35,7 @@ HEIGHT = 3
 DISTANCE = 0.1
 SENSOR_SIZE = 12  # size of the sensor's point, pixels
 # Diffuse reflectances kd drawn as black and as white, for surfaces without classes.
-GREY_RANGE = (-0.05, 0.8)
+GREY_RANGE = (-0.05, 0.6)
 MARGIN = 1.15
 
 

@@ -58,7 +58,7 @@ def look(view, beams, tree, echoes, seen, elevation):
 
 
 def show_scan(surfaces, tree, beams, echoes, view, colour, elevation=CAMERA_ELEVATION):
-    """Shows grey surfaces, the sensor as a large point, and coloured echoes."""
+    """Shows the surfaces, the sensor as a large point, and coloured echoes."""
     simple.Hide(surfaces, view)
     show_surfaces(tree, view)
     # The ground cuts a square, but not a ball. ParaView does not draw a ball that is nearer than all other objects.

@@ -25,8 +25,8 @@ void addLeaves(const Return& ret, Echo& echo)
   }
 }
 
-/// The entry of a return with light. Returns mostly come in the order of the entries. @param place
-/// where to begin, set to the place behind the entry
+/// The entry of a return with light, which must exist. Returns mostly come in the order of the
+/// entries. @param place where to begin, set to the place behind the entry
 const Echo& find(
   const std::vector<LightEcho>& ofLight, const UnitsOfReturn& units, std::size_t& place)
 {
