@@ -346,13 +346,20 @@ def texts_of(source, name):
     return [found.GetValue(i) for i in range(found.GetNumberOfValues())] if found else []
 
 
-def show_surfaces(tree, view):
-    """Shows the surfaces on a light background, in the colours of their classes or, without classes, in shades of grey:
-    lighter surfaces reflect more. Edges are drawn unless there are too many triangles."""
+def light(view):
+    """Gives the view a light background: colours of the view alone, since a palette would stay in the user's settings.
+    @return colours of the project (look.json)"""
     look = data("look.json")
     view.UseColorPaletteForBackground = 0
     view.BackgroundColorMode, view.Background = "Single Color", rgb(look["sky"])
     view.OrientationAxesLabelColor = [0.0] * 3
+    return look
+
+
+def show_surfaces(tree, view):
+    """Shows the surfaces on a light background, in the colours of their classes or, without classes, in shades of grey:
+    lighter surfaces reflect more. Edges are drawn unless there are too many triangles."""
+    look = light(view)
     display = show(tree, view, Representation="Surface")
     names = tree.GetFieldDataInformation().GetArray("object_classes")
     classes = texts_of(tree, "object_classes") if names else []

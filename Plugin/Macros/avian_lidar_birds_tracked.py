@@ -2,7 +2,7 @@
 """ParaView macro: birds over an airport, tracked from scan to scan, to play.
 
 The macro makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns clutter, and
-an Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are white. Each confirmed track has its
+an Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are black. Each confirmed track has its
 own colour. Thin lines show the paths of the birds. The macro executes all scans once. Play goes from scan to scan. In
 the first five scans the filter learns, and all points are clutter. After an error there are no new objects, and Output
 Messages gives the reason.
@@ -15,7 +15,7 @@ from avian_lidar_plugin import free_name, neighbour, run, show, start
 
 BIRDS = "avian_lidar_birds_over_the_airport"
 REVOLUTIONS = 20
-CLUTTER_COLOUR, POINT_COLOUR = (0.55, 0.55, 0.6), (1.0, 1.0, 1.0)
+CLUTTER_COLOUR, POINT_COLOUR = (0.55, 0.55, 0.6), (0.0, 0.0, 0.0)
 CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # sizes of points and widths of lines, pixels
 
 

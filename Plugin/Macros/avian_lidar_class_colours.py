@@ -8,13 +8,13 @@ In ParaView: select the points, and choose the macro in the menu Macros. In a sc
 """
 
 from paraview import simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import data, legend, run, show
+from avian_lidar_plugin import data, legend, light, run, show
 
 ARRAY = "semantic_label"
 READER = "AvianLidarSequenceReader"
 POINT_SIZE = 4  # size of a point, pixels
 FONT_SIZE, LEGEND = 10, 0.6  # font size and length of the legend (points, share of the view's height)
-BOX_COLOUR = (1.0, 1.0, 1.0)
+BOX_COLOUR = (0.0, 0.0, 0.0)
 
 
 def colour(source, view=None):
@@ -22,6 +22,7 @@ def colour(source, view=None):
     if source is None or not source.GetPointDataInformation().GetArray(ARRAY):
         raise ValueError(f"select labelled points first (point array {ARRAY}), such as an opened sequence")
     view = view or simple.GetActiveViewOrCreate("RenderView")
+    light(view)
     display = show(source, view, Representation="Points", PointSize=POINT_SIZE)
     simple.ColorBy(display, ("POINTS", ARRAY))
     table = simple.GetColorTransferFunction(ARRAY)

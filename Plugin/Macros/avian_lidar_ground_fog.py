@@ -4,7 +4,7 @@
 The macro takes the selected surfaces or, with nothing selected, the airport that comes with the plugin. It makes a
 sensor Search 905 at the position that the scene gives, or else beside the surfaces, and a medium (fog of 400 m
 visibility up to a height of 5 m, less dense above). Group Datasets combines airport and fog for an Avian Lidar Echo
-Filter. The fog is translucent, the airport is grey, and echoes are coloured by energy. You can then change Kind,
+Filter. The fog is translucent, and echoes are coloured by energy. You can then change Kind,
 Meteorological Visibility or the shape of the medium. If the surfaces have a collision tree, or if a part or a result of
 a scan is selected, the macro uses the existing tree. The macro hides earlier scans. After an error there are no new
 objects, and Output Messages gives the reason.

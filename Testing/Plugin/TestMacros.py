@@ -71,12 +71,18 @@ def document(name, view, size):
         simple.SaveScreenshot(os.path.join(SOURCE_DIR, "Documentation", "images", name), view, ImageResolution=size)
 
 
+def palette():
+    """Colours that ParaView keeps in the user's settings, which no macro changes."""
+    return [*simple.GetSettingsProxy("ColorPalette").GetProperty("BackgroundColor")]
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.view = simple.CreateRenderView(ViewSize=[600, 400])
         simple.SetActiveSource(None)
 
     def tearDown(self):
+        self.assertEqual(palette(), PALETTE)
         unittest.mock.patch.stopall()
         simple.ResetSession()
         load_plugin()
@@ -417,6 +423,7 @@ class MoreMacros(Case):
 
 if __name__ == "__main__":
     load_plugin()
+    PALETTE = palette()
     program = unittest.main(argv=[word for word in sys.argv if word != "--documentation"], exit=False)
     sys.stdout.flush()
     # pvpython 5.11 may crash when it ends after a macro and ResetSession().
