@@ -4,6 +4,7 @@ import base64
 import io
 import json
 import pathlib
+import re
 
 import numpy as np
 from selenium import webdriver
@@ -53,6 +54,45 @@ class Browser:
         from matplotlib.image import imread
         picture = imread(io.BytesIO(self.driver.get_screenshot_as_png()))
         return np.rint(255 * picture[:, :, :3]).astype(int)
+
+    def printed(self):
+        """Prints the page on A4. @return number of pages, their sizes in points, the smallest letters in points, the
+        least scale of pictures, the tallest figure or row of a table and the first page's height as shares of a page,
+        and the parts of the first page that have content"""
+        from avianlidar.apps.pages._drawing import PIXELS
+        pdf = base64.b64decode(self.driver.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True})["data"])
+        boxes = re.findall(rb"/MediaBox \[0 0 ([0-9.]+) ([0-9.]+)\]", pdf)
+        before = self.run("return [innerWidth, innerHeight]")
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        shown = {"height": 1024, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 673, **shown})
+        found = self.run("""
+            const height = of => of.getBoundingClientRect().height / 1024, all = s => [...document.querySelectorAll(s)];
+            const texts = all('body *').filter(e => e.checkVisibility() && [...e.childNodes].some(
+                n => n.nodeType === 3 && n.textContent.trim()));
+            return [Math.min(...texts.map(e => .75 * parseFloat(getComputedStyle(e).fontSize))),
+                Math.min(...[...document.images].map(i => i.width / 96 / (i.naturalWidth / arguments[0]))),
+                Math.max(...all('figure, tr').map(e => getComputedStyle(e).breakInside === 'avoid' || e.tagName === 'TR'
+                                                    ? height(e) : Infinity)),
+                height(document.querySelector('#first')), [
+                    '#answer', 'figure img[src^=data]', '#numbers div:nth-child(3) .value', '#next li',
+                    '#assumed p'].filter(s => document.querySelector('#first ' + s))]""", PIXELS)
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": before[0], **shown, "height": before[1]})
+        return [len(boxes), {(round(float(w)), round(float(h))) for w, h in boxes}, *found]
+
+    def check_printed(self, test, most=6):
+        """The page is printed as its readers need it."""
+        pages, sizes, letters, scale, figure, first, parts = self.printed()
+        test.assertLessEqual(pages, most)
+        test.assertEqual(sizes, {(595, 842)})
+        test.assertGreaterEqual(letters, 7.99)
+        test.assertGreaterEqual(scale, 0.99)  # letters of pictures have 8 points or more
+        test.assertLessEqual(figure, 1.0)
+        test.assertLessEqual(first, 1.0)
+        test.assertEqual(len(parts), 5, parts)
+        test.assertLessEqual(len(self.run("return document.querySelector('#answer').textContent").split()), 25)
 
     def picture_between(self, first, end, file):
         """Write what is shown from an element to before another (CSS selectors), as PNG."""

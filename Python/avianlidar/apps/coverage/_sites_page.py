@@ -15,6 +15,8 @@ from ..places._geojson import write_sites
 from . import _pictures as pictures
 from ._sites import Change, Sites
 
+SITES_SIZE = (4.3, 5.0)  # inches
+
 
 def kept_surfaces(sites: Sites) -> str:
     """Words on the surfaces that masts stay below, and on the candidates that pierce a surface."""
@@ -64,7 +66,7 @@ def words(sites: Sites) -> Dict[str, str]:
 
 
 def write(sites: Sites, folder, changes: List[Change]) -> None:
-    """Writes sites (CSV, VTP, GeoJSON) by rank, gain.csv, robustness.csv, and pictures of sites and gain."""
+    """Writes sites (CSV, VTP, GeoJSON) by rank, gain.csv, robustness.csv, and a picture of sites."""
     folder, order = pathlib.Path(folder), sites.order
     columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": sites.values[order],
                                "in_network": np.isin(order, sites.networks[-1].sites).astype(np.int32)}
@@ -77,6 +79,5 @@ def write(sites: Sites, folder, changes: List[Change]) -> None:
                 "; ".join(f"{name}: {text}" for name, text in words(sites).items()))
     write_table(folder / "gain.csv", sites.gain())
     write_table(folder / "robustness.csv", sites.robustness(changes))
-    drawing.draw(folder / "sites.png", drawing.map_size(pictures.sites_extent(sites), 4.6, 0.8, 0.3),
+    drawing.draw(folder / "sites.png", SITES_SIZE,
                   lambda axes: pictures.draw_sites(axes, sites))
-    drawing.draw(folder / "gain.png", (4.4, 2.8), lambda axes: pictures.draw_gain(axes, sites))
