@@ -122,7 +122,7 @@ def _meaning(view: Plan, crossing: Optional[Crossing]) -> str:
 
 def sentence(view: Plan, site: Optional[Dict[str, Any]]) -> str:
     """The answer in at most MOST_WORDS words. @param site facts of the best site, if sites were compared"""
-    share = percent(view.overall["detection_probability"], view.overall["detection_std_error"], view.count, bar=False)
+    share = share_of(view.overall, bar=False)
     kinds = (plural(view.bird), "birds") if len(view.mix) == 1 else ("birds",)
     if site and not site["detects"]:
         return short_enough(*(f"Nowhere: at none of {site['count']} sites does one scan of {who} detect {LEAST_WORDS} "
@@ -151,8 +151,8 @@ def numbers(view: Plan, reaches: Dict[str, Any], crossing: Optional[Crossing], f
     units = (f"real units: {metres(limits[0].to(0.5))} to {metres(limits[1].to(0.5))}" if limits and
              limits[1].to(0.5) > 0.0 else "no unit was measured with birds")
     found = [Number(once, "detected by one scan", f"of {birds_of(view)} {view.where}; {error}"),
-             Number(metres(one.to(0.5)), "range of half",
-                    f"One scan detects half of {plural(species)} in the beams up to this range, in free air; {units}")]
+             Number(metres(one.to(0.5)), "range to which half are detected",
+                    f"of {plural(species)} in the beams by one scan, in free air; {units}")]
     if crossing:
         scans, seconds = (f"{float(f'{value:.2g}'):g}" for value in (crossing.scans, crossing.seconds))
         found.append(Number(percent(crossing.share, crossing.error, crossing.birds, bar=False),
@@ -228,9 +228,9 @@ def details(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], of_year: Dic
     return [first, *there, _meaning(view, crossing)]
 
 
-def share_of(row: Dict[str, Any]) -> str:
-    """The share of a row that one scan detects, with the standard error."""
-    return percent(row["detection_probability"], row["detection_std_error"], row["places"])
+def share_of(row: Dict[str, Any], bar: bool = True) -> str:
+    """The share of a row that one scan detects. @param bar whether the standard error is shown"""
+    return percent(row["detection_probability"], row["detection_std_error"], row["places"], bar)
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:
@@ -346,7 +346,8 @@ def _changed(change: str) -> str:
 
 def certainty(site: Dict[str, Any]) -> List[str]:
     """Sentences on how sure the best site is, and on what was checked."""
-    masts = [f"{percent(row['share'][0], row['share'][1], bar=False)} with a mast of {row['mast']:g}\u00a0m" for row in site["masts"]]
+    masts = [f"{percent(row['share'][0], row['share'][1], bar=False)} with a mast of {row['mast']:g}\u00a0m"
+             for row in site["masts"]]
     words = [f"The best sites have {listed(masts)}."] if len(masts) > 1 else []
     more = "1 other site is" if site["alike"] == 1 else f"{site['alike']} other sites are"
     words += site["higher"] + [f"{more} as good within the error of the random places."] * bool(site["alike"])

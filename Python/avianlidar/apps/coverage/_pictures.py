@@ -72,7 +72,7 @@ def draw_maps(panels, plan: Plan, quantity: str) -> None:
     if is_status:
         names = zip(cover.status_names, STATUS_COLOURS, there)
         patches = [Patch(facecolor=colour, edgecolor="0.5", label=name) for name, colour, seen in names if seen]
-        room = (0.1 + 0.17 * -(-len(patches) // 4)) / figure.get_figheight()
+        room = (0.15 + 0.19 * -(-len(patches) // 4)) / figure.get_figheight()
         figure.get_layout_engine().set(rect=(0.0, room, 1.0, 1.0 - room))
         figure.legend(handles=patches, loc="lower center", ncols=4, frameon=False)
     else:
@@ -183,7 +183,7 @@ def draw_sections(panels, plan: Plan, runways: Sequence[Runway]) -> None:
         for start, sign in ((0.0, -1.0), (length, 1.0)):
             axes.plot([start, start + sign * APPROACH_LENGTH], [THRESHOLD_HEIGHT, top], "w--", linewidth=1)
         for height in plan.asked or ():
-            axes.axhline(height, color="red", linewidth=0.8)
+            axes.axhline(height, color="white", linestyle=":", linewidth=1)
         axes.set(xlim=extent[:2], ylim=(0.0, extent[3]), ylabel="m up", title=runway.name)
         axes.xaxis.set_major_formatter(lambda value, _: f"{value / 1000.0:g}")
     panels[-1].set_xlabel("km along the runway from its first end")

@@ -124,7 +124,7 @@ class Report:
     def _sections(view: Plan, folder: pathlib.Path) -> List[Dict[str, Any]]:
         """Sections along the longest runways."""
         longest = sorted(view.runways, key=lambda runway: -runway.axis()[1])[:SHOWN]
-        limits = ", red lines: heights of the plan" if view.asked else ""
+        limits = ", dotted: heights of the plan" if view.asked else ""
         return [drawing.picture(
             folder / "sections.png", (drawing.WIDTH, 0.5 + 1.8 * len(longest)), "Sections along runways",
             f"{view.name} along the middle of {listed([one.name for one in longest])} (white) and approaches to 3 km, "
@@ -314,11 +314,11 @@ class Report:
         found = pictures.found_at(view, extent)
         seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} of the map at {height:g} m"
                          for height, classes in found)
-        shares = {row["region"]: share_of(row) for row in view.by_end}
+        shares = {row["region"]: share_of(row, bar=False) for row in view.by_end}
         regions = f", dotted: {' and '.join(view.members)} with the share detected in each" if view.runways else ""
         left_out: List[str] = []
         picture = drawing.picture(
-            folder / "answer.png", drawing.map_size(extent, drawing.WIDTH, 0.0, 0.2 * math.ceil(len(found) / 4)),
+            folder / "answer.png", drawing.map_size(extent, drawing.WIDTH, 0.0, 0.2 + 0.2 * math.ceil(len(found) / 4)),
             f"Map of the airport: one scan detects half or more of the birds on {seen} above {view.above}",
             f"Filled: one scan of {view.name} (red triangle) detects half or more of the birds, dashed: a tenth"
             f"{regions}.", lambda axes: left_out.extend(pictures.draw_answer(axes, view, found, extent, shares)))

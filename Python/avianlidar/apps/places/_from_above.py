@@ -49,7 +49,7 @@ def draw_airport(axes, plan: Any, colour: str = "0.25") -> None:
         if roofs.any():
             axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()),
                            cmap=ListedColormap([colour]))
-    axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
+    axes.plot(*plan.sensor.position[:2], "r^", markersize=6, markeredgecolor="white", markeredgewidth=0.6)
     unit, scale = ("km", 1000.0) if np.ptp(plan.extent[:2]) > FAR else ("m", 1.0)
     axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel=f"{unit} east", ylabel=f"{unit} north")
     axes.locator_params(nbins=5)
