@@ -110,7 +110,7 @@ class Page(unittest.TestCase):
     def test_the_first_page_says_what_the_share_means(self):
         said = self.browser.run("return document.querySelector('#full').textContent")
         self.assertIn("one of 9 sites that are equally good within the error, of 9 candidates", said)
-        self.assertIn("on a mast of 5 m, 200 m west and 500 m north from the scene's origin",
+        self.assertIn("on a mast of 5 m, 200 m west and 500 m north, 5 m up from the scene's origin",
                       said.replace("\u00a0", " "))
         self.assertIn("One scan takes 2\u00a0s. The share is the mean over the whole length", said)
         twice = crossing(Plan(read_plan(HERE / "report.coverage.json")).at(self.position(), "there", 1 << 40))

@@ -194,21 +194,19 @@ class Less(unittest.TestCase):
 
     def test_the_answer_is_one_short_sentence(self):
         """With and without sites, without runways, for a mix, for long names, and if nothing is detected."""
-        runways = [siting.Runway("Runway 18L/36R", (0.0, 0.0), (-150.0, 3000.0), 60.0),
-                   siting.Runway("Runway 18R/36L", (-365.0, 0.0), (-500.0, 3000.0), 60.0)]
-        for name, mix, bird, lines, site, idea, share in itertools.product(
-                ("Search905", "a lidar of two words and nine more, which nobody has"), ([1], [0.5, 0.5]),
-                ("herring gull", "bird (herring gull 50 %, crow 50 %)"), (runways, []),
-                (None, {"detects": True, "count": 9}, {"detects": False, "count": 9}), ("", "Nobody sells it."),
-                (0.0, 0.012)):
-            view = types.SimpleNamespace(
-                name=name, mix=mix, bird=bird, runways=lines, idea=idea, count=12000,
-                sensor=types.SimpleNamespace(position=(400.0, 700.0, 5.0)),
-                overall={"detection_probability": share, "detection_std_error": 0.1 * share, "places": 12000})
+        runways = [siting.Runway("Runway 18L/36R", (0.0, 0.0), (-150.0, 3000.0), 60.0)]
+        found, nothing = {"detects": True, "count": 9}, {"detects": False, "count": 9}
+        for name, (mix, bird), lines, site, idea, share in itertools.product(
+                ("Search905", "a lidar of two words and nine more, which nobody has"),
+                (([1], "herring gull"), ([0.5, 0.5], "bird (herring gull 50 %, crow 50 %)")), (runways, []),
+                (None, found, nothing), ("", "Nobody sells it."), (0.0, 0.012)):
+            row = {"detection_probability": share, "detection_std_error": 0.1 * share, "places": 12000}
+            view = types.SimpleNamespace(name=name, mix=mix, bird=bird, runways=lines, idea=idea, overall=row,
+                                         sensor=types.SimpleNamespace(position=(400.0, 700.0, 5.0)))
             said = _answer.sentence(view, site)
             self.assertLessEqual(len(said.split()), 25, said)
             self.assertRegex(said, "^[A-Za-z].* detect.*[a-z]\\.$")
-            self.assertIn("0.05\u00a0%" if share == 0.0 or site and not site["detects"] else "1.2\u00a0%", said)
+            self.assertIn("0.05\xa0%" if share == 0.0 or site is nothing else "1.2\xa0%", said)
 
     def test_lidars_on_sale_are_ordered_by_shares_that_are_numbers(self):
         def offer(twice, once, half):
@@ -254,10 +252,6 @@ class Less(unittest.TestCase):
         self.assertEqual(said(site(("effective area ±20 %", 0, 0.0), ("other places", 3, 0.042))),
                          ["The choice is not sharp: with other random places another site wins in 3 of 10 draws. The "
                           "other site then detects at most 4\u00a0% more birds than this site."])
-        self.assertEqual(said(site(("building heights ±2 m", 1, 0.002), ("effective area ±20 %", 2, 0.001))),
-                         ["The choice is not sharp: with building heights changed by up to 2 m another site wins in 1 "
-                          "of 10 draws and with effective areas of birds changed by up to 20 % another site wins in 2 "
-                          "of 10 draws. The other site then detects less than 1\u00a0% more birds than this site."])
 
     def test_plurals(self):
         for one, several in (("herring gull", "herring gulls"), ("Canada goose", "Canada geese"), ("", "targets"),

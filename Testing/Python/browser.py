@@ -55,44 +55,34 @@ class Browser:
         picture = imread(io.BytesIO(self.driver.get_screenshot_as_png()))
         return np.rint(255 * picture[:, :, :3]).astype(int)
 
-    def printed(self):
-        """Prints the page on A4. @return number of pages, their sizes in points, the smallest letters in points, the
-        least scale of pictures, the tallest figure or row of a table and the first page's height as shares of a page,
-        and the parts of the first page that have content"""
+    def check_printed(self, test):
+        """The page is printed on at most six pages of A4 with letters of 8 points or more, no figure or row of a table
+        is taller than a page, and the first page holds all parts."""
         from avianlidar.apps.pages._drawing import PIXELS
-        pdf = base64.b64decode(self.driver.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True})["data"])
+        run, was = self.driver.execute_cdp_cmd, self.run("return [innerWidth, innerHeight]")
+        pdf = base64.b64decode(run("Page.printToPDF", {"preferCSSPageSize": True})["data"])
         boxes = re.findall(rb"/MediaBox \[0 0 ([0-9.]+) ([0-9.]+)\]", pdf)
-        before = self.run("return [innerWidth, innerHeight]")
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-        shown = {"height": 1024, "deviceScaleFactor": 1, "mobile": False}
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 673, **shown})
-        found = self.run("""
-            const height = of => of.getBoundingClientRect().height / 1024, all = s => [...document.querySelectorAll(s)];
+        test.assertTrue(0 < len(boxes) <= 6, len(boxes))
+        test.assertEqual({(round(float(width)), round(float(height))) for width, height in boxes}, {(595, 842)})
+        shown = {"width": 673, "height": 1024, "deviceScaleFactor": 1, "mobile": False}  # of the text on A4, pixels
+        run("Emulation.setEmulatedMedia", {"media": "print"})
+        run("Emulation.setDeviceMetricsOverride", shown)
+        letters, scale, tallest, first, broken, words, parts, wide = self.run("""
+            const all = s => [...document.querySelectorAll(s)], height = e => e.getBoundingClientRect().height / 1024;
             const texts = all('body *').filter(e => e.checkVisibility() && [...e.childNodes].some(
                 n => n.nodeType === 3 && n.textContent.trim()));
             return [Math.min(...texts.map(e => .75 * parseFloat(getComputedStyle(e).fontSize))),
                 Math.min(...[...document.images].map(i => i.width / 96 / (i.naturalWidth / arguments[0]))),
-                Math.max(...all('figure, tr').map(e => getComputedStyle(e).breakInside === 'avoid' || e.tagName === 'TR'
-                                                    ? height(e) : Infinity)),
-                height(document.querySelector('#first')), [
-                    '#answer', 'figure img[src^=data]', '#numbers div:nth-child(3) .value', '#next li',
-                    '#assumed p'].filter(s => document.querySelector('#first ' + s))]""", PIXELS)
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                                    {"width": before[0], **shown, "height": before[1]})
-        return [len(boxes), {(round(float(w)), round(float(h))) for w, h in boxes}, *found]
-
-    def check_printed(self, test, most=6):
-        """The page is printed as its readers need it."""
-        pages, sizes, letters, scale, figure, first, parts = self.printed()
-        test.assertLessEqual(pages, most)
-        test.assertEqual(sizes, {(595, 842)})
-        test.assertGreaterEqual(letters, 7.99)
-        test.assertGreaterEqual(scale, 0.99)  # letters of pictures have 8 points or more
-        test.assertLessEqual(figure, 1.0)
-        test.assertLessEqual(first, 1.0)
-        test.assertEqual(len(parts), 5, parts)
-        test.assertLessEqual(len(self.run("return document.querySelector('#answer').textContent").split()), 25)
+                Math.max(...all('figure, tr').map(height)), height(all('#first')[0]),
+                all('figure').filter(e => getComputedStyle(e).breakInside !== 'avoid').length,
+                all('#answer')[0].textContent.split(/\\s+/).length, ['figure img[src^=data]', '#next li', '#assumed p',
+                    '#numbers div:nth-child(3) .value'].filter(s => all('#first ' + s).length).length,
+                document.documentElement.scrollWidth]""", PIXELS)
+        run("Emulation.setEmulatedMedia", {"media": ""})
+        run("Emulation.setDeviceMetricsOverride", {**shown, "width": was[0], "height": was[1]})
+        test.assertTrue(letters >= 7.99 and scale >= 0.99, (letters, scale))  # pictures have letters of 8 points
+        test.assertTrue(tallest <= 1.0 and first <= 1.0 and broken == 0, (tallest, first, broken))
+        test.assertTrue(words <= 25 and parts == 4 and wide <= 673, (words, parts, wide))  # wider pages are shrunk
 
     def picture_between(self, first, end, file):
         """Write what is shown from an element to before another (CSS selectors), as PNG."""

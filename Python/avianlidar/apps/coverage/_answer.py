@@ -202,10 +202,8 @@ def details(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], of_year: Dic
     over_the_year = f", {share_of(of_year)} over the year" if view.year else ""
     detects = f"one scan detects {share_of(view.overall)} of {birds}{air_of(view)}{over_the_year}"
     mast = round(float(position[2] - ground_of(view.scene, [position[:2]])[0]), 1)
-    across, _, up = place(position).rpartition(", ")
-    up = "" if f"{mast:g}\u00a0m up" == up else f", {up}"  # not the same number twice
-    at = f"on a mast of {mast:g}\u00a0m{up}, {across}" if mast > 0.0 else place(position)
-    at = f"{at} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
+    at = (f"on a mast of {mast:g}\u00a0m, " * (mast > 0.0) + f"{place(position)} from the scene's origin"
+          f"{'; ' + site['degrees'] if site and site['degrees'] else ''}")
     by = beside(position, view.runways)
     where = f"{by} ({at})" if by else at
     if not site:
@@ -219,10 +217,7 @@ def details(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], of_year: Dic
         which = (f"one of {alike} sites that are equally good within the error, of {site['count']} candidates"
                  if site["alike"] else f"the most of {site['count']} candidates")
         first = f"{plan.name} {stands} {where}: from there {detects}, {which}{year}."
-        own, best = plan.overall, view.overall
-        if not site["taken"] and (own["detection_probability"] + own["detection_std_error"] >=
-                                  best["detection_probability"]):
-            first += f" Its place in the plan or the scene ({place(plan.sensor.position)}) is as good: {share_of(own)}."
+        first += f" From its place in the plan or the scene it detects {share_of(plan.overall)}."
     there = [f"The other numbers of this page are for the sensor's place in the plan or its scene ({place(position)})."]
     there = there if site and view is plan else []
     return [first, *there, _meaning(view, crossing)]
@@ -295,11 +290,9 @@ def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, 
 
 def _weigh(view: Plan, site: Dict[str, Any]) -> str:
     """The comparison of networks with one lidar."""
-    words = {2: "two", 3: "three"}
     one, *more = [percent(row["value of the same birds"], row["std_error"], view.count, bar=False)
                   for row in site["gain"]]
-    counts = [words.get(row["sensors"], row["sensors"]) for row in site["gain"][1:]]
-    together = listed([f"{count} detect {share}" for count, share in zip(counts, more)])
+    together = listed([f"{count} detect {share}" for count, share in enumerate(more, 2)])
     return f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, {together}."
 
 
@@ -359,4 +352,4 @@ def certainty(site: Dict[str, Any]) -> List[str]:
         words.append("Heights of buildings are not varied, because none is read from an attribute of footprints.")
     if site["taken"]:
         words.append("No candidate may stand at the plan's position of the sensor.")
-    return [*words, site["surfaces"]]
+    return [*words, f"Obstacle limits: {site['surfaces']}."]

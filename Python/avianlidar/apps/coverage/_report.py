@@ -105,7 +105,7 @@ class Report:
     def _maps(self, views: List[Plan], folder: pathlib.Path) -> List[Dict[str, Any]]:
         """Rows of maps: of probabilities for each sensor, and of reasons for the first."""
         found, rows = [], min(len(views), MAPPED)
-        height = (drawing.HEIGHT - 1.3 - 0.6 * min(len(views), SHOWN)) / (rows + 1) - 0.35
+        height = (drawing.HEIGHT - 1.5 - 0.8 * min(len(views), SHOWN)) / (rows + 1) - 0.4
         for view in views:
             where, columns = f"{view.title} by height above {view.above}", len(pictures.map_heights(view))
             shares = [f"{percent(float(view.mixed(view.map_at(one)).mean()))} at {one:g} m"
@@ -159,7 +159,7 @@ class Report:
                 "alike": sites.count_alike(), "edge": sites.at_the_edge, "degrees": self._degrees(sites),
                 "first": sites.positions[first], "detects": float(sites.values[first]) >= LEAST, "draws": sites.draws,
                 "robustness": sites.robustness(changes), "count": len(sites.positions), "higher": sites.higher_mast,
-                "taken": sites.stands_wrong(plan.sensor.position), "surfaces": _sites_page.surface_sentence(sites),
+                "taken": sites.stands_wrong(plan.sensor.position), "surfaces": _sites_page.kept_surfaces(sites),
                 "heights_varied": sites.varies_heights, "masts": masts,
                 "map": drawing.shown(folder / "sites.png", _sites_page.SITES_SIZE[0], "Map of candidates", (
                     f"{plan.name} at {counted(len(sites.positions), 'candidate')}, of {sites.lattice} (light grey: "
@@ -285,8 +285,10 @@ class Report:
                            "interval": reach.interval(there.sensor),
                            "looks_around": len(np.unique(there.sensor.beams["azimuth"] // SECTOR)) == 36000 // SECTOR})
             self.progress("lidars on sale", number, len(names))
+        species = next(iter(view.mix))
+        half = reach.within_beams(view.sensor, species, visibility=reach.CLEAR).to(0.5) if species else math.nan
         own = {"name": view.name, "maker": "nobody", "takes": _answer.takes(view), "row": view.overall,
-               "crossing": crosses, "interval": reach.interval(view.sensor), "half": self._half_in_clear_air(view)}
+               "crossing": crosses, "interval": reach.interval(view.sensor), "half": half}
         write_table(folder / "on-sale.csv", [
             {"receiver": one["name"], "maker": one["maker"], "scan_takes": one["takes"].replace("\u00a0", " "),
              **_shares(one, "row"), "half_to [m]": one["half"],
@@ -301,12 +303,6 @@ class Report:
                  "–" if math.isnan(one["half"]) else metres(one["half"]),
                  "{:.3g} to {:.3g}".format(*one["interval"]) if one["interval"] else "–"]
                 for one in offers[:2 * SHOWN]]
-
-    @staticmethod
-    def _half_in_clear_air(plan: Plan) -> float:
-        """The range of `half_range` for the plan's lidar, m; nan for a target without a species."""
-        species = next(iter(plan.mix))
-        return reach.within_beams(plan.sensor, species, visibility=reach.CLEAR).to(0.5) if species else math.nan
 
     def _first_picture(self, view: Plan, folder: pathlib.Path, reaches: Dict[str, Any]) -> Dict[str, Any]:
         """The airport with the sensor, the regions of the plan, and where birds are detected at each height."""
