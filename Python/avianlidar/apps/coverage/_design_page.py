@@ -181,24 +181,25 @@ def _first(study: Study, picture: Dict[str, Any]) -> First:
     cost, count, of = _cost(study, about.cost), len(study.judged), study.of(about)
     verb = "tracks" if study.measure == "tracked" else "detects"
     has = f"{100.0 * of.value:.3g} %"
-    sentences = [f"The cheapest of {count} designs that {verb} {share}{birds} costs {cost} and {verb} {has}."
+    sentences = [f"The cheapest of {count} designs that {verb} {share}{birds} costs {cost}."
                  if study.chosen else f"None of {count} designs surely {verb} {share}{birds}: the best {verb} {has}."
                  for birds in (plural(plan.bird), "the birds")]
     microjoules = float(f"{1e6 * about.pulses['pupil']:.2g}")
     steps = [{"head": "Assess eye safety.", "command": "",
-              "words": "The table of pulses in this report begins such an assessment, and gives no verdict."}]
+              "words": "The columns of pulses in design.csv begin such an assessment, without a verdict."}]
     if plan.idea or any(name not in (*CHOSEN, "mast") for name in study.swept):
         steps.insert(0, {"head": "Ask makers whether they can build this lidar.", "command": "",
                          "words": "The designs are ideas: nobody sells these lidars."})
     if study.undecided():
         steps.append({"head": "Decide on cheaper designs.", "command": "", "words": answers(study)[-1]})
-    steps.append({"head": "Search between the designs that were tried.", "words": "Raise designs, or narrow bounds:",
-                  "command": f"avianlidar design {pathlib.Path(plan.file).name} -o o --design-set designs={4 * count}"})
+    more = f"avianlidar design {pathlib.Path(plan.file).name} -o more --design-set designs={4 * count}"
+    steps.append({"head": "Search between the designs that were tried.", "command": more,
+                  "words": "Narrow the bounds, or raise designs:"})
     return First(
         plan.plan.get("description") or f"Which is the cheapest lidar that {does(study, share)}?",
         short_enough(*sentences), picture, [
             Number(cost or "–", "cost", "by the plan's formula, which has no error of its own and is assumed"),
-            number(("%", other), f"{verb[:-1]}ed by the design",
+            number(("%", other), "detected by the design",
                    f"at {other.number:,} other places, which were not used to choose"),
             Number(f"{microjoules:g}\u00a0µJ", "a pulse through a pupil",
                    "of 7 mm at the exit aperture, if the pulse fills the aperture evenly; eye safety is not assessed")],
