@@ -21,7 +21,7 @@ from ._design import CHANGE, FIELDS, TOLD, Candidate, Field, Study, is_told
 from ._report import place
 
 TOLD_WORDS = {True: "yes", False: "no", None: "undecided"}
-SHOWN = 12  # greatest number of designs in a table of the page
+SHOWN = 10  # greatest number of designs in a table of the page
 PULSE_COLUMNS = {"exit_aperture [m2]": "exit_aperture", "radiant_exposure [J/m2]": "exposure",
                  "through_7_mm_pupil [J]": "pupil", "pulse_rate [Hz]": "pulse_rate",
                  "shortest_interval [s]": "shortest_interval", "average_power [W]": "average_power"}

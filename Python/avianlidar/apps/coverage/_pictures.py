@@ -24,6 +24,7 @@ THRESHOLD_HEIGHT = 15.0  # height of the glide path above a runway's end, m
 OUTLINES = (0.1, 0.5)  # probabilities whose outlines are drawn on the first page
 AROUND_SITES = 150.0  # margin around the candidates on their map, m
 SHOWN = 250  # pixels along the longer side of the map on the first page
+NEAR = 0.3  # part of an approach that is on the map on the first page
 AROUND = 0.07  # margin around the map on the first page, as a share of the longer side
 SIDES = (0.4, 0.56)  # least and greatest ratio of height to width of the map on the first page
 BAR = (1.03, 0.0, 0.04, 1.0)  # place of a colour bar as high as the map, in parts of the map
@@ -79,10 +80,18 @@ def draw_maps(panels, plan: Plan, quantity: str) -> None:
         figure.colorbar(image, ax=panels, label="probability of one scan", fraction=0.05, pad=0.01)
 
 
+def _near(plan: Plan) -> Dict[str, np.ndarray]:
+    """Outlines of the plan's strips and of the beginnings of its approaches, which would make the map small."""
+    parts = {name: (outline, NEAR if name.startswith("approach") else 1.0)
+             for name, outline in region_outlines(plan.runways).items() if name in plan.ends}
+    return {name: np.array([a, a + part * (b - a), d + part * (c - d), d])
+            for name, ((a, b, c, d), part) in parts.items()}
+
+
 def answer_extent(plan: Plan, reach: float) -> Tuple[float, float, float, float]:
-    """Extent of the map on the first page, m: the runways, the plan's regions, and the circle about the sensor where
-    birds are detected; without runways the plan's map. @param reach radius of the circle, m"""
-    outlines = [outline for name, outline in region_outlines(plan.runways).items() if name in plan.ends]
+    """Extent of the map on the first page, m: the runways, the plan's regions near runways, and the circle about the
+    sensor where birds are detected; without runways the plan's map. @param reach radius of the circle, m"""
+    outlines = [*_near(plan).values()]
     corners = np.reshape(plan.extent, (2, 2)).T
     if outlines:
         around = np.array(plan.sensor.position[:2]) + np.outer([-reach, reach], [1.0, 1.0])
@@ -149,12 +158,11 @@ def labels_of(plan: Plan, shares: Mapping[str, str]) -> List[Label]:
         found += [Label(name, end, way, {"weight": "bold"})
                   for name, (end, way) in zip(names, runway.ends())]
     middle = ends_of(plan.runways).mean(axis=0) if plan.runways else np.zeros(2)
-    for name, outline in region_outlines(plan.runways).items():
-        if name in plan.ends:
-            sides = 0.5 * (outline[[0, 3]] + outline[[1, 2]])  # the middles of both sides
-            outer = max(sides, key=lambda side: round(float(np.hypot(*(side - middle))), 3))
-            words = "\n".join(filter(None, (name, shares.get(name, ""))))
-            found.append(Label(words, outer, outer - outline.mean(axis=0)))
+    for name, outline in _near(plan).items():
+        sides = 0.5 * (outline[[0, 3]] + outline[[1, 2]])  # the middles of both sides
+        outer = max(sides, key=lambda side: round(float(np.hypot(*(side - middle))), 3))
+        words = "\n".join(filter(None, (name, shares.get(name, ""))))
+        found.append(Label(words, outer, outer - outline.mean(axis=0)))
     return found
 
 

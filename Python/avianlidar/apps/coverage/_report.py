@@ -105,7 +105,7 @@ class Report:
     def _maps(self, views: List[Plan], folder: pathlib.Path) -> List[Dict[str, Any]]:
         """Rows of maps: of probabilities for each sensor, and of reasons for the first."""
         found, rows = [], min(len(views), MAPPED)
-        height = (drawing.HEIGHT - 1.5 - 0.8 * min(len(views), SHOWN)) / (rows + 1) - 0.4
+        height = (drawing.HEIGHT - 1.7 - 0.8 * min(len(views), SHOWN)) / (rows + 1) - 0.4
         for view in views:
             where, columns = f"{view.title} by height above {view.above}", len(pictures.map_heights(view))
             shares = [f"{percent(float(view.mixed(view.map_at(one)).mean()))} at {one:g} m"
@@ -214,7 +214,7 @@ class Report:
         probability = ("detection_probability", "detection_std_error")
         year = views[0].year
         kinds: List[Any] = [("visibility", "visibility", VISIBILITIES, "m"), ("rain", "rain_rate", RAINS, "mm/h")]
-        names: List[Any] = [(f"{kind} {value:.10g} {unit}", None) for kind, _, values, unit in kinds for value in values]
+        names: List[Any] = [(f"{kind} {value:.10g} {unit}", None) for kind, _, of, unit in kinds for value in of]
         names += [(air.name, air.share) for air in year]
         table: List[Dict[str, Any]] = []
         shares = []  # first index view, second index air
@@ -311,7 +311,8 @@ class Report:
         seen = ", ".join(f"{percent(float(np.mean(classes == 2)))} of the map at {height:g} m"
                          for height, classes in found)
         shares = {row["region"]: share_of(row, bar=False) for row in view.by_end}
-        regions = f", dotted: {' and '.join(view.members)} with the share detected in each" if view.runways else ""
+        kinds = " and ".join(view.members).replace("approaches", "beginnings of approaches")
+        regions = f", dotted: {kinds} with the share detected in each region" if view.runways else ""
         left_out: List[str] = []
         picture = drawing.picture(
             folder / "answer.png", drawing.map_size(extent, drawing.WIDTH, 0.0, 0.2 + 0.2 * math.ceil(len(found) / 4)),
@@ -428,7 +429,7 @@ class Report:
                             lidar=view.sensor.position)
 
 
-def _heights(view: Plan, row: Dict[str, Any]) -> Dict[str, float]:
+def _heights(view: Plan, row: Dict[str, Any]) -> Dict[str, Any]:
     """Least and greatest height of the places of a row of shares."""
     low, high = view.heights_of(row["region"])
     return {"lowest [m]": max(low, row["height_from"]), "highest [m]": min(high, row["height_to"])}
