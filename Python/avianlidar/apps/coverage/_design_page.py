@@ -111,8 +111,9 @@ def _draw_front(axes, study: Study) -> None:
         axes.errorbar([one.cost for one in of], values, errors, **style)
     front, about = study.front, study.about
     others = [one for one in study.candidates if not (one.refused or one.front)]
-    for of, colour, mark, label in ((others, "0.6", "o", "designs"), (front, "C0", "s", "on the front")):
-        bars(of, [one.share for one in of], fmt=mark, markersize=4, color=colour, label=label)
+    for of, colour, mark, label in ((others, "0.75", "o", "designs"), (front, "C0", "s", "on the front")):
+        bars(of, [one.share for one in of], fmt=mark, markersize=4, color=colour, label=label,
+             markeredgecolor="black" if of is front else colour)
     axes.step([one.cost for one in front], [100 * one.share.value for one in front], where="post", color="C0",
               linewidth=1)
     if study.finalists:

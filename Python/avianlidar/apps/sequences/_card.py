@@ -38,6 +38,7 @@ NEAREST = 300.0  # least extent of maps around the sensor, m
 FEWEST = 5  # least number of birds for a curve of warnings
 COLOURS = [class_colour(word) for word in ("bird", "bird", "car", "structure", "noise", "air")]  # of ORIGINS
 MARKS = "oPsv^x"  # of ORIGINS
+LINES = ("-", "-", "--", ":", "-.", (0, (1, 3)))  # of ORIGINS
 SHOWN = 3  # greatest number of inputs on paper; files have all
 ROWS = 10  # greatest number of rows of a table on paper
 Results = List[Dict[str, Any]]
@@ -289,15 +290,17 @@ def _ground(of: Input, runways: Sequence[Any], reach: Callable[[np.ndarray], flo
 
 def _paths(axes, sequence: Dict[str, Any], width: float) -> None:
     """Draws the paths of confirmed tracks in the colours of their origins; thin and pale: tracks that have ended."""
-    colours = {track["track"]: COLOURS[ORIGINS.index(track["origin"])] for track in sequence["tracks"]}
+    origins = {track["track"]: ORIGINS.index(track["origin"]) for track in sequence["tracks"]}
     paths: Dict[int, List[Sequence[float]]] = {}
     for state in sequence["states"]:
         paths.setdefault(state[1], []).append(state)
     for track, path in paths.items():
         places, now = np.array([state[3:5] for state in path]), path[-1][0] == sequence["shown"]["scan"]
-        axes.plot(*places.T, color=colours[track], linewidth=width if now else 0.4 * width, alpha=1.0 if now else 0.5)
+        colour, line = COLOURS[origins[track]], LINES[origins[track]]
+        axes.plot(*places.T, color=colour, linestyle=line, linewidth=width if now else 0.4 * width,
+                  alpha=1.0 if now else 0.5)
         if now:
-            axes.plot(*places[-1], "o", color=colours[track], markersize=2.5 * width)
+            axes.plot(*places[-1], "o", color=colour, markersize=2.5 * width)
 
 
 def _birds(axes, sequence: Dict[str, Any], size: float) -> None:
@@ -314,9 +317,9 @@ def _draw_tracks(axes, ground, sequence: Dict[str, Any]) -> None:
     _paths(axes, sequence, 2.0)
     _birds(axes, sequence, 7.0)
     origins = {track["origin"] for track in sequence["tracks"]}
-    for name, colour in zip(ORIGINS, COLOURS):
+    for name, colour, line in zip(ORIGINS, COLOURS, LINES):
         if name in origins:
-            axes.plot([], [], color=colour, linewidth=2.0, label=f"track: {name}")
+            axes.plot([], [], color=colour, linestyle=line, linewidth=2.0, label=f"track: {name}")
     for mark, label in (("o", "bird, tracked"), ("x", "bird, not tracked")):
         axes.plot([], [], mark, color="black", markersize=6, markerfacecolor="none", label=label)
     axes.plot([], [], "r^", label="lidar")
