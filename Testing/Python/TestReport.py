@@ -96,7 +96,7 @@ class Page(unittest.TestCase):
             if name != "Search905":
                 there = there.with_lidar(name)
             row, = rows_of("report_files/on-sale.csv", receiver=name)
-            self.assertAlmostEqual(float(row["detection_probability"]), there.overall["detection_probability"], delta=1e-6)
+            self.assertAlmostEqual(float(row["detection_probability"]), there.overall["detection_probability"], 6)
             self.assertEqual(share, share_of(there.overall))
         self.assertEqual(self.number(0), shown[0][3].partition(" ±")[0] + "\u00a0%")
         steps = self.browser.run("return document.querySelector('#next').textContent")

@@ -192,7 +192,9 @@ class Report:
                     to, *edges = (edge.to(share, scans == several) for edge in (one, *(limits[name] or ())))
                     ends.append({"receiver": plan.name, "species": name, "detected_by": scans, "share": share,
                                  "range [m]": to, **dict(zip(("from [m]", "to [m]"), edges or (None, None)))})
-                    row.append(metres(to) + (f" ({metres(edges[0])} to {metres(edges[1])})" if edges else ""))
+                    row.append(metres(to))
+                    if edges and edges[1] > 0.0:
+                        row[-1] += f" ({metres(edges[0])} to {metres(edges[1])})"
                 rows += [row] * (scans == "one scan")
         return {"of": of, "several": several, "table": table, "ends": ends, "limits": limits, "rows": rows,
                 "uncertainty": reach.uncertainty(plan.name, plan.sensor)}
