@@ -139,7 +139,8 @@ class Macros(Case):
         for source in [*simple.GetSources().values()]:
             simple.Delete(source)
         self.assertEqual(run(AIRPORT), "")
-        self.assertEqual(self.names(), ["Airport 16", "Airport Hongqiao", "Collision tree", "Edges", "Scan"])
+        self.assertEqual(self.names(), ["Airport 16", "Airport Hongqiao", "Collision tree", "Edges", "Landmarks",
+                                        "Scan"])
         scan, beams = find("Scan", "Airport 16")
         self.assertEqual((simple.GetActiveSource(), list(beams.Position)), (scan, [0, 0, 3]))
         self.check_view()
