@@ -54,19 +54,6 @@ constexpr Arrays::Name Text{ "name", "" };
 const std::set<std::string> Kinds{ "apron", "building", "grass", "ground", "hangar", "house",
   "parking", "road", "structure", "taxiway", "terrain", "tree", "water" };
 
-/// Whether a name is more than a kind with a number, as in "Hangars" or "building 3".
-bool IsOwn(std::string name)
-{
-  for (char& letter : name)
-  {
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  }
-  name.erase(name.find_last_not_of(" 0123456789") + 1);
-  const bool isPlural = !name.empty() && name.back() == 's';
-  return !name.empty() && !Kinds.count(name) &&
-    !(isPlural && Kinds.count(name.substr(0, name.size() - 1)));
-}
-
 /// The direction as one of eight winds.
 std::string Wind(double east, double north)
 {
@@ -164,6 +151,13 @@ public:
         const vtkIdType* corners = nullptr;
         cell->GetCurrentCell(size, corners);
         this->CornersOf[static_cast<vtkIdType>(id)].insert(corners, corners + size);
+        Vec3 middle(0.0);
+        for (vtkIdType i = 0; i < size; ++i)
+        {
+          const double* p = surfaces->GetPoint(corners[i]);
+          middle += Vec3(p[0], p[1], p[2]) / static_cast<double>(size);
+        }
+        this->MiddlesOf[static_cast<vtkIdType>(id)].push_back(middle);
       }
     }
   }
@@ -188,11 +182,17 @@ public:
       }
       const double width = box.GetLength(0);
       const double depth = box.GetLength(1);
-      if (IsOwn(name) && box.GetLength(2) >= Low && width <= Wide * length[0] &&
-        depth <= Wide * length[1])
+      if (vtkAvianLidarLandmarks::IsOwnName(name) && box.GetLength(2) >= Low &&
+        width <= Wide * length[0] && depth <= Wide * length[1])
       {
-        Vec3 top;
-        box.GetCenter(&top.x);
+        Vec3 centre;
+        box.GetCenter(&centre.x);
+        // On the building, also if its plan is not convex.
+        const auto off = [&centre](const Vec3& p)
+        { return std::hypot(p.x - centre.x, p.y - centre.y); };
+        const std::vector<Vec3>& middles = this->MiddlesOf.at(id);
+        Vec3 top = *std::min_element(middles.begin(), middles.end(),
+          [&off](const Vec3& a, const Vec3& b) { return off(a) < off(b); });
         top.z = box.GetMaxPoint()[2];
         buildings.emplace(-width * depth, std::make_pair(name, top));
       }
@@ -252,6 +252,7 @@ private:
   vtkPolyData* Surfaces;
   vtkStringArray* Names;
   std::map<vtkIdType, std::set<vtkIdType>> CornersOf;
+  std::map<vtkIdType, std::vector<Vec3>> MiddlesOf; ///< of polygons
 };
 
 /// For each drawn laser and direction, the beam that is nearest to the direction.
@@ -354,6 +355,20 @@ int vtkAvianLidarLandmarks::FillInputPortInformation(int, vtkInformation* info)
   info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   info->Set(INPUT_IS_OPTIONAL(), 1);
   return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkAvianLidarLandmarks::IsOwnName(const std::string& name)
+{
+  std::string word = name;
+  for (char& letter : word)
+  {
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  word.erase(word.find_last_not_of(" 0123456789") + 1);
+  const bool isPlural = !word.empty() && word.back() == 's';
+  return !word.empty() && !Kinds.count(word) &&
+    !(isPlural && Kinds.count(word.substr(0, word.size() - 1)));
 }
 
 //------------------------------------------------------------------------------

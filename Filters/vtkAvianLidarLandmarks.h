@@ -54,6 +54,9 @@ public:
   /// Name of an end of a runway, as of output port 2. @param east, north away from the runway
   static std::string EndName(const std::string& runway, double east, double north);
 
+  /// Whether a name says more than a class with a number, such as "Hangar 3".
+  static bool IsOwnName(const std::string& name);
+
   vtkAvianLidarErrorsAsDataMacro();
 
 protected:

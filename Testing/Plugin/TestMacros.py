@@ -334,7 +334,7 @@ class Macros(Case):
         table = simple.GetColorTransferFunction("semantic_label")
         bird = list(table.Annotations).index("bird") // 2
         colour = [round(255 * value) for value in table.IndexedColors[3 * bird : 3 * bird + 3]]
-        self.assertEqual((table.Annotations[2 * bird], colour), ("99", [215, 0, 110]))
+        self.assertEqual((table.Annotations[2 * bird], colour), ("99", [231, 41, 138]))
 
     def test_a_beam_in_the_air_of_its_scan(self):
         run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))

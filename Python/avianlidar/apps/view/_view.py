@@ -17,7 +17,7 @@ from ... import vtkAvianLidar as _wrapped
 from ..._cloud import Cloud, as_numpy, field_values, triangles_of
 from ..._disk import write_whole
 from ..._files import numbers_of
-from ..._look import GROUND, SPECIES, UNKNOWN, class_colour, scale_of
+from ..._look import GROUND, UNKNOWN, class_colour, scale_of, species_colours
 from ..._pipeline import Error, callers_level, update
 from ..._plot import hue_colors
 from ..._scene import Scene
@@ -173,7 +173,8 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
     if not len(times):
         raise Error(f"{file.with_name('times.txt')}: is empty, expected the time of each scan")
     species = sorted({bird["species"] for bird in birds.values()})
-    colours = {name: SPECIES[number % len(SPECIES)] for number, name in enumerate(species)}
+    known = species_colours(species)
+    colours = {name: known[name] for name in species}
     others: Dict[str, Dict[str, Any]] = {}
     for number, time in enumerate(times.tolist()):
         boxes = file.parent / "boxes" / f"{number:06d}.txt"
