@@ -350,6 +350,19 @@ class Macros(Case):
 class MoreMacros(Case):
     """Takes minutes."""
 
+    def check_first_view(self, macro, name):
+        self.view.ViewSize = [900, 600]
+        self.assertEqual(run(macro), "")
+        simple.SaveScreenshot(os.path.join(OUTPUT_DIR, name), self.view, ImageResolution=[900, 600])
+        compare(name)
+
+    def test_first_view(self):
+        """Edges, rings, names, beams, echoes, and a legend."""
+        self.check_first_view(AIRPORT, "TestFirstView.png")
+
+    def test_first_view_of_birds(self):
+        self.check_first_view(BIRDS, "TestFirstView-birds.png")
+
     def test_coverage(self):
         """The probability on a slice under a surface, in the view; the reasons with words and colours, in the other."""
         size = [800, 350] if "--documentation" in sys.argv else [500, 400]
