@@ -337,7 +337,7 @@ void AddRings(
   }
   if (number > 0)
   {
-    ranges.Add(at(0.0, (number + 1) / 2 * spacing), "N");
+    ranges.Add(at(0.0, std::max(1, number / 2) * spacing), "N");
   }
 }
 }
