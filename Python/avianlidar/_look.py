@@ -12,7 +12,7 @@ _LOOK = json.loads(pathlib.Path(__file__).with_name("look.json").read_text(encod
 # long or of middle wavelengths.
 CLASSES: dict[str, str] = _LOOK["classes"]
 GROUND: tuple[str, ...] = tuple(_LOOK["ground"])  # classes on the ground, from below
-SPECIES: tuple[str, ...] = tuple(_LOOK["species"])  # ColorBrewer's Dark2, which differs from surfaces
+SPECIES: tuple[str, ...] = tuple(_LOOK["species"])  # by Okabe and Ito, and a brown: at least 17 apart in CIELAB for all eyes
 UNKNOWN: str = _LOOK["unknown"]
 
 
