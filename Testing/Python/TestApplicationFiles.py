@@ -160,7 +160,7 @@ class OneRun(Applications):
     def test_has_a_folder_alone_and_leaves_nothing_behind(self):
         before = tree(self.home), sorted(self.home.rglob("*"))
         for verb, file, out, folder, where, times in (
-                ("report", self.plan, "in/here/r.html", "in/here/r_files", (_report.Report, "_tables"), 1),
+                ("report", self.plan, "in/here/r.html", "in/here/r_files", (_report.Report, "_facts"), 1),
                 ("coverage", self.plan, "in/maps", "in/maps", (_maps, "write_table"), 1),
                 ("siting", self.plan, "in/sites", "in/sites", (al.Coverage, "set"), 5),
                 ("sequence", self.scenario, "in/sets", "in/sets", (al.Sequence, "_truth"), 1)):
@@ -225,7 +225,7 @@ class OneRun(Applications):
         files.mkdir()
         (files / "notes.txt").write_text("mine")
         page.write_text("old")
-        self.assertEqual(self.stop((_report.Report, "_tables"), ("report", self.plan, "-o", page))[0], 130)
+        self.assertEqual(self.stop((_report.Report, "_facts"), ("report", self.plan, "-o", page))[0], 130)
         self.assertEqual(((files / "notes.txt").read_text(), page.read_text()), ("mine", "old"))
 
 

@@ -15,6 +15,7 @@ import avianlidar as al
 from avianlidar import _command
 from avianlidar.apps.sequences import _bench
 from avianlidar.apps.sequences._bench import Points, write_bench
+from browser import Browser
 from exampletools import emptied
 from helpertools import rows_of
 
@@ -172,6 +173,9 @@ class Files(unittest.TestCase):
         page = (out / "bench.html").read_text()
         self.assertIn("The first 2 scans", page)
         self.assertEqual(page.count("data:image/png"), 1)
+        with Browser() as browser:
+            browser.open(out / "bench.html")
+            browser.check_printed(self)
         rows = {(row["predictions"], row["by"], row["group"], row["score"]): row for row in rows_of(out / "bench.csv")}
         row = rows["noisy", "all", "", "recall at 1 false point a scan"]
         values = []

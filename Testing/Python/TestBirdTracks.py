@@ -15,9 +15,10 @@ from avianlidar.apps.inputs._read import read_plan
 from avianlidar.apps.sequences import _card, _following, _sequence
 from avianlidar.apps.sequences._following import Input, Live, ORIGINS, TRACK, score
 from avianlidar.siting import Runway
+from browser import Browser
 from exampletools import emptied
 from helpertools import rows_of
-from reporttools import quick
+from reporttools import letters, quick
 
 BIRD, CLUTTER, VEHICLE = (ORIGINS.index(name) for name in ("bird", "surface", "vehicle"))
 EAST = {"type": "Feature", "properties": {"kind": "runway", "name": "09/27"},
@@ -163,7 +164,8 @@ class Files(unittest.TestCase):
         cls.made = cls.home / "made"
         al.Sequence(cls.file, threads=1).write(cls.made)
         cls.out = cls.home / "out"
-        cls.card = cls.tracks().write(cls.out)
+        with letters() as cls.letters:
+            cls.card = cls.tracks().write(cls.out)
 
     @classmethod
     def tracks(cls, *inputs, **settings):
@@ -213,6 +215,10 @@ class Files(unittest.TestCase):
         page = (self.out / "card.html").read_text("utf-8").replace("\u00a0", " ")
         self.assertEqual(page.count("data:image/png"), 4)
         self.assertNotIn("http", page)
+        with Browser() as browser:
+            browser.open(self.out / "card.html")
+            browser.check_printed(self)
+        self.assertGreaterEqual(min(self.letters), 8.0)
         for text in (cell for line in self.card["overall"] for cell in line["cells"]):
             self.assertIn(text.replace("\u00a0", " "), page)
 
@@ -240,7 +246,7 @@ class Files(unittest.TestCase):
         self.assertTrue((out / "sequences/small-Search1550/manifest.json").is_file())
         weathers = {(r["input"], r["group"]) for r in rows_of(out / "card.csv") if r["by"] == "weather"}
         self.assertEqual(weathers, {(f"small-{name}", "visibility 2000 m") for name in ("Search905", "Search1550")})
-        self.assertNotIn("Warning", (out / "card.html").read_text("utf-8"))  # without runways
+        self.assertNotIn(">Warning<", (out / "card.html").read_text("utf-8"))  # without runways
 
     def test_section_of_the_report(self):
         plan = self.home / "p.coverage.json"

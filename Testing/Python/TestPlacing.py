@@ -97,7 +97,7 @@ class Labels(unittest.TestCase):
             x0, x1, y0, y1 = _pictures.answer_extent(wanted, 700.0)
             x, y, _ = wanted.sensor.position
             places = [*(end for one in runways for end in (one.start, one.end)), (x - 700, y), (x + 700, y),
-                      (x, y - 700), (x, y + 700), *siting.region_outlines(runways)[next(iter(wanted.ends))]]
+                      (x, y - 700), (x, y + 700), *_pictures._near(wanted)[next(iter(wanted.ends))]]
             for at in places:
                 self.assertTrue(x0 < at[0] < x1 and y0 < at[1] < y1, (name, at))
 

@@ -13,6 +13,8 @@ from avianlidar import reach
 from avianlidar.apps.coverage import _crossing, _report
 from avianlidar.apps.pages import _drawing
 import helpertools
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 PIXEL = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9Q"
                          "DwADhgGAWjR9awAAAABJRU5ErkJggg==")
@@ -62,6 +64,18 @@ def written(name, wanted):
     return file
 
 
+@contextlib.contextmanager
+def letters():
+    """Sizes, in points, of letters of the pictures that are drawn meanwhile."""
+    sizes, save = set(), Figure.savefig
+
+    def savefig(figure, *arguments, **options):
+        sizes.update(one.get_fontsize() for one in figure.findobj(Text) if one.get_visible() and one.get_text())
+        return save(figure, *arguments, **options)
+    with unittest.mock.patch.object(Figure, "savefig", savefig):
+        yield sizes
+
+
 def report(name, wanted, *words, pictures=False):
     """The page that a plan gives."""
     with quick(pictures):
@@ -72,27 +86,3 @@ def report(name, wanted, *words, pictures=False):
 def rows_of(file, **wanted):
     return [row for row in helpertools.rows_of(HERE / file)
             if all(row[name] == value for name, value in wanted.items())]
-
-
-def same_numbers(test, browser, file):
-    """Numbers of the page are those of the table. @return both"""
-    cells = browser.run("return [...document.querySelectorAll('td[data-column]')].map(c => [{...c.dataset}, "
-                        "c.textContent])")
-    rows = {(row["receiver"], row["region"], row["species"], float(row["height_from [m]"])): row
-            for row in rows_of(file)}
-    for of, text in cells:
-        row = rows[of["receiver"], of["region"], of["species"], float(of["from"])]
-        value, column = float(row[of["column"]]), of["column"]
-        if text == "–":  # an error of a share that is not told from 0 or 1
-            test.assertTrue(column.endswith("_std_error")
-                            and (value < 1e-6 or float(row[column.replace("_std_error", "_probability")]) < 5e-4), of)
-        elif text[0] in "<>":
-            test.assertTrue(value <= float(text[2:]) <= 0.5 if text[0] == "<" else value >= float(text[2:]) >= 0.5,
-                            (of, text, value))
-        else:
-            digits = len(text.partition(".")[2])
-            test.assertAlmostEqual(float(text), value, delta=0.501 * 10.0 ** -digits, msg=of)
-            if column == "detection_probability" and float(row["detection_std_error"]) > 0.0:  # one digit of the error
-                test.assertTrue(0.1 * float(row["detection_std_error"]) <= 10.0 ** -digits <= 1.001
-                                * float(row["detection_std_error"]) or digits == 0, (of, text))
-    return cells, rows

@@ -25,7 +25,7 @@ from .coverage._sites import Sites
 from .inputs._on_sale import farthest, idea
 from .inputs._read import PROPERTIES, read_plan, read_scenario
 from .inputs._tables import write_table
-from .pages._drawing import gradient
+from .pages import _drawing as drawing
 from .pages._words import counted
 from .sequences._sequence import Sequence
 from .sequences._tracks import BirdTracks
@@ -47,7 +47,7 @@ def _goes_on(folder: pathlib.Path, pattern: str, what: str) -> Iterator[None]:
 def _job(options, draws: bool = True) -> Tuple[Ranks, int]:
     """The ranks of a job, and the threads of each; ImportError if a job that draws has no Matplotlib."""
     if draws:
-        gradient()
+        drawing.require()
     ranks = Ranks(ends_job=True)
     return ranks, getattr(options, "threads", 0) or (1 if ranks.size > 1 else 0)
 
@@ -102,7 +102,7 @@ def track(options) -> None:
 
 def bench(options) -> None:
     from .sequences._bench import verdict, write_bench
-    gradient()  # raises an error without Matplotlib before the work
+    drawing.require()
     found = write_bench(options.folders, options.predictions, options.out, options.sequences, options.first, bar)
     tell(*(f"{scored[0].set.name}, {scored[0].set.weather}: {verdict(scored)}" for scored in found),
          f"{options.out / 'bench.html'}: the page; its tables and pictures are beside it")

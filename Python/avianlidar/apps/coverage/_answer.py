@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The first page of a report in words: where a lidar should stand, which birds it detects, and what to do next."""
+"""A report in words: where a lidar should stand, which birds it detects, and what to do next."""
 from __future__ import annotations
 
 import math
@@ -9,25 +9,21 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ... import reach
 from ..._numbers import figures
 from ..._properties import snake
 from ..._weather import in_words
 from ..inputs._on_sale import PLACE
+from ..pages._html import Number, short_enough
 from ..pages._words import listed, plural
 from ..places._candidates import ground_of
-from ..places._regions import APPROACH_LENGTH, KINDS, STRIP_HALF_WIDTH, Runway, region_names, rounded, wind
+from ..places._regions import Runway, rounded, wind
 from ._crossing import Crossing
 from ._plan import Plan
 from ._sites import FEWEST_DRAWS
 
 LEAST = 0.0005  # least share that is given as a number; a site that detects less is not an answer
 LEAST_WORDS = f"{100.0 * LEAST:g}\u00a0%"
-# Shares in words, each up to a share.
-IN_WORDS = ((LEAST, "hardly any"), (0.002, "fewer than one in 500"), (0.01, "fewer than one in 100"),
-            (0.03, "fewer than one in 30"), (0.1, "fewer than one in ten"), (0.25, "fewer than one in four"),
-            (0.5, "fewer than half"), (0.75, "more than half"), (0.9, "more than three in four"),
-            (math.inf, "more than nine in ten"))
+CLAIM = "is not a claim about real birds"
 
 
 def place(position: Sequence[float]) -> str:
@@ -60,22 +56,6 @@ def percent(value: float, error: float = math.nan, places: int = 0, bar: bool = 
     digits = decimals(100.0 * error) if error > 0.0 else 1
     after = f" ± {100.0 * error:.{digits}f}" if error > 0.0 and bar else ""
     return f"{100.0 * value:.{digits}f}{after}\u00a0%"
-
-
-def cell(row: Dict[str, Any], column: str) -> str:
-    """A share, or its standard error, from a row of shares, with the digits that the error justifies."""
-    value, places = row[column], row["places"]
-    if math.isnan(value):
-        return "–"
-    if column.endswith("_std_error"):
-        share = row[column.replace("_std_error", "_probability")]
-        return f"{value:.{decimals(value)}f}" if value > 0.0 and share >= LEAST else "–"
-    known = column.endswith("_probability")
-    error = row[column.replace("_probability", "_std_error")] if known else math.sqrt(value * (1.0 - value) / places)
-    if error > 0.0 and value >= LEAST:
-        return f"{value:.{decimals(error)}f}"
-    least = min(bound(places), 1.0)
-    return f"< {least:.1g}" if value < 0.5 else f"> {1.0 - least:.{decimals(least)}f}"
 
 
 def metres(value: float) -> str:
@@ -112,29 +92,6 @@ def birds_of(view: Plan) -> str:
     return plural(view.bird) if len(view.mix) == 1 else f"birds {view.bird[5:]}"
 
 
-def over(view: Plan) -> str:
-    """The regions and heights of the birds, for readers who have not seen the plan."""
-    if not view.runways:
-        return view.where
-    count, parts = len(view.runways), []
-    whose = {1: "the runway", 2: "both runways"}.get(count, f"all {count} runways")
-    for kind, names in region_names(view.runways).items():
-        there = [name.partition(" ")[2] for name in names if name in view.ends]
-        every = len(there) == len(names)
-        up_to = f", up to {figures(view.heights_of(kind)[1], 3)}\u00a0m high" if there and not view.asked else ""
-        if there and kind == "strips":
-            which = f"the strips of {whose}" if every else f"the strip of {listed(there)}"
-            parts.append(f"{which} (to {STRIP_HALF_WIDTH:g}\u00a0m beside the middle{up_to})")
-        elif there:
-            which = "the approaches" if every else f"the approach to {listed(there)}"
-            parts.append(f"{which} (to {APPROACH_LENGTH / 1000.0:g}\u00a0km from an end{up_to})")
-    if not view.asked:
-        return f"over {listed(parts)}"
-    low, high = view.asked
-    heights = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-    return f"at {heights}\u00a0m over {listed(parts)}"
-
-
 def air_of(view: Plan) -> str:
     """The air in which the shares hold."""
     if view.air:
@@ -155,27 +112,64 @@ def twice(crossing: Optional[Crossing]) -> str:
 
 
 def _meaning(view: Plan, crossing: Optional[Crossing]) -> str:
-    """What the share of one scan means, and the share of birds that is detected at least twice while crossing."""
+    """What the share of one scan means."""
     if not crossing:
         return f"One scan takes {takes(view)}. The share is the mean over the whole map, near and far."
-    whole = {"strips": "the whole length of", "approaches": f"the whole {APPROACH_LENGTH / 1000.0:g}\u00a0km of"}
-    count = {kind: sum(KINDS[name.partition(" ")[0]] == kind for name in view.ends) for kind in whole}
-    one = {"strips": "strip", "approaches": "approach"}
-    parts = listed([f"{whole[kind]} {'the' if count[kind] == 1 else 'each'} {one[kind]}"
-                    for kind in whole if count[kind]])
-    scans, seconds = (f"{float(f'{value:.2g}'):g}" for value in (crossing.scans, crossing.seconds))
-    return (f"The share is that of one scan, which takes {takes(view)}, as a mean over {parts}, near and far. While "
-            f"birds cross there at right angles at {crossing.speed:.3g}\u00a0m/s (on average for {seconds}\u00a0s, or "
-            f"{scans} scans), {twice(crossing)} of them are detected at least twice.")
+    return (f"One scan takes {takes(view)}. The share is the mean over the whole length of these regions, near and "
+            f"far. Birds cross there at right angles at {crossing.speed:.3g}\u00a0m/s, and {twice(crossing)} of them "
+            "are detected at least twice.")
 
 
-def in_short(view: Plan, site: Optional[Dict[str, Any]], crossing: Optional[Crossing]) -> str:
-    """The result in one sentence without a number: for readers who read no further."""
-    share = crossing.share if crossing else view.overall["detection_probability"]
-    words = next(words for most, words in IN_WORDS if share < most)
-    best = ", at its best site," if site and site["detects"] else ""
-    birds = f"crossing {birds_of(view)} at least twice" if crossing else f"{birds_of(view)} by one scan"
-    return f"In short: {view.name}{best} detects {words} of the {birds}."
+def sentence(view: Plan, site: Optional[Dict[str, Any]]) -> str:
+    """The answer in at most MOST_WORDS words. @param site facts of the best site, if sites were compared"""
+    share = share_of(view.overall, bar=False)
+    kinds = (plural(view.bird), "birds") if len(view.mix) == 1 else ("birds",)
+    if site and not site["detects"]:
+        return short_enough(*(f"Nowhere: at none of {site['count']} sites does one scan of {who} detect {LEAST_WORDS} "
+                              f"of the {birds}." for who in (view.name, "the lidar") for birds in kinds))
+    nearest = beside(view.sensor.position, view.runways).partition(", and ")[0]
+    stands = "would stand best" if view.idea else "should stand"
+    places = [nearest, nearest.partition(", ")[0]] if nearest else [place(view.sensor.position)]
+    begin = [f"{{}} {stands} {where}: one scan" for where in places] if site else [
+        f"{{}} stands {where}: one scan" for where in places]
+    return short_enough(*(f"{first.format(who)} detects {share} of {birds}." for who in (view.name, "The lidar")
+                          for birds in kinds for first in (*begin, "One scan of {}")))
+
+
+def numbers(view: Plan, reaches: Dict[str, Any], crossing: Optional[Crossing], fog: Dict[str, Any]) -> List[Number]:
+    """Three numbers with their errors in words. @param fog the row of shares at a visibility of 1 km"""
+    def drawn(value: float, error: float) -> str:
+        if value < LEAST or not error > 0.0:
+            return "fewer than the random places can show" if value < LEAST else "without an error by chance"
+        return f"the random places leave {100.0 * error:.{decimals(100.0 * error)}f} percentage points uncertain"
+
+    def share(row: Dict[str, Any]) -> Tuple[str, str]:
+        value, error = row["detection_probability"], row["detection_std_error"]
+        return percent(value, error, row["places"], bar=False), drawn(value, error)
+    (once, error), (species, one) = share(view.overall), next(iter(reaches["of"].items()))
+    limits = reaches["limits"][species]
+    units = (f"real units: {metres(limits[0].to(0.5))} to {metres(limits[1].to(0.5))}" if limits and
+             limits[1].to(0.5) > 0.0 else "no unit was measured with birds")
+    found = [Number(once, "detected by one scan", f"of {birds_of(view)} {view.where}; {error}"),
+             Number(metres(one.to(0.5)), "range to which half are detected",
+                    f"of {plural(species)} in the beams by one scan, in free air; {units}")]
+    if crossing:
+        scans, seconds = (f"{float(f'{value:.2g}'):g}" for value in (crossing.scans, crossing.seconds))
+        found.append(Number(percent(crossing.share, crossing.error, crossing.birds, bar=False),
+                            "detected at least twice while crossing", f"in {seconds} s or {scans} scans on average; "
+                            + drawn(crossing.share, crossing.error).replace("places", "birds")))
+    else:
+        found.append(Number(share(fog)[0], "in fog of 1 km visibility", f"detected by one scan; {share(fog)[1]}"))
+    return found
+
+
+def assumed(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
+    """Sentences on what is assumed. @param offers lidars on sale, the best first"""
+    return [*about_idea(view, offers), f"Nothing was measured, and the answer {CLAIM}. Sizes, shapes, plumage and "
+            f"reflectance ({view.coverage.reflectance:g}) of birds are assumed, and so are {len(set(view.assumed))} "
+            f"numbers of {view.name}{', ' + air_of(view).strip() if air_of(view) else ''} and the distribution of "
+            f"{view.count:,} random places. These assumptions may change the numbers by more than chance does. "
+            "Eye safety, cost and the recognition of birds by software are not assessed."]
 
 
 def about_idea(view: Plan, offers: Sequence[Dict[str, Any]]) -> List[str]:
@@ -199,19 +193,17 @@ def merit(offer: Dict[str, Any]) -> Tuple[float, float, float]:
     return twice_share, one_scan, 0.0 if math.isnan(offer["half"]) else offer["half"]
 
 
-def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reaches: Dict[str, Any],
-                    of_year: Dict[str, float], crossing: Optional[Crossing]) -> List[str]:
-    """Where the lidar should stand, which share of the birds is detected from there, and how far birds are detected.
+def details(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], of_year: Dict[str, float],
+            crossing: Optional[Crossing]) -> List[str]:
+    """Where the lidar should stand, and which share of the birds is detected from there.
     @param view the plan's sensor at its best site, or the plan itself @param of_year the share over the plan's year"""
-    birds, position = f"{birds_of(view)} {over(view)}", view.sensor.position
+    birds, position = f"{birds_of(view)} {view.where}", view.sensor.position
     year = ", by the year's weather" if view.year else ""
     over_the_year = f", {share_of(of_year)} over the year" if view.year else ""
     detects = f"one scan detects {share_of(view.overall)} of {birds}{air_of(view)}{over_the_year}"
     mast = round(float(position[2] - ground_of(view.scene, [position[:2]])[0]), 1)
-    across, _, up = place(position).rpartition(", ")
-    up = "" if f"{mast:g}\u00a0m up" == up else f", {up}"  # not the same number twice
-    at = f"on a mast of {mast:g}\u00a0m{up}, {across}" if mast > 0.0 else place(position)
-    at = f"{at} from the scene's origin{'; ' + site['degrees'] if site and site['degrees'] else ''}"
+    at = (f"on a mast of {mast:g}\u00a0m, " * (mast > 0.0) + f"{place(position)} from the scene's origin"
+          f"{'; ' + site['degrees'] if site and site['degrees'] else ''}")
     by = beside(position, view.runways)
     where = f"{by} ({at})" if by else at
     if not site:
@@ -225,64 +217,15 @@ def first_sentences(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], reac
         which = (f"one of {alike} sites that are equally good within the error, of {site['count']} candidates"
                  if site["alike"] else f"the most of {site['count']} candidates")
         first = f"{plan.name} {stands} {where}: from there {detects}, {which}{year}."
-        own, best = plan.overall, view.overall
-        if not site["taken"] and (own["detection_probability"] + own["detection_std_error"] >=
-                                  best["detection_probability"]):
-            first += f" Its place in the plan or the scene ({place(plan.sensor.position)}) is as good: {share_of(own)}."
+        first += f" From its place in the plan or the scene it detects {share_of(plan.overall)}."
     there = [f"The other numbers of this page are for the sensor's place in the plan or its scene ({place(position)})."]
     there = there if site and view is plan else []
-    return [first, *there, _meaning(view, crossing), *_by_end(view), _how_far(view, reaches)]
+    return [first, *there, _meaning(view, crossing)]
 
 
-def share_of(row: Dict[str, Any]) -> str:
-    """The share of a row that one scan detects, with the standard error."""
-    return percent(row["detection_probability"], row["detection_std_error"], row["places"])
-
-
-def _by_end(view: Plan) -> List[str]:
-    """A sentence with the shares by strip and approach, if the plan has several."""
-    alike: Dict[Tuple[str, str], List[str]] = {}
-    for row in view.by_end:
-        kind, _, name = row["region"].partition(" ")
-        alike.setdefault((share_of(row), "strip of" if kind == "strip" else f"{kind} to"), []).append(name)
-    words = [f"{share} in the {which} {listed(names)}" for (share, which), names in alike.items()]
-    return [f"By region the share is {listed(words)}."] if len(view.by_end) > 1 else []
-
-
-def _how_far(view: Plan, reaches: Dict[str, Any]) -> str:
-    """Sentence on how far birds are detected, and on the distances at the plan's heights."""
-    found = []
-    for name, one in reaches["of"].items():
-        birds = plural(name)
-        half = f"half of {birds} to {metres(one.to(0.5))}" if one.to(0.5) > 0.0 else f"at no range half of {birds}"
-        found.append(f"{half} and a tenth to {metres(one.to(0.1))}" if one.to(0.1) > 0.0 else
-                     f"less than a tenth of {birds} at any range")
-    low, high = reach.band(view.sensor)
-    said = f"Within its beams, {low:.1f} to {high:.1f}° up, one scan detects {'; '.join(found)}"
-    half_to = max(one.to(0.5) for one in reaches["of"].values())
-    seen: List[str] = []
-    never: Dict[str, List[str]] = {}  # by the cause
-    for row in reach.heights_in_band(view, view.heights, half_to) if view.asked and half_to > 0.0 else ():
-        end = min(row["to"], row["until"])
-        if end > row["from"]:
-            begin = metres(row["from"]) if row["from"] else "0 m"
-            seen.append(f"at a height of {row['height']:g}\u00a0m between {begin} and {metres(end)} from the lidar")
-        else:
-            never.setdefault(_why_never(row), []).append(f"{row['height']:g}")
-    said += f". It detects half or more of the birds {listed(seen)}" if seen else ""
-    for why, heights in never.items():
-        said += f". At {listed(heights)}\u00a0m it nowhere detects half of the birds{why}"
-    return f"{said}."
-
-
-def _why_never(row: Dict[str, float]) -> str:
-    """The cause why half of the birds at a height are detected nowhere, if it is known. @param row of
-    `reach.heights_in_band`"""
-    if math.isinf(row["from"]):
-        return ", because no beam gets there"
-    if row["from"] >= row["to"] > 0.0:
-        return ", because the beams get there only where the range is already too long"
-    return ", because all of these birds are too far away" if row["to"] == 0.0 else ""
+def share_of(row: Dict[str, Any], bar: bool = True) -> str:
+    """The share of a row that one scan detects. @param bar whether the standard error is shown"""
+    return percent(row["detection_probability"], row["detection_std_error"], row["places"], bar)
 
 
 def command(view: Plan, verb: str, out: str, **settings: str) -> str:
@@ -309,25 +252,28 @@ def detects(way: Dict[str, Any]) -> Tuple[float, float]:
 
 def next_steps(plan: Plan, view: Plan, site: Optional[Dict[str, Any]], advice: Optional[Dict[str, Any]],
                offers: Sequence[Dict[str, Any]]) -> List[Dict[str, str]]:
-    """The next steps: for each a head, words, an anchor of the page, and a command, which may be empty. @param offers
-    lidars on sale, the best first"""
+    """The next steps: for each a head, words, and a command, which may be empty. @param offers lidars on sale, the best
+    first"""
     steps = [_ask(plan, view, offers)] if view.idea else []
     steps += [_raise(view, advice)] if advice else []
     if site and view is plan and not view.idea and not advice:
-        steps.append({"head": "Look for a lidar that sees farther.", "more": "#range", "command": "",
-                      "words": f"{view.name} detects almost none of the birds from any candidate."})
+        steps.append(_step("Look for a lidar that sees farther.",
+                           f"{view.name} detects almost none of the birds from any candidate."))
     if site and view is not plan:
         if len(site["gain"]) > 1:
-            steps.append(_weigh(view, site))
-        steps.append(_check(view, site))
-    cover = view.coverage
+            steps.append(_step("Weigh a second lidar.", _weigh(view, site)))
+        where = {"sensor.position": ",".join(rounded(view.sensor.position))}
+        steps.append(_step("Check the site.", "No map shows every object, and aprons, roads or water may be there. "
+                           "Maps of the site for GIS:", command(view, "coverage", "maps", **where)))
+    dark = f"{view.coverage.reflectance / 2.0:g}"
     ask = "" if view.idea else f" Ask the maker of {view.name} for the numbers of the lidar."
-    steps.append({"head": "Replace what is assumed.", "more": "#assumptions",
-                  "words": (f"Size and reflectance ({cover.reflectance:g}) of birds and {len(set(view.assumed))} "
-                            f"numbers of {view.name} are assumed.{ask} This command shows the effect of darker birds:"),
-                  "command": command(plan, "report", "darker.html",
-                                     **{"coverage.reflectance": f"{cover.reflectance / 2.0:g}"})})
+    steps.append(_step("Replace what is assumed.", f"{ask} This command shows the effect of darker birds:".strip(),
+                       command(plan, "report", "darker.html", **{"coverage.reflectance": dark})))
     return steps
+
+
+def _step(head: str, words: str, text: str = "") -> Dict[str, str]:
+    return {"head": head, "words": words, "command": text}
 
 
 def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, str]:
@@ -336,53 +282,36 @@ def _ask(plan: Plan, view: Plan, offers: Sequence[Dict[str, Any]]) -> Dict[str, 
     changed = plan.plan["sensor"].keys() - {"preset", "name", *PLACE}
     what = f"the report for {best}{', at the best site for it' if 'siting' in plan.plan else ''}"
     settings = {"sensor.preset": best, **({"sensor.name": best} if "name" in plan.plan["sensor"] else {})}
-    return {"head": f"Do not plan to buy {view.name}.", "more": "#on-sale",
-            "words": ("The result shows what a lidar with these numbers would do. Ask makers whether they can build "
-                      "such a lidar, and for measured ranges of birds. "
-                      + (f"A plan with the sensor {best} makes {what}." if changed else f"This command makes {what}:")),
-            "command": "" if changed else command(plan, "report", "on-sale.html", **settings)}
+    return _step(f"Do not plan to buy {view.name}.",
+                 "Ask makers whether they can build such a lidar, and for measured ranges of birds. "
+                 + (f"A plan with the sensor {best} makes {what}." if changed else f"This command makes {what}:"),
+                 "" if changed else command(plan, "report", "on-sale.html", **settings))
 
 
-def _weigh(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
-    """The step that compares networks with one lidar."""
-    words = {2: "two", 3: "three"}
+def _weigh(view: Plan, site: Dict[str, Any]) -> str:
+    """The comparison of networks with one lidar."""
     one, *more = [percent(row["value of the same birds"], row["std_error"], view.count, bar=False)
                   for row in site["gain"]]
-    counts = [words.get(row["sensors"], row["sensors"]) for row in site["gain"][1:]]
-    together = listed([f"{count} detect {share}" for count, share in zip(counts, more)])
-    return {"head": "Weigh a second lidar.", "more": "#sites", "command": "",
-            "words": (f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, "
-                      f"{together}. They see a bird with one heading and size, and otherwise miss it independently.")}
+    together = listed([f"{count} detect {share}" for count, share in enumerate(more, 2)])
+    return f"One lidar detects {one}{' over the year' if view.year else ''}; at their best sites, {together}."
 
 
 def _raise(view: Plan, advice: Dict[str, Any]) -> Dict[str, str]:
     """A change of the sensor, if the band leaves out heights of the plan."""
-    head = "Change the beams first." if view.idea else "Look for a lidar with higher beams."
-    found = {"head": head, "more": "#heights-in-band", "command": ""}
     if advice["needed"] is None:
-        return {**found, "head": "Take a lidar that sees farther.",
-                "words": "At the heights of the plan no bird is near enough, whatever the elevation of the beams."}
+        return _step("Take a lidar that sees farther.",
+                     "At the heights of the plan no bird is near enough, whatever the elevation of the beams.")
+    head = "Change the beams first." if view.idea else "Look for a lidar with higher beams."
     ends = (f"The beams end at {advice['high']:.1f}°. "
             f"For all heights of the plan they should reach {advice['needed']:.1f}°.")
     better = [way for way in advice["ways"] if detects(way) > detects({**advice, "then": advice["now"]})]
     best = max(better, key=detects, default=None)
     if best is None:
-        return {**found, "words": f"{ends} No tried change of the beams detects more birds from the same place."}
+        return _step(head, f"{ends} No tried change of the beams detects more birds from the same place.")
     now, then = (percent(row["detection_probability"], row["detection_std_error"], row["places"], bar=False)
                  for row in (advice["now"], best["then"]))
-    crosses = (f", and {twice(best['crossing'])} instead of {twice(advice['crossing'])} at least twice while they cross"
-               if best["crossing"] else "")
-    return {**found, "words": (f"{ends} The best change that was tried: {best['what'].partition(' (')[0]}. From the "
-                               f"same place one scan of this lidar detects {then} instead of {now}{crosses}. "
-                               f"It costs {best['cost']}.")}
-
-
-def how_sure(site: Dict[str, Any]) -> Tuple[List[str], List[str]]:
-    """Sentences on equally good candidates, and on a best candidate at the lattice's edge; each list may be empty."""
-    more = "1 other site is" if site["alike"] == 1 else f"{site['alike']} other sites are"
-    alike = [f"{more} as good within the error of the random places."] if site["alike"] else []
-    at_edge = "The best candidate lies at the lattice's edge: wider bounds may contain a better candidate."
-    return alike, [at_edge] if site["edge"] else []
+    return _step(head, f"{ends} The best change that was tried is {best['what'].partition(' (')[0]}: one scan then "
+                       f"detects {then} instead of {now}. It costs {best['cost']}.")
 
 
 def _other_draws(site: Dict[str, Any]) -> List[str]:
@@ -408,20 +337,19 @@ def _changed(change: str) -> str:
     return f"{what} changed by up to {amount}" if amount else what
 
 
-def _check(view: Plan, site: Dict[str, Any]) -> Dict[str, str]:
-    """The step that checks the site."""
-    alike, edge = how_sure(site)
-    words = [f"{site['surfaces']} Objects that no map shows may stand there."]
-    masts = []
-    for row in site["masts"]:
-        value, error = row["share"]
-        share = percent(value, error, view.count, bar=False)
-        masts.append(f"{share} with a mast of {row['mast']:g}\u00a0m")
-    if len(masts) > 1:
-        words.append(f"The best sites have {listed(masts)}.")
-    words += [*site["higher"], *alike, *_other_draws(site), *edge]
+def certainty(site: Dict[str, Any]) -> List[str]:
+    """Sentences on how sure the best site is, and on what was checked."""
+    masts = [f"{percent(row['share'][0], row['share'][1], bar=False)} with a mast of {row['mast']:g}\u00a0m"
+             for row in site["masts"]]
+    words = [f"The best sites have {listed(masts)}."] if len(masts) > 1 else []
+    more = "1 other site is" if site["alike"] == 1 else f"{site['alike']} other sites are"
+    words += site["higher"] + [f"{more} as good within the error of the random places."] * bool(site["alike"])
+    words += _other_draws(site) + ["The best candidate lies at the lattice's edge: wider bounds may contain a better "
+                                   "candidate."] * bool(site["edge"])
     if site["draws"] < FEWEST_DRAWS:
-        words.append(f"The certainty of the best site was not computed: it needs draws={FEWEST_DRAWS} or more.")
-    return {"head": "Check the site.", "more": "#sites", "words": " ".join([*words, "Maps of the site for GIS:"]),
-            "command": command(view, "coverage", "maps",
-                               **{"sensor.position": ",".join(rounded(view.sensor.position))})}
+        words.append(f"How sure the winner is was not computed: it needs draws={FEWEST_DRAWS} or more.")
+    elif not site["heights_varied"]:
+        words.append("Heights of buildings are not varied, because none is read from an attribute of footprints.")
+    if site["taken"]:
+        words.append("No candidate may stand at the plan's position of the sensor.")
+    return [*words, f"Obstacle limits: {site['surfaces']}."]

@@ -13,14 +13,15 @@ from ..._version import __version__
 from ..inputs._on_sale import CHOSEN
 from ..inputs._tables import write_table
 from ..pages import _drawing as drawing
-from ..pages._html import embedded, render
+from ..pages._html import First, Number, render, short_enough
 from ..pages._words import plural
-from ..sequences._card import cell
+from ..sequences._card import cell, number
 from ..sequences._scores import Value
 from ._design import CHANGE, FIELDS, TOLD, Candidate, Field, Study, is_told
 from ._report import place
 
 TOLD_WORDS = {True: "yes", False: "no", None: "undecided"}
+SHOWN = 10  # greatest number of designs in a table of the page
 PULSE_COLUMNS = {"exit_aperture [m2]": "exit_aperture", "radiant_exposure [J/m2]": "exposure",
                  "through_7_mm_pupil [J]": "pupil", "pulse_rate [Hz]": "pulse_rate",
                  "shortest_interval [s]": "shortest_interval", "average_power [W]": "average_power"}
@@ -110,12 +111,13 @@ def _draw_front(axes, study: Study) -> None:
         axes.errorbar([one.cost for one in of], values, errors, **style)
     front, about = study.front, study.about
     others = [one for one in study.candidates if not (one.refused or one.front)]
-    for of, colour, label in ((others, "0.6", "designs"), (front, "C0", "on the front")):
-        bars(of, [one.share for one in of], fmt="o", markersize=4, color=colour, label=label)
+    for of, colour, mark, label in ((others, "0.75", "o", "designs"), (front, "C0", "s", "on the front")):
+        bars(of, [one.share for one in of], fmt=mark, markersize=4, color=colour, label=label,
+             markeredgecolor="black" if of is front else colour)
     axes.step([one.cost for one in front], [100 * one.share.value for one in front], where="post", color="C0",
               linewidth=1)
     if study.finalists:
-        bars(study.finalists, [one.tracked for one in study.finalists], fmt="s-", color="C1", label="tracked")
+        bars(study.finalists, [one.tracked for one in study.finalists], fmt="^-", color="C1", label="tracked")
     axes.axhline(100 * study.asked, color="red", linewidth=0.8, label=f"required: {100 * study.asked:g} %")
     axes.plot(about.cost, 100 * study.of(about).value, "*", color="red", markersize=14, zorder=5,
               label="cheapest with this share" if study.chosen else "the best")
@@ -131,9 +133,9 @@ def _draw_sensitivities(axes, study: Study) -> None:
     for row in rows:
         up, share = row["to"] > row["from"], row["share"]
         axes.barh(order.index(row["field"]) + (0.19 if up else -0.19), 100 * share.value, 0.36,
-                  xerr=100 * share.error, color="C0" if up else "C1")
+                  xerr=100 * share.error, color="C0" if up else "C1", hatch="" if up else "///")
     for colour, label in (("C0", "more"), ("C1", "less")):
-        axes.barh([0], [0], color=colour, label=label)
+        axes.barh([0], [0], color=colour, hatch="" if label == "more" else "///", label=label)
     axes.set_yticks(np.arange(len(order)), [FIELDS[name].words for name in order])
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.set_xlabel("change of the share detected, percentage points")
@@ -150,30 +152,63 @@ def write(study: Study) -> None:
          "change_of_detected [1]": row["share"].value, "change_std_error [1]": row["share"].error,
          f"change_of_cost [{study.unit or '1'}]": row["cost"], "refused": row["refused"]}
         for row in study.sensitivities])
-    drawing.draw(out / "front.png", (6.4, 4.2), lambda axes: _draw_front(axes, study))
-    drawing.draw(out / "sensitivities.png", (6.4, 4.2), lambda axes: _draw_sensitivities(axes, study))
-    shown = {one.number: one for one in [*study.front, study.about]}.values()
-    base = [{"words": field.words, "base": field.text(study.base[name]), "swept": name in bounds,
-             "bounds": _bounds(field, bounds[name]) if name in bounds else "the same in all designs"}
+    front = drawing.picture(
+        out / "front.png", (drawing.WIDTH, 4.2), f"Share of birds by cost of {len(study.candidates)} designs",
+        "Share of birds detected by cost, with one standard error.", lambda axes: _draw_front(axes, study))
+    changes = drawing.picture(
+        out / "sensitivities.png", (drawing.WIDTH, 0.8 + 0.3 * len(study.swept)), "Change of the share by each number",
+        f"Effect of {100 * CHANGE:g} % more or less of one number of design {study.about.number}; elevations change by "
+        "this share of the band's width.", lambda axes: _draw_sensitivities(axes, study))
+    about, shown = study.about, {one.number: one for one in [*study.front, study.about]}.values()
+    nearest = sorted(shown, key=lambda one: abs(one.cost - about.cost))[:SHOWN]
+    nearest.sort(key=lambda one: one.cost)
+    designs = [[one.number, *(FIELDS[name].text(one.values[name]) for name in study.swept), _cost(study, one.cost),
+                cell(one.share, "%"), *([cell(one.tracked, "%")] if study.measure == "tracked" else []),
+                _verdict(study, one, "–")] for one in nearest]
+    base = [[field.words, field.text(study.base[name]),
+             f"{_bounds(field, bounds[name])} (assumed)" if name in bounds else "the same in all designs"]
             for name, field in FIELDS.items()]
-    question = f"Which is the cheapest lidar that {does(study, f'{100 * study.asked:g} % of ')}?"
-    count, answer = len(study.candidates), answers(study)
     write_whole(out / "design.html", render(
-        "coverage/design.html.jinja", question=plan.plan.get("description") or question, answer=answer, study=study,
-        stands=stands(study), shown=sorted(shown, key=lambda one: one.cost),
-        fields=[FIELDS[name] for name in study.swept], told=TOLD, change=CHANGE, base=base, version=__version__,
-        refused=[one for one in study.candidates if one.refused], places=len(plan.points), name=plan.name, count=count,
-        cells=lambda one: [FIELDS[name].text(one.values[name]) for name in study.swept],
-        verdict=lambda one: _verdict(study, one, "–"), cost=lambda one: _cost(study, one.cost), words=FIELDS,
-        added=lambda value: f"{value:+.3g}", filter_percent=lambda value: cell(value, "%"),
-        filter_points=lambda of: "–" if math.isnan(of.value) else f"{100 * of.value:+.2f} ± {100 * of.error:.2f}",
-        pictures=[
-            {"source": embedded(out / "front.png"), "alt": f"Share of birds by cost of {count} designs; {answer[0]}",
-             "caption": "Share of birds by cost, with one standard error; blue: on the front; red: required share"},
-            {"source": embedded(out / "sensitivities.png"),
-             "alt": "Change of the share by a change of each number.",
-             "caption": (f"Effect of {100 * CHANGE:g} % more or less of one number "
-                         "(for elevations, of the band's width)")}]))
+        "coverage/design.html.jinja", first=_first(study, front), answer=answers(study), study=study, designs=designs,
+        stands=stands(study), told=TOLD, changes=changes, base=base, version=__version__, nearest=nearest,
+        heads=[FIELDS[name].words for name in study.swept], places=len(plan.points), name=plan.name,
+        refused=[one for one in study.candidates if one.refused],
+        impossible=[f"{FIELDS[row['field']].text(row['to'])}: {row['refused']}" for row in study.sensitivities
+                    if row["refused"]][:2]))
+
+
+def _first(study: Study, picture: Dict[str, Any]) -> First:
+    plan, about, other, share = study.plan, study.about, study.elsewhere, f"{100.0 * study.asked:g} % of "
+    cost, count, of = _cost(study, about.cost), len(study.judged), study.of(about)
+    verb = "tracks" if study.measure == "tracked" else "detects"
+    has = f"{100.0 * of.value:.3g} %"
+    sentences = [f"The cheapest of {count} designs that {verb} {share}{birds} costs {cost}."
+                 if study.chosen else f"None of {count} designs surely {verb} {share}{birds}: the best {verb} {has}."
+                 for birds in (plural(plan.bird), "the birds")]
+    microjoules = float(f"{1e6 * about.pulses['pupil']:.2g}")
+    steps = [{"head": "Assess eye safety.", "command": "",
+              "words": "The columns of pulses in design.csv begin such an assessment, without a verdict."}]
+    if plan.idea or any(name not in (*CHOSEN, "mast") for name in study.swept):
+        steps.insert(0, {"head": "Ask makers whether they can build this lidar.", "command": "",
+                         "words": "The designs are ideas: nobody sells these lidars."})
+    if study.undecided():
+        steps.append({"head": "Decide on cheaper designs.", "command": "", "words": answers(study)[-1]})
+    more = f"avianlidar design {pathlib.Path(plan.file).name} -o more --design-set designs={4 * count}"
+    steps.append({"head": "Search between the designs that were tried.", "command": more,
+                  "words": "Narrow the bounds, or raise designs:"})
+    return First(
+        plan.plan.get("description") or f"Which is the cheapest lidar that {does(study, share)}?",
+        short_enough(*sentences), picture, [
+            Number(cost or "–", "cost", "by the plan's formula, which has no error of its own and is assumed"),
+            number(("%", other), "detected by the design",
+                   f"at {other.number:,} other places, which were not used to choose"),
+            Number(f"{microjoules:g}\u00a0µJ", "a pulse through a pupil",
+                   "of 7 mm at the exit aperture, if the pulse fills the aperture evenly; eye safety is not assessed")],
+        steps, [f"Nothing was measured, and the shares are not a claim about real birds. Costs follow from the user's "
+                f"formula, {study.cost.text}. Assumed are this formula, the bounds, size, reflectance and heights of "
+                f"birds, and of the sensor: {', '.join(plan.assumed) or 'no number'}."
+                + (f" Scans within {study.within:g} s count as independent, and the bird keeps its place."
+                   if study.within else " One scan counts, whatever its duration.")])
 
 
 def _bounds(field: Field, given: Any) -> str:

@@ -9,11 +9,12 @@ import numpy as np
 
 from ..inputs._tables import write_table
 from ..pages import _drawing as drawing
-from ..pages._words import listed
-from ..places._candidates import NAMES, NOT_CHECKED, TABLE
+from ..places._candidates import NOT_CHECKED, TABLE
 from ..places._geojson import write_sites
 from . import _pictures as pictures
 from ._sites import Change, Sites
+
+SITES_SIZE = (3.8, 4.7)  # inches
 
 
 def kept_surfaces(sites: Sites) -> str:
@@ -30,19 +31,6 @@ def kept_surfaces(sites: Sites) -> str:
             f"approaches, {codes}{changes}; {count} of "
             f"{count + len(sites.positions)} candidates pierced a surface and are left out ({sites.counted}); "
             f"not checked: {', '.join(NOT_CHECKED)}")
-
-
-def surface_sentence(sites: Sites) -> str:
-    """Sentences on the checks of the place of a mast, for the first page of a report."""
-    clear = ("clear of runways, buildings and the plan's exclusions" if sites.options.get("exclusions") else
-             "clear of runways and buildings. The plan excludes no aprons, taxiways, roads or water")
-    if not sites.pierced:
-        return (f"The site is {clear}. No obstacle limitation surface was checked, because the plan switches the "
-                f"surfaces off. Also not checked: {listed(NOT_CHECKED)}.")
-    approaches = f"{sites.surfaces[0].category} approaches{'' if 'category' in sites.changed else ', assumed'}"
-    off = [name for name in NAMES if name not in sites.pierced]
-    return (f"Checked: the mast stays below the {listed(list(sites.pierced))} surfaces of ICAO Annex 14 ({approaches}) "
-            f"and is {clear}. Not checked: {listed([*(f'{name} surfaces' for name in off), *NOT_CHECKED])}.")
 
 
 def words(sites: Sites) -> Dict[str, str]:
@@ -64,7 +52,7 @@ def words(sites: Sites) -> Dict[str, str]:
 
 
 def write(sites: Sites, folder, changes: List[Change]) -> None:
-    """Writes sites (CSV, VTP, GeoJSON) by rank, gain.csv, robustness.csv, and pictures of sites and gain."""
+    """Writes sites (CSV, VTP, GeoJSON) by rank, gain.csv, robustness.csv, and a picture of sites."""
     folder, order = pathlib.Path(folder), sites.order
     columns: Dict[str, Any] = {"rank": np.arange(1, len(order) + 1), "value": sites.values[order],
                                "in_network": np.isin(order, sites.networks[-1].sites).astype(np.int32)}
@@ -77,6 +65,5 @@ def write(sites: Sites, folder, changes: List[Change]) -> None:
                 "; ".join(f"{name}: {text}" for name, text in words(sites).items()))
     write_table(folder / "gain.csv", sites.gain())
     write_table(folder / "robustness.csv", sites.robustness(changes))
-    drawing.draw(folder / "sites.png", drawing.map_size(pictures.sites_extent(sites), 4.6, 0.8, 0.3),
+    drawing.draw(folder / "sites.png", SITES_SIZE,
                   lambda axes: pictures.draw_sites(axes, sites))
-    drawing.draw(folder / "gain.png", (4.4, 2.8), lambda axes: pictures.draw_gain(axes, sites))

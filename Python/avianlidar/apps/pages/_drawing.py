@@ -2,43 +2,72 @@
 """Pictures by Matplotlib, which only the functions import."""
 from __future__ import annotations
 
+import base64
 import io
+import pathlib
 import warnings
-from typing import Any, Callable, List, Sequence, Tuple
+from typing import Any, Callable, Dict, Sequence, Tuple
 
 import numpy as np
 
 from ..._disk import write_whole
+from ..._look import SPECIES
 
 PIXELS = 150  # pixels per inch
+WIDTH = 7.0  # width of the text on A4, inches
+HEIGHT = 10.6  # height of the text on A4, inches
+SMALLEST = 8  # size of letters, points
 CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
 
 
-def gradient() -> List[str]:
-    """Colours of nine probabilities from 0 to 1."""
-    from matplotlib import colormaps, colors
-    return [colors.to_hex(colormaps["viridis"](share)) for share in np.linspace(0.0, 1.0, 9)]
+def require() -> None:
+    """Raises an error without Matplotlib, before the work."""
+    import matplotlib  # noqa: F401
 
 
-def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> None:
+def picture(file, size: Tuple[float, float], what: str, caption: str, work: Callable[[Any], Any],
+            rows: int = 1, columns: int = 1) -> Dict[str, Any]:
+    """Draws a picture of a page. @param what kind of the picture, for readers who do not see it @param size, rows,
+    columns as for `drawn`"""
+    draw(file, size, work, rows, columns)
+    return shown(file, size[0], what, caption)
+
+
+def shown(file, width: float, what: str, caption: str) -> Dict[str, Any]:
+    """A picture (PNG) of a page, at its printed width in inches."""
+    source = "data:image/png;base64," + base64.b64encode(pathlib.Path(file).read_bytes()).decode()
+    return {"source": source, "alt": f"{what}. {caption}", "caption": caption, "width": width}
+
+
+def series(axes) -> None:
+    """Gives curves colours and markers that a grey printer can tell apart."""
+    from cycler import cycler
+    axes.set_prop_cycle(cycler(color=SPECIES) + cycler(marker="osD^vPX*"))
+
+
+def draw(file, size: Tuple[float, float], work: Callable[[Any], Any], rows: int = 1, columns: int = 1) -> None:
     """Writes a picture to a file; see `drawn`."""
-    write_whole(file, drawn(size, work, columns))
+    write_whole(file, drawn(size, work, rows, columns))
 
 
-def drawn(size: Tuple[float, float], work: Callable[[Any], Any], columns: int = 1) -> bytes:
-    """A picture (PNG). @param size inches @param work function that draws into the given axes @param columns axes side
-    by side"""
+def drawn(size: Tuple[float, float], work: Callable[[Any], Any], rows: int = 1, columns: int = 1) -> bytes:
+    """A picture (PNG). @param size inches on paper @param work function that draws into the given axes; with several
+    rows or columns, into a list of axes"""
+    from cycler import cycler
     from matplotlib import font_manager, rc_context
     from matplotlib.figure import Figure
     content = io.BytesIO()
     known = {font.name for font in font_manager.fontManager.ttflist}
     fonts = ["DejaVu Sans", *(name for name in CJK if name in known)]
-    style = {"axes.labelsize": 9, "xtick.labelsize": 9, "ytick.labelsize": 9, "legend.fontsize": 8, "grid.alpha": 0.4,
-             "font.family": fonts, "text.parse_math": False}  # names keep their $
+    style = {"font.size": SMALLEST, **{f"{part}.labelsize": SMALLEST for part in ("axes", "xtick", "ytick")},
+             "axes.titlesize": 9, "legend.fontsize": SMALLEST, "grid.alpha": 0.4, "lines.markersize": 4,
+             "axes.prop_cycle": cycler(color=SPECIES), "font.family": fonts,
+             "text.parse_math": False}  # names keep their $
     with rc_context(style), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has
         figure = Figure(figsize=size, dpi=PIXELS, layout="constrained")
-        work(figure.subplots(1, columns))
+        axes = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
+        work(axes if len(axes) > 1 else axes[0])
         figure.draw_without_rendering()  # the layout needs two passes to fix axes of equal scales
         figure.savefig(content, format="png")
     return content.getvalue()

@@ -2,25 +2,41 @@
 """Pages of HTML that need no internet."""
 from __future__ import annotations
 
-import base64
-import math
 import pathlib
-from typing import Any
+from typing import Any, Dict, List, NamedTuple
+
+MOST_WORDS = 25  # of the sentence on a first page
 
 
-def embedded(file: pathlib.Path) -> str:
-    """A picture (PNG) as a source in a page."""
-    return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode()
+class Number(NamedTuple):
+    """A number of a first page, with its name, and with its meaning and error in words."""
+
+    value: str
+    name: str
+    words: str
+
+
+class First(NamedTuple):
+    """The first page. A step has a head, words and a command, which may be empty."""
+
+    question: str
+    sentence: str
+    picture: Dict[str, Any]
+    numbers: List[Number]
+    steps: List[Dict[str, str]]
+    assumed: List[str]
+    interactive: str = ""  # address of a page in three dimensions
+
+
+def short_enough(*sentences: str) -> str:
+    """The first sentence that has at most MOST_WORDS words, else the last, cut."""
+    found = next((one for one in sentences if len(one.split()) <= MOST_WORDS), None)
+    return found or " ".join([*sentences[-1].split()[:MOST_WORDS - 1], "…"])
 
 
 def render(template: str, **values: Any) -> bytes:
-    """A page of HTML. @param template file with its package @param values by name; filters begin with `filter_`"""
+    """A page of HTML. @param template file with its package @param values by name"""
     import jinja2
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parents[1]), autoescape=True,
                                      undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.globals["zip"] = zip
-    environment.filters["number"] = lambda value, form: "–" if math.isnan(value) else form % value
-    for name in list(values):
-        if name.startswith("filter_"):
-            environment.filters[name.removeprefix("filter_")] = values.pop(name)
     return environment.get_template(template).render(**values).encode()

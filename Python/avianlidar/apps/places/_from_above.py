@@ -11,6 +11,7 @@ from ..._cloud import as_numpy, field_values, leaves_of, triangles_of
 from ..._look import CLASSES, GROUND
 
 TALL = 5.0  # height above the ground at the sensor from which on surfaces are drawn as buildings, m, except GROUND
+FAR = 2000.0  # width of a map, m, from which on its ticks are in km
 PLANTS = ("vegetation", "tree")  # classes that are drawn as woods
 
 
@@ -48,6 +49,9 @@ def draw_airport(axes, plan: Any, colour: str = "0.25") -> None:
         if roofs.any():
             axes.tripcolor(*points[:, :2].T, cells[roofs], facecolors=np.zeros(roofs.sum()),
                            cmap=ListedColormap([colour]))
-    axes.plot(*plan.sensor.position[:2], "r^", markersize=5)
-    axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel="m east", ylabel="m north")
+    axes.plot(*plan.sensor.position[:2], "r^", markersize=6, markeredgecolor="white", markeredgewidth=0.6)
+    unit, scale = ("km", 1000.0) if np.ptp(plan.extent[:2]) > FAR else ("m", 1.0)
+    axes.set(xlim=plan.extent[:2], ylim=plan.extent[2:], aspect="equal", xlabel=f"{unit} east", ylabel=f"{unit} north")
     axes.locator_params(nbins=5)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(lambda value, _: f"{value / scale:g}")

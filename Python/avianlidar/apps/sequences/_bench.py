@@ -19,8 +19,8 @@ from ..inputs._json import naming
 from ..inputs._read import read_manifest
 from ..inputs._tables import read_table, texts
 from ..pages import _drawing as drawing
-from ..pages._html import embedded, render
-from ._card import cell
+from ..pages._html import First, render, short_enough
+from ._card import cell, number as with_error
 from ._labels import BIRD, MOVING
 from ._scores import Value, mean
 from ._sequence import DONE, content_of
@@ -31,6 +31,7 @@ GROUPS = (*(f"{low:g} to {high:g} m" for low, high in zip((0.0, *RANGES), RANGES
 LOST = 3  # number of consecutive scans with points of a bird, none of which is predicted as bird, that lose its track
 FALSE = (1, 10)  # allowed false points a scan
 RECALLS = np.linspace(0.0, 1.0, 101)  # recalls of the curve
+SHOWN = 5  # greatest number of sets on paper; files have all
 SURE = 2.0  # a difference is sure if it is larger than this number of standard errors
 # Scores with the words and the unit of the page.
 SCORES = {"recall_at_1": ("recall at 1 false point a scan", "%"),
@@ -291,8 +292,8 @@ def write_bench(folders: Sequence[Any], predictions: Sequence[Any], out, numbers
             write_whole(out / name, as_csv(map(texts, rows)))
         shown = [{**page(scored), "picture": _picture(out, scored)} for scored in by_set]
         write_whole(out / "bench.html", render(
-            "sequences/bench.html.jinja", sets=shown, version=__version__, all=ALL, scores=SCORES, lost=LOST, sure=SURE,
-            rates=FALSE, first=first))
+            "sequences/bench.html.jinja", sets=shown[:SHOWN], version=__version__, all=ALL, scores=SCORES, lost=LOST,
+            sure=SURE, rates=FALSE, first=_first(by_set[0], shown[0], len(by_set)), history=first))
     return by_set
 
 
@@ -340,22 +341,50 @@ def page(scored: Sequence[Scored]) -> Dict[str, Any]:
             "parts": parts, "verdict": verdict(scored)}
 
 
-def _picture(out: pathlib.Path, scored: Sequence[Scored]) -> Optional[Dict[str, str]]:
-    """The curves of a set's predictions with scores, as a picture of the page."""
+def _first(scored: Sequence[Scored], shown: Dict[str, Any], sets: int) -> First:
+    """The first page, on the first set."""
+    of = scored[0].set
+    score = "recall_at_1" if all(one.curves for one in scored) else "iou"
+    best = max(scored, key=lambda one: one.value(ALL, score).value if one.value(ALL, score).number else -1.0)
+
+    others, where = ("recall" if score == "iou" else "iou", "lost"), f"{best.name} at {of.name}, mean of the sequences"
+    numbers = [with_error((SCORES[key][1], best.value(ALL, key)), SCORES[key][0], where) for key in (score, *others)]
+    value, what = numbers[0].value, SCORES[score][0]
+    return First(
+        f"Which filter separates birds from clutter? {of.name}", short_enough(
+            f"At {of.name}, {best.name} has the best {what}, {value}." if best.value(ALL, score).number else
+            f"At {of.name}, no bird has a point.", f"The best {what} is {value}."), shown["picture"],
+        numbers,
+        [{"head": "See whether the lead is sure.", "words": shown["verdict"], "command": ""},
+         {"head": "Look at subsets, ranges and species.", "command": "",
+          "words": f"The next page{'s' if sets > 1 else ''} and bench.csv have the scores of each."}],
+        ["The scans and labels are simulated. Nothing was measured, and the scores are not a claim about real birds. "
+         "Kinds and flights of birds and the sensor's numbers are assumed, as in the scenario. Points of other moving "
+         "objects count as neither right nor wrong."])
+
+
+def _picture(out: pathlib.Path, scored: Sequence[Scored]) -> Dict[str, Any]:
+    """The curves of a set's predictions with scores, or bars of IoU, as a picture of the page."""
     of, curves = scored[0].set, {one.name: np.array(one.curves) for one in scored if one.curves}
-    if not curves:
-        return None
-    file = out / f"curves-{of.name}.png"
-    drawing.draw(file, (5.6, 3.6), lambda axes: _draw_curves(axes, curves))
     areas = ", ".join(f"{one.name} {one.value(ALL, 'average_precision').value:.3f}" for one in scored if one.curves)
-    return {"source": embedded(file), "alt": f"Precision over recall at {of.name}; average precision: {areas}.",
-            "caption": f"{of.name}, {of.weather}: the mean of the sequences, and one standard error to either side"}
+    return drawing.picture(
+        out / f"{'curves' if curves else 'iou'}-{of.name}.png", (drawing.WIDTH, 4.0),
+        f"Scores of {len(scored)} predictions; average precision: {areas or 'none'}",
+        f"{of.name}, {of.weather}: {'precision over recall' if curves else 'IoU'}, as the mean of the sequences with "
+        "one standard error.", lambda axes: _draw_curves(axes, curves) if curves else _draw_iou(axes, scored))
+
+
+def _draw_iou(axes, scored: Sequence[Scored]) -> None:
+    values, errors = np.nan_to_num([one.value(ALL, "iou")[:2] for one in scored]).T
+    axes.barh([one.name for one in scored], values, xerr=errors)
+    drawing.finish(axes, xlabel="IoU", xlim=(0.0, 1.0))
 
 
 def _draw_curves(axes, curves: Dict[str, np.ndarray]) -> None:
+    drawing.series(axes)
     for name, values in curves.items():
         middle, deviation = _mean_curve(values)
-        line, = axes.plot(RECALLS, middle, label=name)
+        line, = axes.plot(RECALLS, middle, markevery=10, label=name)
         if len(values) > 1:
             error = deviation / math.sqrt(len(values))
             axes.fill_between(RECALLS, middle - error, middle + error, color=line.get_color(), alpha=0.2, linewidth=0)

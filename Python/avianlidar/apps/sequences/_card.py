@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bisect
 import itertools
+import json
 import math
 import pathlib
 from types import SimpleNamespace
@@ -12,6 +13,7 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Seque
 import numpy as np
 
 from ..._disk import write_whole
+from ..._look import class_colour
 from ..._pipeline import Error
 from ..._ranks import as_json
 from ..._version import __version__
@@ -19,7 +21,7 @@ from ..._writers import as_csv
 from ..inputs._json import load_json
 from ..inputs._tables import texts
 from ..pages import _drawing as drawing
-from ..pages._html import embedded, render
+from ..pages._html import First, Number, render, short_enough
 from ..pages._words import counted
 from ..places._from_above import draw_airport
 from . import _scores as scores
@@ -34,7 +36,11 @@ Scores = Dict[str, Tuple[str, Value]]  # unit and value of scores, by the words 
 Part = Tuple[str, str, List[Scores]]  # kind and name of a group, and its scores for each input
 NEAREST = 300.0  # least extent of maps around the sensor, m
 FEWEST = 5  # least number of birds for a curve of warnings
-COLOURS = ("#1b9e77", "#66c2a5", "#7570b3", "#d95f02", "#e7298a", "#66a6ff")  # colours of ORIGINS
+COLOURS = [class_colour(word) for word in ("bird", "bird", "car", "structure", "noise", "air")]  # of ORIGINS
+MARKS = "oPsv^x"  # of ORIGINS
+LINES = ("-", "-", "--", ":", "-.", (0, (1, 3)))  # of ORIGINS
+SHOWN = 3  # greatest number of inputs on paper; files have all
+ROWS = 10  # greatest number of rows of a table on paper
 Results = List[Dict[str, Any]]
 Warned = Sequence[Tuple[str, List[np.ndarray]]]  # volumes with the warning times of each input, s
 
@@ -108,14 +114,28 @@ def cell(value: Value, unit: str = "", words: Optional[str] = None) -> str:
     return f"{number:.{digits}f}{f' ± {error:.{digits}f}' if error > 0.0 else ''}{of}"
 
 
+def number(score: Tuple[str, Value], name: str, words: str) -> Number:
+    """A score, with its unit, on a first page, with its error in words."""
+    unit, value = score
+    text, _, error = cell(value, unit, "").partition(" ± ")
+    error = f"the error by chance is {error} {'percentage points' if unit == '%' else unit}".rstrip() if error else ""
+    return Number(f"{text}\u00a0{unit}".rstrip("\u00a0"), name, f"{words}; {error or 'it shows no error by chance'}")
+
+
 def _rows(of: Sequence[Scores]) -> List[Dict[str, Any]]:
     """A row for each score. @param of scores of each input"""
     return [{"words": words, "cells": [cell(found[words][1], unit) for found in of]}
             for words, (unit, _) in of[0].items()]
 
 
-def _tables(names: Sequence[str], results: Sequence[Mapping[str, Any]], parts: Sequence[Part]) -> Dict[str, List[Any]]:
-    """Rows of the tables, by the name of the file."""
+def _as_text(value: Any) -> Any:
+    """A cell of a table; lists and settings become JSON."""
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (dict, list)) else value
+
+
+def _tables(names: Sequence[str], results: Sequence[Mapping[str, Any]], parts: Sequence[Part],
+            facts: Sequence[Dict[str, Any]], chains: Sequence[Any]) -> Dict[str, List[Any]]:
+    """Rows of the tables, by the name of the file. @param facts, chains inputs and their settings"""
     card = [(name, by, group, words, "1" if unit in ("%", "") else unit, *value)
             for k, name in enumerate(names) for by, group, of in parts for words, (unit, value) in of[k].items()]
     followed = [(name, number, one) for name, of in zip(names, results) for number, one in of.items()]
@@ -123,14 +143,16 @@ def _tables(names: Sequence[str], results: Sequence[Mapping[str, Any]], parts: S
     return {"card.csv": [("input", "by", "group", "score", "unit", "value", "std_error", "count"), *map(texts, card)],
             "tracks.csv": [("input", "sequence", *STATES),
                            *((name, number, *state) for name, number, one in followed for state in one["states"])],
+            "inputs.csv": [[*facts[0], "settings"], *(texts(map(_as_text, [*one.values(), chain]))
+                                                      for one, chain in zip(facts, chains))],
             "birds.csv": [[*birds[0]] if birds else ["input", "sequence"], *(texts(bird.values()) for bird in birds)]}
 
 
 def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]],
                runways: Sequence[Sequence[Any]], settings: Dict[str, Any],
                progress: Callable[[str, int, int], Any]) -> Dict[str, Any]:
-    """Writes card.csv, tracks.csv, birds.csv, pictures, card.json and card.html. @param results results of each input,
-    by the number of the sequence @return the content of card.json"""
+    """Writes card.csv, tracks.csv, birds.csv, inputs.csv, pictures, card.json and card.html. @param results results of
+    each input, by the number of the sequence @return the content of card.json"""
     names, sequences = [of.name for of in inputs], [list(of.values()) for of in results]
     birds = [[bird for one in of for bird in one["birds"]] for of in sequences]
     of_flocks = [of_birds(flock) for flock in birds]
@@ -138,29 +160,57 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     warned = [(volume, [warnings_of(flock, volume) for flock in birds]) for volume in VOLUMES if any(map(len, runways))]
     groups = _groups(birds)
     warnings: List[Part] = [("volume", volume, [*map(of_warnings, seconds)]) for volume, seconds in warned]
-    for file, table in _tables(names, results, [("all", "", overall), *groups, *warnings]).items():
+    facts = [_facts(*of) for of in zip(inputs, sequences, birds)]
+    for file, table in _tables(names, results, [("all", "", overall), *groups, *warnings], facts,
+                               settings["chains"]).items():
         write_whole(out / file, as_csv(table))
     card: Dict[str, Any] = {
         "version": __version__, "names": names, "cutoff": settings["cutoff"], "order": settings["order"],
         "learning_scans": settings["learning_scans"], "volumes": bool(warned), "settings": settings,
         "answers": [_answer(name, of, [(volume, seconds[k]) for volume, seconds in warned])
                     for k, (name, of) in enumerate(zip(names, overall))],
-        "inputs": [_facts(*of) for of in zip(inputs, sequences, birds)],
+        "inputs": facts,
         "overall": _rows(overall), "head": [*of_flocks[0]],
         "groups": [{"by": by, "rows": [
             {"name": name, "counts": [found["birds tracked"][1].number for found in of],
              "cells": [row["cells"] for row in _rows(of)]}
             for kind, name, of in groups if kind == by]} for by, _ in GROUPS],
-        "warnings": [{"volume": volume, "counts": [found["mean warning"][1].number for found in of], "rows": _rows(of)}
-                     for _, volume, of in warnings],
-        "pictures": []}
-    for kind, name, size, alt, caption, work in _pictures(inputs, results, runways, warned):
-        drawing.draw(out / name, size, work, 4 if kind == "strip" else 1)
-        card["pictures"].append({"kind": kind, "file": name, "alt": alt, "caption": caption})
-        progress("pictures", len(card["pictures"]), 2 * len(inputs) + 1 + bool(warned))
+        "warnings": [{"volume": volume, "rows": _rows(of), "heads": [
+            f"{name}, {counted(found['mean warning'][1].number, 'bird')}" for name, found in zip(names, of)]}
+                     for _, volume, of in warnings]}
+    shown = list(_pictures(out, inputs, results, runways))
+    progress("pictures", 1, 1)
     write_whole(out / "card.json", as_json(card))
-    write_whole(out / "card.html", render("sequences/card.html.jinja", card=shown(out, card)))
+    write_whole(out / "card.html", render(
+        "sequences/card.html.jinja", card=card, pictures=shown[1:], rows=ROWS, most=SHOWN,
+        first=_first(card, overall[0], warned, shown[0])))
     return card
+
+
+def _first(card: Mapping[str, Any], of: Scores, warned: Warned, picture: Dict[str, Any]) -> First:
+    """The first page, on the first input."""
+    name, known = card["names"][0], card["inputs"][0]
+    tracked, false = (number(of[words], "", "").value for words in ("birds tracked", "false tracks an hour"))
+    third = number(of["share of time"], "of the time tracked", "of all birds in the beams")
+    for volume, (seconds, *_) in warned:
+        if len(seconds) >= FEWEST:
+            third = number(("s", scores.mean(seconds)), "warning", f"before a bird enters the {volume}, on average")
+            break
+    steps = [("Look at single birds.", "birds.csv has each bird, tracks.csv each track, card.csv all scores."),
+             ("Simulate more birds.", "Longer or more sequences make the errors smaller."),
+             ("Replace what is assumed.", "The scenario has the birds, their flights, and the sensor's numbers.")]
+    return First(
+        f"How well are birds tracked? {', '.join(card['names'][:SHOWN])}",
+        short_enough(*(f"{who} tracks {tracked} of the birds in its beams and reports {false} false tracks an hour."
+                       for who in (name, "The lidar"))), picture,
+        [number(of["birds tracked"], "of birds tracked", f"{known['birds']} birds in {known['sequences']} "
+                f"sequences of {known['seconds'] / 60:.1f} minutes in all"),
+         number(of["false tracks an hour"], "false tracks an hour", "from surfaces, noise and air"), third],
+        [{"head": head, "words": words, "command": ""} for head, words in steps],
+        ["The scans are simulated. Nothing was measured, and the scores are not a claim about real birds. Assumed are "
+         f"kinds, numbers and flights of birds, and of the sensor {', '.join(known['assumed']) or 'no number'}. A "
+         "clutter filter that learns only where echoes persist, and a tracker, process the scans. Birds count as "
+         "independent."])
 
 
 def _facts(of: Input, sequences: Results, birds: Results) -> Dict[str, Any]:
@@ -185,49 +235,48 @@ def _answer(name: str, of: Scores, warned: Sequence[Tuple[str, np.ndarray]]) -> 
 
 
 def read_card(folder) -> Dict[str, Any]:
-    """The card of a folder that `avianlidar track` has written, with its pictures."""
+    """The card of a folder that `avianlidar track` has written."""
     folder = pathlib.Path(folder)
     if not (folder / "card.json").is_file():
         raise Error(f"{folder}: holds no card.json, expected a folder that `avianlidar track` has written")
     card = load_json(folder / "card.json")
     if not isinstance(card, dict) or card.get("version") != __version__:
         raise Error(f"{folder / 'card.json'}: is of another version; run `avianlidar track` again")
-    return shown(folder, card)
+    return card
 
 
-def shown(folder: pathlib.Path, card: Dict[str, Any]) -> Dict[str, Any]:
-    """A card with embedded pictures."""
-    return {**card, "pictures": [{**one, "source": embedded(folder / one["file"])} for one in card["pictures"]]}
-
-
-def _pictures(inputs: Sequence[Input], results: Sequence[Mapping[str, Any]], runways: Sequence[Sequence[Any]],
-              warned: Warned) -> Iterator[Tuple[str, str, Tuple[float, float], str, str, Any]]:
-    """Kind, file, size in inches, alternative text, caption, and the function that draws, of each picture."""
+def _pictures(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]],
+              runways: Sequence[Sequence[Any]]) -> Iterator[Dict[str, Any]]:
+    """The pictures: tracks and birds of the first input, a scan of each input, beginnings of tracks, OSPA distances."""
+    grounds = []
     for of, one, lines in zip(inputs, results, runways):
-        number, first = next(iter(one.items()))
-        last = first["shown"]
+        first = next(iter(one.values()))
         places = [state[3:5] for state in first["states"] if state[9] >= 0]
-        ground = _ground(of, lines, lambda away: np.quantile(away, 0.98), places)
+        grounds.append(_ground(of, lines, lambda away: np.quantile(away, 0.98), places))
+    of, first = inputs[0], next(iter(results[0].values()))
+    yield drawing.picture(
+        out / f"{of.name}-tracks.png", (drawing.WIDTH, 4.4), "Map of confirmed tracks and birds",
+        f"Confirmed tracks of {of.name} in the first sequence until scan {first['shown']['scan']}, with its birds.",
+        lambda axes: _draw_tracks(axes, grounds[0], first))
+    for of, one, ground in zip(inputs, results, grounds):
+        sequence, first = next(iter(one.items()))
+        last = first["shown"]
         count = last["clutter"].count(0)
-        yield ("strip", f"{of.name}-scan.png", (13.2, 3.7), f"One scan of {of.name} in four steps.",
-               f"{of.name}, scan {last['scan']} (sequence {number}), from above: its {len(last['clutter'])} echoes; "
-               f"the {count} echoes that the clutter filter keeps; "
-               "confirmed tracks so far; birds as they were, tracked or not",
-               lambda axes, ground=ground, first=first: _draw_strip(axes, ground, first))
-        tracks = [track for sequence in one.values() for track in sequence["tracks"]]
-        origins = [track["origin"] for track in tracks]
-        words = ", ".join(f"{origins.count(name)} of origin {name}" for name in ORIGINS)
-        ground = _ground(of, lines, lambda away: 1.05 * away.max(), [track["begin"][:2] for track in tracks])
-        yield ("begin", f"{of.name}-begin.png", (5.0, 4.6), f"Where confirmed tracks of {of.name} begin: {words}.",
-               f"{of.name}: where confirmed tracks begin",
-               lambda axes, ground=ground, tracks=tracks: _draw_begin(axes, ground, tracks))
-    yield ("ospa", "ospa.png", (5.6, 3.4), "OSPA distance over time.",
-           "OSPA distance over time, mean of the sequences; less is better",
-           lambda axes: _draw_ospa(axes, inputs, results))
-    if warned:
-        yield ("warnings", "warnings.png", (5.6, 3.4), "Share of birds by their warning time.",
-               "Share of the birds that fly into a volume which were beside a confirmed track that long before",
-               lambda axes: _draw_warnings(axes, [of.name for of in inputs], warned))
+        yield drawing.picture(
+            out / f"{of.name}-scan.png", (drawing.WIDTH, 2.3), f"One scan of {of.name} in four steps",
+            f"{of.name}, scan {last['scan']} (sequence {sequence}): its {len(last['clutter'])} echoes, the {count} "
+            "echoes that the clutter filter keeps, confirmed tracks, and birds as they were.",
+            lambda axes: _draw_strip(axes, ground, first), columns=4)
+    of, lines = inputs[0], runways[0]
+    tracks = [track for found in results[0].values() for track in found["tracks"]]
+    ground = _ground(of, lines, lambda away: 1.05 * away.max(), [track["begin"][:2] for track in tracks])
+    half = 0.5 * drawing.WIDTH - 0.1
+    yield drawing.picture(out / f"{of.name}-begin.png", (half, 3.2), f"Where {len(tracks)} confirmed tracks begin",
+                          f"Where confirmed tracks of {of.name} begin, by their origin.",
+                          lambda axes: _draw_begin(axes, ground, tracks))
+    yield drawing.picture(out / "ospa.png", (half, 2.6), f"OSPA distance over time of {len(inputs)} inputs",
+                          "OSPA distance over time, as a mean of the sequences (less is better).",
+                          lambda axes: _draw_ospa(axes, inputs, results))
 
 
 def _ground(of: Input, runways: Sequence[Any], reach: Callable[[np.ndarray], float], places: List[Any]) -> Any:
@@ -239,54 +288,76 @@ def _ground(of: Input, runways: Sequence[Any], reach: Callable[[np.ndarray], flo
                            extent=(x - away, x + away, y - away, y + away))
 
 
-def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
-    last = sequence["shown"]
-    points, origins = np.array(last["points"]).reshape(-1, 3), np.array(last["origins"], int)
-    titles = "echoes", "kept by the clutter filter", "confirmed tracks", "birds: tracked (green), not (red)"
-    for ax, title in zip(axes, titles):
-        draw_airport(ax, ground, "0.85")
-        ax.set_title(title, fontsize=9)
-        ax.set_ylabel("m north" if ax is axes[0] else "")
-    for ax, chosen in ((axes[0], np.ones(len(points), bool)), (axes[1], ~np.array(last["clutter"], bool))):
-        for number, colour in enumerate(COLOURS):
-            part = points[chosen & (origins == number)]
-            ax.plot(part[:, 0], part[:, 1], ".", color=colour, markersize=3 if number in (0, 2) else 1.5)
-    colours = {track["track"]: COLOURS[ORIGINS.index(track["origin"])] for track in sequence["tracks"]}
+def _paths(axes, sequence: Dict[str, Any], width: float) -> None:
+    """Draws the paths of confirmed tracks in the colours of their origins; thin and pale: tracks that have ended."""
+    origins = {track["track"]: ORIGINS.index(track["origin"]) for track in sequence["tracks"]}
     paths: Dict[int, List[Sequence[float]]] = {}
     for state in sequence["states"]:
         paths.setdefault(state[1], []).append(state)
     for track, path in paths.items():
-        places, now = np.array([state[3:5] for state in path]), path[-1][0] == last["scan"]
-        axes[2].plot(*places.T, color=colours[track], linewidth=1.2 if now else 0.5, alpha=1.0 if now else 0.5)
+        places, now = np.array([state[3:5] for state in path]), path[-1][0] == sequence["shown"]["scan"]
+        colour, line = COLOURS[origins[track]], LINES[origins[track]]
+        axes.plot(*places.T, color=colour, linestyle=line, linewidth=width if now else 0.4 * width,
+                  alpha=1.0 if now else 0.5)
         if now:
-            axes[2].plot(*places[-1], "o", color=colours[track], markersize=3)
+            axes.plot(*places[-1], "o", color=colour, markersize=2.5 * width)
+
+
+def _birds(axes, sequence: Dict[str, Any], size: float) -> None:
+    """Draws birds as they were in the shown scan."""
     for x, y, tracked in sequence["last"]:
-        axes[3].plot(x, y, "o" if tracked else "x", color="#1b9e77" if tracked else "#cc2222", markersize=4)
+        axes.plot(x, y, "o" if tracked else "x", color="black", markersize=size, markerfacecolor="none")
+
+
+def _draw_tracks(axes, ground, sequence: Dict[str, Any]) -> None:
+    draw_airport(axes, ground, "0.8")
+    x0, x1, y0, y1 = ground.extent
+    middle, half = 0.5 * (x0 + x1), 0.85 * (y1 - y0)  # the picture is wider than high
+    axes.set(xlim=(middle - half, middle + half), ylim=(y0, y1))
+    _paths(axes, sequence, 2.0)
+    _birds(axes, sequence, 7.0)
+    origins = {track["origin"] for track in sequence["tracks"]}
+    for name, colour, line in zip(ORIGINS, COLOURS, LINES):
+        if name in origins:
+            axes.plot([], [], color=colour, linestyle=line, linewidth=2.0, label=f"track: {name}")
+    for mark, label in (("o", "bird, tracked"), ("x", "bird, not tracked")):
+        axes.plot([], [], mark, color="black", markersize=6, markerfacecolor="none", label=label)
+    axes.plot([], [], "r^", label="lidar")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, frameon=False)
+
+
+def _draw_strip(axes, ground, sequence: Dict[str, Any]) -> None:
+    last = sequence["shown"]
+    points, origins = np.array(last["points"]).reshape(-1, 3), np.array(last["origins"], int)
+    for ax, title in zip(axes, ("echoes", "kept by the filter", "confirmed tracks", "birds (x: not tracked)")):
+        draw_airport(ax, ground, "0.85")
+        ax.set_title(title)
+        ax.locator_params(nbins=3)
+        if ax is not axes[0]:
+            ax.set(ylabel="", yticklabels=[])
+    for ax, chosen in ((axes[0], np.ones(len(points), bool)), (axes[1], ~np.array(last["clutter"], bool))):
+        for number in (3, 5, 2, 4, 1, 0):  # birds above all
+            part = points[chosen & (origins == number)]
+            ax.plot(part[:, 0], part[:, 1], ".", color=COLOURS[number], markersize=3 if number in (0, 2) else 1.5)
+    _paths(axes[2], sequence, 1.2)
+    _birds(axes[3], sequence, 4.0)
 
 
 def _draw_begin(axes, ground, tracks: Results) -> None:
     draw_airport(axes, ground, "0.8")
-    for name, colour in zip(ORIGINS, COLOURS):
+    for name, colour, mark in zip(ORIGINS, COLOURS, MARKS):
         places = np.array([track["begin"][:2] for track in tracks if track["origin"] == name]).reshape(-1, 2)
         if len(places):
-            axes.plot(*places.T, "o", color=colour, markersize=4, label=f"{name}: {len(places)}")
-    axes.legend()
+            axes.plot(*places.T, mark, color=colour, markersize=4, label=f"{name}: {len(places)}")
+    if tracks:
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
 
 
 def _draw_ospa(axes, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]]) -> None:
+    drawing.series(axes)
     for of, one in zip(inputs, results):
         distances = [[x[0] for x in sequence["ospa"]] for sequence in one.values()]
         values = np.array([*itertools.zip_longest(*distances, fillvalue=math.nan)])
-        axes.plot(np.arange(len(values)) / of.sensor.rotation_rate, np.nanmean(values, axis=1), label=of.name)
+        axes.plot(np.arange(len(values)) / of.sensor.rotation_rate, np.nanmean(values, axis=1), markevery=10,
+                  label=of.name)
     drawing.finish(axes, ylim=(0.0, None), xlabel="s since tracking began", ylabel="OSPA distance, m")
-
-
-def _draw_warnings(axes, names: Sequence[str], warned: Warned) -> None:
-    for (volume, of), style in zip(warned, ("-", "--")):
-        for number, (name, seconds) in enumerate(zip(names, of)):
-            if len(seconds) >= FEWEST:
-                least = np.sort(seconds[seconds > 0.0])
-                shares = [np.mean(seconds > 0.0), *(np.mean(seconds >= t) for t in least)]
-                axes.step([0.0, *least], shares, where="pre", linestyle=style, color=f"C{number}",
-                          label=f"{name}, {volume} ({counted(len(seconds), 'bird')})")
-    drawing.finish(axes, ylim=(0.0, 1.02), xlim=(0.0, None), xlabel="warning, s", ylabel="share of birds")
