@@ -12,6 +12,7 @@ set(classes
   Filters/vtkAvianLidarEchoFilter
   Filters/vtkAvianLidarGeodeticTransform
   Filters/vtkAvianLidarHSBColorMap
+  Filters/vtkAvianLidarLandmarks
   Filters/vtkAvianLidarMaterial
   Filters/vtkAvianLidarMedium
   Filters/vtkAvianLidarRangeImage

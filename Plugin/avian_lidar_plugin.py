@@ -20,12 +20,14 @@ BEAM = "beam_id"
 TREE = "AvianLidarCollisionTree"
 # Parts of a scan.
 SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes of many sources
-PARTS = (TREE, "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks")
+PARTS = (TREE, "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks", "AvianLidarLandmarks")
 RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # Filters that show a part of a result, and the filter that shows edges of surfaces.
 SOME, EDGES = ("Threshold", "Cut", "Contour"), "FeatureEdges"
 MOST_EDGED = 100_000  # triangles up to which edges take at most a second to find; at 750,000 they take minutes
 SHARP = 30  # angle between faces from which on their edge is drawn, deg
+RINGS_IN_VIEW = 6  # rings between the middle and the side of the view, at most
+RANGES_AT = 60  # direction of the ranges of rings from the middle, clockwise from straight ahead, deg
 AMBIENT = 0.35  # share of the light that has no direction
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
 # Views that macros put beside another view.
@@ -352,7 +354,7 @@ def light(view):
     look = data("look.json")
     view.UseColorPaletteForBackground = 0
     view.BackgroundColorMode, view.Background = "Single Color", rgb(look["sky"])
-    view.OrientationAxesLabelColor = [0.0] * 3
+    view.OrientationAxesVisibility = 0  # names and rings tell directions, which the axes would cover
     return look
 
 
@@ -389,6 +391,23 @@ def show_surfaces(tree, view):
 def show_sensor(beams, view, as_ball=1):
     show(beams, view, rgb(data("look.json")["lidar"]), Representation="Points", PointSize=SENSOR_SIZE,
          RenderPointsAsSpheres=as_ball)
+
+
+def show_landmarks(tree, beams, view):
+    """Shows names of runway ends and buildings, rings of equal range, and a fan of beams to the first ring. Call it when
+    the camera is in its place. Rings and fan move with the sensor."""
+    look = data("look.json")
+    least = view.CameraParallelScale * view.ViewSize[0] / view.ViewSize[1] / RINGS_IN_VIEW
+    ahead = math.degrees(math.atan2(*(view.CameraFocalPoint[i] - view.CameraPosition[i] for i in (0, 1))))
+    landmarks = simple.AvianLidarLandmarks(
+        registrationName=free_name("Landmarks"), Beams=beams, Surfaces=tree, RangeDirection=(ahead + RANGES_AT) % 360,
+        RingSpacing=next(size * 10.0 ** power for power in range(-3, 9) for size in (1, 2, 5)
+                         if size * 10.0 ** power >= least))
+    rings, ranges, names, fan = (simple.OutputPort(landmarks, port) for port in range(4))
+    for texts in (ranges, names):
+        simple.Show(texts, view)
+    show(rings, view, rgb(look["edges"]), Opacity=0.5)
+    show(fan, view, rgb(look["lidar"]), Opacity=0.3)
 
 
 def axes_of_camera(azimuth, elevation):

@@ -282,7 +282,7 @@ def contents(root, sensors):
     """The help's table of contents: chapters of (title, page)."""
     chapters = {chapter: [] for chapter in FIRST_PAGES}
     for group in root:
-        for proxy in () if group.get("name").startswith("internal") else group:
+        for proxy in () if group.get("name").startswith(("internal", "representations")) else group:
             kind = "Readers" if proxy.find("Hints/ReaderFactory") is not None else group.get("name").capitalize()
             title, page = proxy.get("label")[len(CATEGORY) + 1:], f"{group.get('name')}.{proxy.get('name')}.html"
             chapters[CHAPTERS.get(title, kind)].append((title, page))

@@ -66,8 +66,8 @@ def draw(surfaces, result, echoes, preset, options):
     words = f"{preset}, {'preset Paper' if options.paper else f'{options.rays} rays per beam'}"
     title, limits = focus(surfaces, echoes, options.focus)
     for view, said, bounds in (("top", "From above", tools.extent(surfaces, echoes)), ("close", title, limits)):
-        with tools.figure(options.out / f"{preset}-{view}.png", figsize=(11, 9)) as axes:
-            tools.from_above(axes, surfaces, echoes, bounds, f"{said}, {words}")
+        with tools.figure(options.out / f"{preset}-{view}.png", figsize=tools.shape(bounds)) as axes:
+            tools.from_above(axes, surfaces, echoes, bounds, f"{said}, {words}", scan=result)
     tools.range_images(options.out / f"{preset}-range.png", result, words)
 
 

@@ -14,12 +14,13 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkTriangleFilter
 
 import avianlidar as al
+from avianlidar._cloud import triangles_of
+from avianlidar._look import GROUND, class_colour
 from avianlidar._pipeline import update
 
 LARGEST = sys.float_info.max
 STATUS = ("with echoes below saturation", "that meet nothing", "too weak to be perceived", "saturated",
           "that meet things outside the gate only")
-PAVED = {"apron": "0.93", "runway": "0.84"}
 
 
 class Parser(argparse.ArgumentParser):
@@ -167,21 +168,47 @@ def edges(surfaces, angle=20):
     return found.GetOutput()
 
 
-def plan(axes, scene, colour="black"):
-    """Draws blocks from above: pavement as areas, other objects as their edges. The ground is not drawn."""
+def plan(axes, scene):
+    """Draws blocks from above: in the colours of their classes, buildings over the ground, or without classes as their
+    edges. The ground is the background."""
     from matplotlib.collections import LineCollection, PolyCollection
     kinds = strings(scene, "object_classes") or [""] * scene.GetNumberOfBlocks()
     for number, kind in enumerate(kinds):
-        shape = scene.GetBlock(number)
-        if kind == "ground" or not shape or not shape.GetNumberOfCells():
-            continue
-        shape = shape if kind in PAVED else edges(shape, 20 if kind else 40)
-        if shape.GetNumberOfCells():
-            cells = (shape.GetPolys() if kind in PAVED else shape.GetLines()).GetConnectivityArray()
-            cells = vtk_to_numpy(cells).reshape(-1, 3 if kind in PAVED else 2)
-            corners = vtk_to_numpy(shape.GetPoints().GetData())[cells, :2]
-            axes.add_collection(PolyCollection(corners, facecolors=PAVED[kind], edgecolors="face") if kind in PAVED else
-                                LineCollection(corners, colors=colour, linewidths=0.7))
+        block = scene.GetBlock(number)
+        if kind == "ground":
+            axes.set_facecolor(class_colour(kind))
+        elif kind and block and block.GetNumberOfCells():
+            points, cells = triangles_of(block)
+            axes.add_collection(PolyCollection(
+                points[cells][:, :, :2], facecolors=class_colour(kind), edgecolors=class_colour(kind), linewidths=0.7,
+                zorder=GROUND.index(kind) / len(GROUND) if kind in GROUND else 1))
+        elif block and (lines := edges(block, 40)).GetNumberOfCells():
+            cells = vtk_to_numpy(lines.GetLines().GetConnectivityArray()).reshape(-1, 2)
+            axes.add_collection(LineCollection(vtk_to_numpy(lines.GetPoints().GetData())[cells, :2], colors="black",
+                                               linewidths=0.7))
+
+
+def landmarks(axes, scan, limits):
+    """Draws rings of equal range with their ranges, and names of runway ends and buildings."""
+    made = al.vtkAvianLidar.vtkAvianLidarLandmarks()
+    made.SetInputDataObject(0, scan.sensor.beams.data)
+    made.SetInputDataObject(1, scan.scene.tree.GetOutput())
+    (west, east), (south, north) = limits
+    least = max(east - west, north - south) / 12
+    spacings = (size * 10.0**power for power in range(-3, 9) for size in (1, 2, 5))
+    made.SetRingSpacing(next(spacing for spacing in spacings if spacing > least))
+    update(made)
+    for ring in np.split(vtk_to_numpy(made.GetOutput(0).GetPoints().GetData()), made.GetNumberOfRings()):
+        axes.plot(*np.vstack([ring, ring[:1]])[:, :2].T, color="0.35", linewidth=0.6, zorder=2)
+    for output in (made.GetOutput(1), made.GetOutput(2)):
+        texts = output.GetPointData().GetAbstractArray("name")
+        for i in range(output.GetNumberOfPoints()):
+            x, y, _ = output.GetPoint(i)
+            if not (west < x < east and 0.02 < (y - south) / (north - south) < 0.98):
+                continue
+            side = ("left", "center", "center", "right")[int(np.clip(4 * (x - west) / (east - west), 0, 3))]
+            axes.text(x, y, texts.GetValue(i), ha=side, va="center", fontsize=8, clip_on=True, zorder=5,
+                      bbox={"facecolor": "white", "alpha": 0.6, "linewidth": 0, "pad": 1})
 
 
 def around(points, margin):
@@ -189,6 +216,12 @@ def around(points, margin):
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     grow = margin * (high - low).max() or 100.0
     return tuple(np.column_stack([low - grow, high + grow]))
+
+
+def shape(limits, side=8.0):
+    """Size of a picture, inches, for a map with these limits, whose longer side is `side`, and a legend."""
+    width, height = (high - low for low, high in limits)
+    return side * min(1.0, width / height) + 2.2, side * min(1.0, height / width) + 1.0
 
 
 def extent(scene, echoes, margin=0.03):
@@ -202,10 +235,12 @@ def extent(scene, echoes, margin=0.03):
     return around(np.vstack([points[near], echoes.points]), margin)
 
 
-def from_above(axes, scene, echoes, limits, title, size=6, legend=True):
-    """Draws echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus. Returns
-    the dots, for a legend that several plans share."""
+def from_above(axes, scene, echoes, limits, title, size=6, legend=True, scan=None):
+    """Draws echoes over the plan in the colours of their energy, the strongest on top, and the lidar as a red plus; with
+    rings of range and names if the scan is given. Returns the dots, for a legend that several plans share."""
     plan(axes, scene)
+    if scan:
+        landmarks(axes, scan, limits)
     order = np.argsort(echoes["energy"])
     low, high = (1e6 * echoes.fields[name] for name in ("lower_energy_limit", "upper_energy_limit"))
     dots = axes.scatter(*echoes.points[order, :2].T, s=size, c=1e6 * echoes["energy"][order], cmap=al.hue_colors(),
@@ -214,7 +249,7 @@ def from_above(axes, scene, echoes, limits, title, size=6, legend=True):
     (west, east), (south, north) = limits
     shown = ((echoes.points[:, :2] >= (west, south)) & (echoes.points[:, :2] <= (east, north))).all(axis=1).sum()
     axes.set(xlim=(west, east), ylim=(south, north), aspect="equal", xlabel="east (m)", ylabel="north (m)")
-    axes.set_title(f"{title}: {shown} of {len(order)} echoes", loc="left")
+    axes.set_title(f"{title}: {shown} of {len(order)} echoes", loc="left", fontsize=10, wrap=True)
     if legend:
         axes.figure.colorbar(dots, ax=axes, label="energy (µJ)", shrink=0.6)
     return dots

@@ -15,16 +15,14 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import avianlidar as al
+from avianlidar._look import species_colours
 from avianlidar.apps.sequences._simulation import TRUTH
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "airport"))
 import tools  # noqa: E402
 
-COLORS = {"herring gull": (204, 0, 102), "crow": (0, 0, 0), "kestrel": (230, 97, 0), "Canada goose": (0, 125, 80),
-          "starling": (120, 60, 200), "pigeon": (0, 110, 190)}
-OTHER = (110, 70, 30)  # colour of other species
-PALE = 0.55  # share of the colours of paths in a mixture with white
+PALE = 0.55  # opacity of paths
 CLUTTER = "0.35"
 STATUSES = ("seen", "missed", "too weak", "hidden", "outside")
 HALF = 550.0  # half of the width of the view from above, m
@@ -88,29 +86,26 @@ def table_of(truth):
     return ("a bird in a scan", *STATUSES), rows
 
 
-def colour_of(name):
-    return np.array(COLORS.get(name, OTHER)) / 255
-
-
 def draw_from_above(made, file):
     """Draws echoes and paths of the birds in the shown scans, and the clutter of the first scan."""
     sequence, species, first = made["sequence"], made["species"], made["echoes"][0]
-    with tools.figure(file, figsize=(11, 9)) as axes:
-        tools.plan(axes, al.Scene(sequence.scenario["scene"]).surfaces.GetBlock(0), "0.6")
+    x, y, _ = first.fields["position"]
+    limits = (x - HALF, x + HALF), (y - HALF, y + HALF)
+    with tools.figure(file, figsize=tools.shape(limits)) as axes:
+        tools.plan(axes, al.Scene(sequence.scenario["scene"]).surfaces.GetBlock(0))
         clutter = np.flatnonzero(~np.isin(first["object_id"], list(species)))
         axes.scatter(*first.points[clutter, :2].T, s=3, color=CLUTTER, label="clutter")
+        colours = species_colours(made["trails"])
         for name, ways in made["trails"].items():
             for way in ways:
-                axes.plot(*way.T, color=1 - PALE * (1 - colour_of(name)), linewidth=0.8)
+                axes.plot(*way.T, color=colours[name], alpha=PALE, linewidth=0.8)
             own = [bird for bird, its in species.items() if its == name]
             places = np.concatenate([echoes.points[np.isin(echoes["object_id"], own)] for echoes in made["echoes"]])
-            axes.plot(*places[:, :2].T, "o", color=colour_of(name), markersize=4, label=f"{name}: {len(places)}",
+            axes.plot(*places[:, :2].T, "o", color=colours[name], markersize=4, label=f"{name}: {len(places)}",
                       zorder=3)
-        x, y, _ = first.fields["position"]
         axes.plot(x, y, "r+", markersize=12, markeredgewidth=2.5, zorder=4)
         scans = len(made["echoes"])
-        axes.set(xlim=(x - HALF, x + HALF), ylim=(y - HALF, y + HALF), aspect="equal", xlabel="east (m)",
-                 ylabel="north (m)")
+        axes.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="east (m)", ylabel="north (m)")
         axes.set_title(f"{scans} scans in {scans / sequence.sensor.rotation_rate:g} s: points and paths of birds, "
                        "and clutter of the first scan", loc="left")
         axes.legend(loc="upper left", title="points")

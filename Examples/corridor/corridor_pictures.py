@@ -110,5 +110,5 @@ def draw(scene, scan, echoes, built, options):
             file = options.out / f"{name}.png"
             area_view(file, scene, echoes, f"{title}, seen from the lidar; {words}", target, angle)
     with tools.figure(options.out / "top.png", figsize=(13, 5)) as axes:
-        tools.from_above(axes, scene, echoes, tools.extent(scene, echoes, 0.05), f"From above, {words}")
+        tools.from_above(axes, scene, echoes, tools.extent(scene, echoes, 0.05), f"From above, {words}", scan=scan)
     tools.range_images(options.out / "range.png", scan, words)

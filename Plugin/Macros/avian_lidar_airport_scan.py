@@ -16,7 +16,7 @@ import math
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, frame, free_name, hide_scans, how_to_move, lidar_place, neighbour, run, say, say_place, show,
-    show_sensor, show_surfaces, start, surfaces_and_tree)
+    show_landmarks, show_sensor, show_surfaces, start, surfaces_and_tree)
 
 TITLE = "airport scan"
 WIDE = 50e3  # m, extent from which on surfaces may be in millimetres
@@ -68,6 +68,7 @@ def show_scan(surfaces, tree, beams, echoes, view, colour, elevation=CAMERA_ELEV
         colour(echoes, view)
     show(echoes, view, Representation="Points", PointSize=ECHO_SIZE)
     look(view, beams, tree, echoes, seen, elevation)
+    show_landmarks(tree, beams, view)
 
 
 def scan(surfaces=None, view=None):

@@ -15,7 +15,7 @@ In ParaView: select surfaces, or nothing, and click the button in the toolbar. I
 from paraview import simple  # first: lets Python find avian_lidar_plugin
 from avian_lidar_plugin import (
     ENERGY_COLOURS, SPECIES_COLOURS, frame, free_name, ground_below, hide_scans, lidar_place, neighbour, run, say_place,
-    show, show_sensor, show_surfaces, start, surfaces_and_tree, update_first_step)
+    show, show_landmarks, show_sensor, show_surfaces, start, surfaces_and_tree, update_first_step)
 
 TITLE = "birds over the airport"
 REVOLUTIONS = 10
@@ -87,8 +87,10 @@ def scan(view=None, surfaces=None, revolutions=REVOLUTIONS, trail_width=TRAIL_WI
     colour(echoes, view)
     show(echoes, view, Representation="Points", PointSize=CLUTTER_SIZE)
     simple.Hide(movers, view)
+    simple.GetDisplayProperties(echoes, view).SetScalarBarVisibility(view, False)  # one legend at a time
     birds = show_birds(BIRDS, tracks, echoes, view, trail_width)
     frame(view, 0.0, CAMERA_ELEVATION, (x - WEST, x + EAST, y - SIDE, y + SIDE, ground, ground + 20.0))
+    show_landmarks(tree, beams, view)
     simple.SetActiveSource(echoes)
     say_place(TITLE, tree, beams)
     return tracks, beams, echoes, birds

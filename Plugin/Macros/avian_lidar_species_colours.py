@@ -49,7 +49,7 @@ def colour(sources, view=None, **properties):
     table.IndexedColors = [value for number in sorted(species) for value in colour_of_species(number)]
     table.IndexedOpacities = [1.0] * len(species)
     bar = legend(table, view, "species")
-    bar.WindowLocation = "Upper Right Corner"
+    bar.WindowLocation = "Lower Right Corner"
     for tracks in sources:
         simple.GetDisplayProperties(simple.OutputPort(tracks, 1), view).SetScalarBarVisibility(view, True)
 

@@ -3,13 +3,16 @@
 use the same file."""
 import json
 import pathlib
+from collections.abc import Iterable
+
+from . import vtkAvianLidar as _wrapped
 
 _LOOK = json.loads(pathlib.Path(__file__).with_name("look.json").read_text(encoding="utf-8"))
 # Colour of each class. Each pair of colours is at least 14 apart in CIELAB, and at least 7 for eyes without the cones of
 # long or of middle wavelengths.
 CLASSES: dict[str, str] = _LOOK["classes"]
 GROUND: tuple[str, ...] = tuple(_LOOK["ground"])  # classes on the ground, from below
-SPECIES: tuple[str, ...] = tuple(_LOOK["species"])  # ColorBrewer's Dark2, which differs from surfaces
+SPECIES: tuple[str, ...] = tuple(_LOOK["species"])  # by Okabe and Ito, and a brown: at least 17 apart in CIELAB for all eyes
 UNKNOWN: str = _LOOK["unknown"]
 
 
@@ -24,3 +27,10 @@ def scale_of(most: float) -> tuple[str, float]:
     """The unit in which an energy (J) is at least 1, and the number of these units in a joule."""
     units = _LOOK["units_of_energy"]
     return next(((unit, scale) for unit, scale in units.items() if most * scale >= 1), ("J", 1.0))
+
+
+def species_colours(names: Iterable[str]) -> dict[str, str]:
+    """The colour of each species, in the order of the built-in species, and of others in the order of their names."""
+    known = _wrapped.vtkAvianLidarBirdSource().GetKnownSpecies().splitlines()
+    order = [*known, *sorted({*names} - {*known})]
+    return {name: SPECIES[number % len(SPECIES)] for number, name in enumerate(order)}

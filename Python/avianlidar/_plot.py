@@ -99,8 +99,46 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
     return axes
 
 
-def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
+MOST_NAMES = 8  # objects with names in a range image
+
+
+def _crop(axes, x, y, shown) -> None:
+    """Limits the axes to what returns, with room for names above."""
+    for values, ends, set_limits, room in ((x, shown.any(axis=0), axes.set_xlim, 0.02), (y, shown.any(axis=1),
+                                                                                         axes.set_ylim, 0.08)):
+        step = 0.5 * float(np.median(np.diff(values))) if len(values) > 1 else 0.5
+        low, high = values[np.flatnonzero(ends)[[0, -1]]] + (-step, step)
+        whole = values[0] - step, values[-1] + step
+        margin = room * (high - low) + 2.0 * step
+        set_limits(max(low - margin, whole[0]), high + margin if set_limits == axes.set_ylim else
+                   min(high + margin, whole[1]))
+
+
+def _mark(axes, objects, fields, x, y) -> None:
+    """Marks birds by circles, and names the objects with the most pixels that have a name of their own."""
+    names, classes = (list(fields.get(name, ())) for name in ("object_names", "object_classes"))
+    birds = [number for number, word in enumerate(classes) if word == "bird"]
+    rows, columns = np.nonzero(np.isin(objects, birds))
+    if len(rows):
+        axes.plot(x[columns], y[rows], "o", markerfacecolor="none", markeredgecolor="black", markersize=9, label="bird")
+        axes.legend(loc="upper right")
+    numbers, counts = np.unique(objects[objects >= 0], return_counts=True)
+    taken: list[tuple[float, float]] = []  # middle and half width
+    for number in numbers[np.argsort(-counts, kind="stable")]:
+        if (number < len(names) and number not in birds and len(taken) < MOST_NAMES
+                and _wrapped.vtkAvianLidarLandmarks.IsOwnName(names[number])):
+            rows, columns = np.nonzero(objects == number)
+            at, half = float(np.median(x[columns])), 0.005 * len(names[number]) * float(np.ptp(axes.get_xlim()))
+            if all(abs(at - other) > half + width for other, width in taken):  # else two names would overlap
+                taken.append((at, half))
+                top = y[rows.max()] + (0.5 * (y[1] - y[0]) if len(y) > 1 else 0.5)
+                axes.annotate(names[number], (at, top), (0, 2), textcoords="offset points", ha="center",
+                              va="bottom", fontsize=8, annotation_clip=True)
+
+
+def plot_range_image(scan, array: str = "distance_m", axes=None, names: bool = True, **options):
     """Draws the range image of a scan with Matplotlib: azimuth (degrees from north, clockwise) by elevation (degrees).
+    Arrays of echoes are drawn where something returns, which limits the axes.
 
     array    `distance_m` (m), `energy` (in a unit that fits, such as microjoules, in the colours of
              vtkAvianLidarHSBColorMap between the limits of the sensor, logarithmic if the limits are decades apart),
@@ -108,6 +146,7 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
              (`nodes_visited`, `candidates`, `rays_traced`), its `skipped_bound` (J), or any point array of the echoes,
              taken from the strongest echo of each beam
     axes     axes of Matplotlib to draw into; default: new axes
+    names    whether birds and named objects are marked in arrays of echoes
     options  options of Matplotlib's `pcolormesh`
 
     Returns the axes. Arrays of echoes leave beams without an echo blank.
@@ -127,6 +166,10 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, **options):
     y, up = _axis(image["row_elevations"], "elevation", "deg", "channel")
     mesh = axes.pcolormesh(x, y, values, **{"shading": "nearest", "rasterized": True, **options})
     axes.set(xlabel=across, ylabel=up)
+    if array in echoes and (image["echo"] >= 0).any():
+        _crop(axes, x, y, image["echo"] >= 0)
+        if names:
+            _mark(axes, image["object_id"], echoes.fields, x, y)
     if array not in ("object_id", "status"):
         axes.figure.colorbar(mesh, ax=axes, label=label)
     return axes

@@ -13,7 +13,7 @@ from .apps.coverage._networks import (Network, exchange, exhaustive, greedy, ran
                                       values_of, weights_of)
 from .apps.places._candidates import MOST_CANDIDATES, SAME_PLACE, candidates, ground_of, is_near, lattice
 from .apps.places._geojson import read_outlines, read_runways, to_enu, to_geodetic, with_other_heights, write_sites
-from .apps.places._regions import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, APPROACH_LOWEST, LETTERS,
+from .apps.places._regions import (APPROACH_HALF_WIDTH, APPROACH_HEIGHT, APPROACH_LENGTH, APPROACH_LOWEST,
                                    SPREADS, STRIP_HALF_WIDTH, STRIP_HEIGHTS, WINDS, Runway, by_kind, end_names,
                                    places_by_region, region_heights, region_names, region_outlines, rounded,
                                    runway_outline, strips_and_approaches, wind)

@@ -19,7 +19,7 @@ from faults import SOURCE, planted
 
 MOST = float(re.search(r"^MOST = ([\d.]+)", (SOURCE / "Testing/Python/pictures.py").read_text("utf-8"), re.M)[1])
 TESTS = "TestExamplePictures|TestImage|Plugin-Test(Pipeline|Macros-more)$"
-ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline)"
+ENERGIES = "^(Example(Airport|Corridor|Paper)|TestImageEcho|TestPipeline|TestFirstView)"
 OUTPUT, SCAN = "Filters/Private/Echoes/vtkAvianLidarEchoOutput.cxx", "Filters/Kernel/Scan/Scan.cxx"
 BAR, NOTHING = "axes.figure.colorbar(", "(lambda *_, **__: None)("
 # Name, baselines in which it can occur, and for each file what is replaced by what.
@@ -36,10 +36,17 @@ CHANGES = (
         ("Testing/Cxx/TestImages.h", "    this->renderer->AddActor2D(bar);\n", ""),
         ("Testing/Cxx/TestImages.h", "  window.renderer->AddActor2D(legend);\n", ""),
         ("Testing/Plugin/TestPipeline.py", "points.SetScalarBarVisibility(view, True)", "pass"),
-        ("Plugin/Macros/avian_lidar_coverage.py", "BarVisibility(view, True)", "BarVisibility(view, False)"),
+        *((f"Plugin/Macros/avian_lidar_{name}.py", "BarVisibility(view, True)", "BarVisibility(view, False)")
+          for name in ("coverage", "energy_colours", "species_colours")),
         ("Python/avianlidar/_plot.py", "axes.figure.colorbar(mesh,", NOTHING + "mesh,"),
         ("Examples/airport/tools.py", BAR, NOTHING), ("Examples/corridor/corridor_pictures.py", BAR, NOTHING),
-        ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))))
+        ("Examples/birds/birds_over_airport.py", "axes.legend(", NOTHING))),
+    ("no names, rings and beams", "^TestFirstView|^ExampleAirport-top", (
+        ("Filters/vtkAvianLidarLandmarks.cxx", "drawings[port]->Fill(", "Drawing().Fill("),)),
+    ("hues of classes", "^TestFirstView|^ExampleAirport(32)?-(top|close)|^ExamplePaper-airport|^TestCoverageImage.png", (
+        ("Python/avianlidar/look.json", '"terminal": "#db9c95"', '"terminal": "#b39ad0"'),)),
+    ("hues of species", "^TestFirstView-birds|^ExampleBirds", (
+        ("Python/avianlidar/look.json", '"species": ["#0072b2"', '"species": ["#009e73"'),)))
 
 
 def drawn(build):

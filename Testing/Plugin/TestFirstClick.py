@@ -19,14 +19,14 @@ SCENE = os.path.join(SOURCE_DIR, "Examples", "airport", "scene", "hongqiao.lidar
 WINDOW = "pqClientMainWindow"
 APPLY = "propertiesDock/propertiesPanel/Accept"
 AIRPORT = {"Airport Hongqiao", "Collision tree", "Edges"}
-BIRDS = {"Birds", "Gulls", "Crows", "Starlings", "Echoes of gulls", "Echoes of crows", "Echoes of starlings"}
+BIRDS = {"Landmarks", "Birds", "Gulls", "Crows", "Starlings", "Echoes of gulls", "Echoes of crows", "Echoes of starlings"}
 # Names in the pipeline after the first click on each macro.
-MACROS = {"airport_scan": AIRPORT | {"Airport 16", "Scan"},
+MACROS = {"airport_scan": AIRPORT | {"Airport 16", "Landmarks", "Scan"},
           "birds_over_the_airport": AIRPORT | BIRDS | {"Search 905", "Scan with birds"},
           "birds_tracked": AIRPORT | BIRDS
           | {"Search 905", "Scan with birds", "Clutter filter", "Clutter", "What is left", "Tracker", "Tracks"},
           "coverage": AIRPORT | {"Search 905", "Coverage map", "Coverage at 30 m", "Probable", "Every other scan"},
-          "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog"}}
+          "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog", "Landmarks"}}
 # Buttons of the toolbar, and those that need no selection.
 ALWAYS = ("airport_scan", "birds_over_the_airport", "coverage")
 BUTTONS = (*ALWAYS, "energy_colours", "status_colours", "filter")

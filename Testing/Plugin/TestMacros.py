@@ -139,7 +139,8 @@ class Macros(Case):
         for source in [*simple.GetSources().values()]:
             simple.Delete(source)
         self.assertEqual(run(AIRPORT), "")
-        self.assertEqual(self.names(), ["Airport 16", "Airport Hongqiao", "Collision tree", "Edges", "Scan"])
+        self.assertEqual(self.names(), ["Airport 16", "Airport Hongqiao", "Collision tree", "Edges", "Landmarks",
+                                        "Scan"])
         scan, beams = find("Scan", "Airport 16")
         self.assertEqual((simple.GetActiveSource(), list(beams.Position)), (scan, [0, 0, 3]))
         self.check_view()
@@ -333,7 +334,7 @@ class Macros(Case):
         table = simple.GetColorTransferFunction("semantic_label")
         bird = list(table.Annotations).index("bird") // 2
         colour = [round(255 * value) for value in table.IndexedColors[3 * bird : 3 * bird + 3]]
-        self.assertEqual((table.Annotations[2 * bird], colour), ("99", [215, 0, 110]))
+        self.assertEqual((table.Annotations[2 * bird], colour), ("99", [231, 41, 138]))
 
     def test_a_beam_in_the_air_of_its_scan(self):
         run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))
@@ -348,6 +349,19 @@ class Macros(Case):
 
 class MoreMacros(Case):
     """Takes minutes."""
+
+    def check_first_view(self, macro, name):
+        self.view.ViewSize = [900, 600]
+        self.assertEqual(run(macro), "")
+        simple.SaveScreenshot(os.path.join(OUTPUT_DIR, name), self.view, ImageResolution=[900, 600])
+        compare(name)
+
+    def test_first_view(self):
+        """Edges, rings, names, beams, echoes, and a legend."""
+        self.check_first_view(AIRPORT, "TestFirstView.png")
+
+    def test_first_view_of_birds(self):
+        self.check_first_view(BIRDS, "TestFirstView-birds.png")
 
     def test_coverage(self):
         """The probability on a slice under a surface, in the view; the reasons with words and colours, in the other."""

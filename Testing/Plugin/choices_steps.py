@@ -94,7 +94,7 @@ def wizard():
     assert {*sensors} >= set.union(*(makers[maker] for maker in makers if maker not in (None, "assumed"))), sensors
     yield from ask("FinishButton")
     assert names() == ["Airport Hongqiao", "Birds", "Collision tree", "Echoes of herring gull", "Edges", "Herring gull",
-                       "Scan", "Search 905"], names()
+                       "Landmarks", "Scan", "Search 905"], names()
     assert list(simple.GetAnimationScene().TimeKeeper.TimestepValues) == [2.0 * k for k in range(10)]
     assert points_of(simple.FindSource("Echoes of herring gull")) > 0
     assert simple.FindSource("Scan").MeteorologicalVisibility == 23000
@@ -111,7 +111,7 @@ def wizard():
         file.write("v -10 60 0\nv 10 60 0\nv 10 60 10\nv -10 60 10\nf 1 2 3\nf 1 3 4\n")
     yield from ask("FinishButton", Sensor=VLP16, Number=3, Species="crow", Scene=BOX)
     own = [name for name in names() if "crow" not in name.lower()]
-    assert own == sorted(["Birds", "Collision tree", "Edges", "Scan", VLP16, "box"]), own
+    assert own == sorted(["Birds", "Collision tree", "Edges", "Landmarks", "Scan", VLP16, "box"]), own
     yield from delete_all()
 
 

@@ -10,12 +10,12 @@ import unittest
 from unittest import mock
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 
 import avianlidar as al
 from avianlidar import _disk
-from cloudtools import add_array, cloud
-from echotools import InFolder, copy_of
+from cloudtools import add_array, add_field, cloud
+from echotools import InFolder, box, copy_of
 from helpertools import WALL, same, warned
 
 
@@ -236,6 +236,31 @@ class Pictures(unittest.TestCase):
         self.assertEqual(mesh.to_rgba(3)[:3], (0.84, 0.37, 0))
         with self.assertRaisesRegex(KeyError, "'hue' is not known; .*energy"):
             self.scan.plot_range_image("hue")
+
+    def test_what_returns_fills_the_picture_and_has_names(self):
+        """A wall with a name and a bird before it: limits of the axes, the name above the wall, a circle on the bird."""
+        blocks = vtkMultiBlockDataSet()
+        for number, (block, word) in enumerate(((box((40, 0, 0.5), (1, 10, 0.5), "Wall", "Old wall"), "structure"),
+                                                (box((20, 5, 0.5), (0.3, 0.3, 0.3), "Plumage", "gull"), "bird"))):
+            add_field(block, "object_classes", [word])
+            blocks.SetBlock(number, block)
+        scan = al.Scan(al.Scene(blocks), al.Sensor(azimuth_step=1))
+        image = scan.range_image()
+        there, axes = image["echo"] >= 0, scan.plot_range_image()
+        for limits, ends, values in ((axes.get_xlim(), there.any(axis=0), image["column_azimuths"]),
+                                     (axes.get_ylim(), there.any(axis=1), image["row_elevations"])):
+            inside = values[ends]
+            self.assertTrue(limits[0] <= inside.min() and inside.max() <= limits[1])
+            self.assertLess(limits[1] - limits[0], 0.8 * np.ptp(values))
+        (name,), (circles,) = axes.texts, axes.lines
+        rows, columns = np.nonzero(image["object_id"] == scan.scene.objects.index("Old wall"))
+        self.assertEqual((name.get_text(), name.xy[0]), ("Old wall", np.median(image["column_azimuths"][columns])))
+        self.assertGreater(name.xy[1], image["row_elevations"][rows.max()])
+        rows, columns = np.nonzero(image["object_id"] == scan.scene.objects.index("gull"))
+        self.assertTrue(len(rows))
+        np.testing.assert_array_equal(circles.get_xydata(), np.stack(
+            [image["column_azimuths"][columns], image["row_elevations"][rows]], axis=1))
+        self.assertEqual(len(scan.plot_range_image(names=False).texts), 0)
 
     def test_maps_and_their_units(self):
         echoes, axes = self.scan.echoes, self.scan.plot_map("incidence_angle")

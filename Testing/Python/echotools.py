@@ -142,7 +142,7 @@ def array(data, name):
 def arrays(data):
     """All point arrays and the points, sorted by beam and return, as {name: numpy array}."""
     points = data.GetPointData()
-    names = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
+    names = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays()) if points.GetArray(i)]  # numbers
     result = {name: array(data, name) for name in names}
     if data.GetNumberOfPoints():
         result["points"] = numpy_support.vtk_to_numpy(data.GetPoints().GetData())

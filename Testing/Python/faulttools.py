@@ -213,6 +213,7 @@ CLASSES = [
     ("ClutterFilter", {}, (produced_echoes, [PLACE[0]])),
     ("UnitNames", {}, (produced_echoes, NOTHING)),
     ("BeamView", {"BeamId": 9}, (produced_beams, NOTHING), (produced_surfaces, NOTHING)),
+    ("Landmarks", {}, (produced_beams, NOTHING), (produced_surfaces, NOTHING)),
     ("Coverage", {}, (lambda: produced_beams(18, 1), NOTHING), (produced_surfaces, NOTHING)),
     ("Medium", {"Shape": al.vtkAvianLidarMedium.SHAPE_SURFACE}, (produced_surfaces, NOTHING)),
     ("Tracks", {"Pattern": al.vtkAvianLidarTracks.PATTERN_LINES},

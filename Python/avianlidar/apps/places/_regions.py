@@ -9,6 +9,8 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
+from ... import vtkAvianLidar as _wrapped
+
 # Dimensions of strips and approaches: assumed, simplified from obstacle limitation surfaces of ICAO Annex 14.
 STRIP_HALF_WIDTH = 150.0  # distance to either side of a runway's middle, m
 STRIP_HEIGHTS = (0.5, 60.0)  # least and greatest height, m
@@ -19,7 +21,6 @@ APPROACH_LOWEST = 0.02  # least height as a share of the height
 KINDS = {"strip": "strips", "approach": "approaches"}  # kinds by the first word of a region's name
 SPREADS = ("distance", "area")  # distributions of places over a region
 WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
-LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 Places = Tuple[np.ndarray, Dict[str, np.ndarray]]  # n x 3, m, and the numbers of the places in each region
 
 
@@ -93,17 +94,8 @@ def end_names(runways: Sequence[Runway]) -> List[Tuple[str, str]]:
     """The designators of the start and the end of each runway, such as ("08", "26"). The designator of an end gives the
     direction in which aircraft land at this end. Ends of a runway without two designators are named by the wind:
     ("grass west", "grass east")."""
-    names = []
-    for runway in runways:
-        axis, _ = runway.axis()
-        found = re.findall(r"(?<![0-9])([0-9]{1,2}[A-Z]?)(?![0-9A-Za-z])", runway.name)
-        tens = [int(name.rstrip(LETTERS)) for name in found]
-        if len(found) == 2 and (tens[0] - tens[1]) % 36 == 18:
-            off = 10.0 * tens[0] - math.degrees(math.atan2(axis[0], axis[1]))
-            first, second = found if abs((off + 180.0) % 360.0 - 180.0) <= 90.0 else found[::-1]
-            names.append((first, second))
-        else:
-            names.append((f"{runway.name} {wind(-axis)}", f"{runway.name} {wind(axis)}"))
+    end = _wrapped.vtkAvianLidarLandmarks.EndName
+    names = [(end(runway.name, *-runway.axis()[0]), end(runway.name, *runway.axis()[0])) for runway in runways]
     known = [name for pair in names for name in pair]
     return [pair if all(known.count(name) == 1 for name in pair) else (f"{pair[0]} ({number})", f"{pair[1]} ({number})")
             for number, pair in enumerate(names, 1)]

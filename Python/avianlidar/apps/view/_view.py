@@ -17,13 +17,12 @@ from ... import vtkAvianLidar as _wrapped
 from ..._cloud import Cloud, as_numpy, field_values, triangles_of
 from ..._disk import write_whole
 from ..._files import numbers_of
-from ..._look import GROUND, SPECIES, UNKNOWN, class_colour, scale_of
+from ..._look import GROUND, UNKNOWN, class_colour, scale_of, species_colours
 from ..._pipeline import Error, callers_level, update
 from ..._plot import hue_colors
 from ..._scene import Scene
 from ..inputs._json import naming
 from ..inputs._tables import read_table
-from ..places._regions import Runway, end_names
 from ..sequences._labels import CLASSES as LABELS
 
 SCRIPTS = pathlib.Path("/usr/share/javascript/three")  # where Debian's libjs-three puts its files
@@ -32,9 +31,6 @@ MOST_BYTES = 20_000_000  # size of a page
 MOST_ECHOES = 1_200_000  # echoes of a page; of more, a random choice is shown
 MOST_EDGES = 100_000  # lines along edges of buildings
 MOST_BEAMS = 400  # drawn beams
-MOST_NAMES = 12  # names of buildings in the picture
-SLENDER = 0.1  # greatest width of a runway, as a share of its length
-WIDE = 0.25  # extent of a thing too wide for a name, as a share of the scene's extent
 SHARP = 30.0  # angle between faces from which on their common edge is drawn, deg
 
 
@@ -96,36 +92,12 @@ def _edges(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 def _labels(scene: Scene) -> List[Dict[str, Any]]:
     """Names of runway ends, and of the largest buildings that have a name of their own."""
-    data = scene._merged()
-    points, cells = triangles_of(data)
-    fields = field_values(data)
-    of = as_numpy(data.GetCellData().GetArray("object_id"))
-    runways, buildings = [], []
-    order = np.argsort(of, kind="stable")
-    words = list(zip(fields.get("object_names", ()), fields.get("object_classes", ())))
-    limits = np.searchsorted(of[order], np.arange(len(words) + 1))
-    for (name, word), begin, end in zip(words, limits, limits[1:]):
-        corners = points[np.unique(cells[order[begin:end]])]
-        if not len(corners):
-            continue
-        if word == "runway":
-            flat = corners[:, :2] - corners[:, :2].mean(axis=0)
-            axis = np.linalg.svd(flat, full_matrices=False)[2][0]
-            along, middle = flat @ axis, corners[:, :2].mean(axis=0)
-            (x0, y0), (x1, y1) = middle + axis * along.min(), middle + axis * along.max()
-            across = np.ptp(flat @ (-axis[1], axis[0]))
-            if across < SLENDER * np.ptp(along):  # else there are several runways in one object
-                runways.append((Runway(re.sub("(?i)^runway ", "", name), (x0, y0), (x1, y1), 0.0), corners[:, 2].max()))
-        elif word not in GROUND and not re.fullmatch(r"(?i)(building|hangar|structure|house|tree)s?( \d+)?", name):
-            size = corners.max(axis=0) - corners.min(axis=0)
-            if (size[:2] > WIDE * np.ptp(points[:, :2], axis=0)).any():
-                continue
-            top = (corners.max(axis=0) + corners.min(axis=0)) / 2
-            buildings.append((float(size[0] * size[1]), name, [*top[:2].tolist(), float(corners[:, 2].max())]))
-    found = [{"text": name, "at": [*end, float(height)]}
-             for (runway, height), names in zip(runways, end_names([runway for runway, _ in runways]))
-             for name, end in zip(names, (runway.start, runway.end))]
-    return found + [{"text": name, "at": place} for _, name, place in sorted(buildings, reverse=True)[:MOST_NAMES]]
+    landmarks = _wrapped.vtkAvianLidarLandmarks()
+    landmarks.SetInputDataObject(1, scene._merged())
+    update(landmarks)
+    names = landmarks.GetOutput(2)
+    return [{"text": names.GetPointData().GetAbstractArray("name").GetValue(i), "at": [*names.GetPoint(i)]}
+            for i in range(names.GetNumberOfPoints())]
 
 
 def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generator) -> Dict[str, Any]:
@@ -201,7 +173,8 @@ def _sequence(folder: pathlib.Path) -> Dict[str, Any]:
     if not len(times):
         raise Error(f"{file.with_name('times.txt')}: is empty, expected the time of each scan")
     species = sorted({bird["species"] for bird in birds.values()})
-    colours = {name: SPECIES[number % len(SPECIES)] for number, name in enumerate(species)}
+    known = species_colours(species)
+    colours = {name: known[name] for name in species}
     others: Dict[str, Dict[str, Any]] = {}
     for number, time in enumerate(times.tolist()):
         boxes = file.parent / "boxes" / f"{number:06d}.txt"
