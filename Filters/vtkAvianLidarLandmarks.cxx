@@ -30,6 +30,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -66,23 +67,11 @@ std::string Wind(double east, double north)
 /// Designators in a name, such as "09" and "27L": one or two digits, and a letter.
 std::vector<std::string> Designators(const std::string& name)
 {
-  const auto is = [&name](std::size_t i, int (*kind)(int))
-  { return i < name.size() && kind(static_cast<unsigned char>(name[i])) != 0; };
+  static const std::regex pattern("(?:^|[^0-9])([0-9]{1,2}[A-Z]?)(?![0-9A-Za-z])");
   std::vector<std::string> found;
-  for (std::size_t i = 0; i < name.size(); ++i)
+  for (std::sregex_iterator one(name.begin(), name.end(), pattern), end; one != end; ++one)
   {
-    std::size_t end = i;
-    while (is(end, std::isdigit))
-    {
-      ++end;
-    }
-    const std::size_t digits = end - i;
-    end += digits > 0 && is(end, std::isupper) ? 1 : 0;
-    if (digits > 0 && digits <= 2 && !is(end, std::isalnum))
-    {
-      found.push_back(name.substr(i, end - i));
-    }
-    i = digits > 0 ? std::max(i, end - 1) : i;
+    found.push_back((*one)[1]);
   }
   return found;
 }
