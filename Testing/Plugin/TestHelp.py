@@ -17,13 +17,13 @@ PROXIES = os.path.join(os.path.dirname(os.path.dirname(QCH)), "AvianLidarProxies
 
 
 def proxies():
-    """Pages that there must be: group.name of every proxy in the plugin's XML that a user meets."""
+    """Pages that there must be: group.name of every proxy in the plugin's XML that menus show."""
     pages = set()
     folders = [os.path.join(SOURCE_DIR, "Plugin", kind) for kind in ("Filters", "IO")]
     files = [os.path.join(folder, file) for folder in folders for file in os.listdir(folder)]
     for file in (*files, PROXIES):
         for group in ElementTree.parse(file).getroot().iter("ProxyGroup"):
-            if not group.get("name").startswith("internal"):
+            if not group.get("name").startswith(("internal", "representations")):
                 pages |= {f"{group.get('name')}.{proxy.get('name')}.html" for proxy in group}
     return pages
 
