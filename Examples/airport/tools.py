@@ -17,6 +17,7 @@ import avianlidar as al
 from avianlidar._cloud import triangles_of
 from avianlidar._look import GROUND, class_colour
 from avianlidar._pipeline import update
+from avianlidar._plot import fonts, shortened
 
 LARGEST = sys.float_info.max
 STATUS = ("with echoes below saturation", "that meet nothing", "too weak to be perceived", "saturated",
@@ -207,8 +208,8 @@ def landmarks(axes, scan, limits):
             if not (west < x < east and 0.02 < (y - south) / (north - south) < 0.98):
                 continue
             side = ("left", "center", "center", "right")[int(np.clip(4 * (x - west) / (east - west), 0, 3))]
-            axes.text(x, y, texts.GetValue(i), ha=side, va="center", fontsize=8, clip_on=True, zorder=5,
-                      bbox={"facecolor": "white", "alpha": 0.6, "linewidth": 0, "pad": 1})
+            axes.text(x, y, shortened(texts.GetValue(i)), ha=side, va="center", fontsize=8, clip_on=True, zorder=5,
+                      parse_math=False, family=fonts(), bbox={"facecolor": "white", "alpha": 0.6, "linewidth": 0, "pad": 1})
 
 
 def around(points, margin):

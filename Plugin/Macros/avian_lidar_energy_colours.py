@@ -52,9 +52,9 @@ def steps(low, high):
 
 
 def unit_of(most):
-    """The unit in which an energy (J) is at least 1, and the number of these units in a joule."""
-    units = data("look.json")["units_of_energy"].items()
-    return next(((unit, scale) for unit, scale in units if most * scale >= 1), ("J", 1.0))
+    """The unit in which an energy (J) is at least 1, else the smallest, and the number of these units in a joule."""
+    units = [*data("look.json")["units_of_energy"].items()]
+    return next(((unit, scale) for unit, scale in units if most * scale >= 1), units[-1])
 
 
 def is_image(source):

@@ -24,9 +24,14 @@ def class_colour(word: str) -> str:
 
 
 def scale_of(most: float) -> tuple[str, float]:
-    """The unit in which an energy (J) is at least 1, and the number of these units in a joule."""
+    """The unit in which an energy (J) is at least 1, else the smallest, and the number of these units in a joule."""
     units = _LOOK["units_of_energy"]
-    return next(((unit, scale) for unit, scale in units.items() if most * scale >= 1), ("J", 1.0))
+    return next(((unit, scale) for unit, scale in units.items() if most * scale >= 1), [*units.items()][-1])
+
+
+def on_surfaces(colour: str) -> str:
+    """A darker colour, for points on surfaces of this colour."""
+    return "#" + "".join(f"{int(0.55 * int(colour[i:i + 2], 16)):02x}" for i in (1, 3, 5))
 
 
 def species_colours(names: Iterable[str]) -> dict[str, str]:

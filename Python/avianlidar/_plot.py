@@ -100,18 +100,45 @@ def plot_map(cloud, array: str = "energy", axes=None, **options):
 
 
 MOST_NAMES = 8  # objects with names in a range image
+LONGEST = 40  # letters of a name in a picture
+CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
 
 
-def _crop(axes, x, y, shown) -> None:
-    """Limits the axes to what returns, with room for names above."""
-    for values, ends, set_limits, room in ((x, shown.any(axis=0), axes.set_xlim, 0.02), (y, shown.any(axis=1),
-                                                                                         axes.set_ylim, 0.08)):
-        step = 0.5 * float(np.median(np.diff(values))) if len(values) > 1 else 0.5
-        low, high = values[np.flatnonzero(ends)[[0, -1]]] + (-step, step)
-        whole = values[0] - step, values[-1] + step
-        margin = room * (high - low) + 2.0 * step
-        set_limits(max(low - margin, whole[0]), high + margin if set_limits == axes.set_ylim else
-                   min(high + margin, whole[1]))
+def shortened(name: str) -> str:
+    """A name that leaves room for others."""
+    return name if len(name) <= LONGEST else name[:LONGEST - 1] + "\u2026"
+
+
+def fonts():
+    """Matplotlib's own font, and fonts with Chinese and Japanese letters as far as there are."""
+    from matplotlib import font_manager
+    known = {font.name for font in font_manager.fontManager.ttflist}
+    return ["DejaVu Sans", *(name for name in CJK if name in known)]
+
+
+def _borders(values):
+    """Borders between positions that rise."""
+    if len(values) < 2:
+        return np.array([values[0] - 0.5, values[0] + 0.5])
+    inner = 0.5 * (values[1:] + values[:-1])
+    return np.concatenate([[2 * values[0] - inner[0]], inner, [2 * values[-1] - inner[-1]]])
+
+
+def _crop(axes, x, y, shown, turns: bool) -> float:
+    """Limits the axes to what returns, with room for names above. @param turns whether x is an azimuth
+    @return azimuth at which the drawn turn begins, behind the widest gap, if what returns lies about north, else nan"""
+    columns, rows = x[shown.any(axis=0)], y[shown.any(axis=1)]
+    gaps = np.diff(columns)
+    start = columns[np.argmax(gaps) + 1] if turns and len(gaps) and gaps.max() > 180.0 else np.nan
+    columns = np.where(columns < start, columns + 360.0, columns)
+    for values, ends, set_limits, room in ((x, columns, axes.set_xlim, 0.02), (y, rows, axes.set_ylim, 0.08)):
+        borders = _borders(values)
+        step = 0.5 * float(np.diff(borders).mean())
+        low, high = ends.min() - step, ends.max() + step
+        margin = room * (high - low) + step
+        set_limits(max(low - margin, borders[0]), high + margin if values is y or start == start else
+                   min(high + margin, borders[-1]))
+    return float(start)
 
 
 def _mark(axes, objects, fields, x, y) -> None:
@@ -127,13 +154,14 @@ def _mark(axes, objects, fields, x, y) -> None:
     for number in numbers[np.argsort(-counts, kind="stable")]:
         if (number < len(names) and number not in birds and len(taken) < MOST_NAMES
                 and _wrapped.vtkAvianLidarLandmarks.IsOwnName(names[number])):
-            rows, columns = np.nonzero(objects == number)
-            at, half = float(np.median(x[columns])), 0.005 * len(names[number]) * float(np.ptp(axes.get_xlim()))
+            name, (rows, columns) = shortened(names[number]), np.nonzero(objects == number)
+            (low, high), middle = axes.get_xlim(), float(np.median(x[columns]))
+            half = 0.005 * len(name) * (high - low)
+            at = min(max(middle, low + half), high - half)
             if all(abs(at - other) > half + width for other, width in taken):  # else two names would overlap
                 taken.append((at, half))
-                top = y[rows.max()] + (0.5 * (y[1] - y[0]) if len(y) > 1 else 0.5)
-                axes.annotate(names[number], (at, top), (0, 2), textcoords="offset points", ha="center",
-                              va="bottom", fontsize=8, annotation_clip=True)
+                axes.annotate(name, (at, _borders(y)[rows.max() + 1]), (0, 2), textcoords="offset points", ha="center",
+                              va="bottom", fontsize=8, annotation_clip=True, parse_math=False, family=fonts())
 
 
 def plot_range_image(scan, array: str = "distance_m", axes=None, names: bool = True, **options):
@@ -164,12 +192,16 @@ def plot_range_image(scan, array: str = "distance_m", axes=None, names: bool = T
     options = {**known, **(_status_colours(axes) if array == "status" else {}), **options}
     x, across = _axis(image["column_azimuths"], "azimuth", "deg from north", "column")
     y, up = _axis(image["row_elevations"], "elevation", "deg", "channel")
-    mesh = axes.pcolormesh(x, y, values, **{"shading": "nearest", "rasterized": True, **options})
+    options = {"rasterized": True, **options}
+    mesh = axes.pcolormesh(_borders(x), _borders(y), values, **options)
     axes.set(xlabel=across, ylabel=up)
     if array in echoes and (image["echo"] >= 0).any():
-        _crop(axes, x, y, image["echo"] >= 0)
+        start = _crop(axes, x, y, image["echo"] >= 0, "azimuth" in across)
+        if start == start:  # the columns before the start follow those at the end
+            axes.pcolormesh(_borders(x) + 360.0, _borders(y), values, **options)
+            axes.xaxis.set_major_formatter(lambda at, _: f"{at % 360:g}")
         if names:
-            _mark(axes, image["object_id"], echoes.fields, x, y)
+            _mark(axes, image["object_id"], echoes.fields, np.where(x < start, x + 360.0, x), y)
     if array not in ("object_id", "status"):
         axes.figure.colorbar(mesh, ax=axes, label=label)
     return axes

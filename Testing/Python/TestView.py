@@ -108,11 +108,16 @@ class Page(unittest.TestCase):
     def test_a_measured_distance(self):
         self.set("layer echoes", False)
         self.browser.run("document.getElementById('measure').click()")
+        before = self.browser.pixels().astype(int)
         self.said_at((-30.0, 0.0, 0.0))
         said = self.said_at((30.0, 0.0, 0.0))
+        drawn = np.abs(self.browser.pixels().astype(int) - before).max(axis=2) > 60
         self.browser.run("document.getElementById('measure').click()")
         self.set("layer echoes", True)
         self.assertAlmostEqual(float(said.split()[1]), 60.0, delta=0.5)  # a pixel is 0.2 m
+        (left, row), (right, _) = (map(round, self.pixel_of((x, 0.0, 0.0))) for x in (-30.0, 30.0))
+        line = drawn[row - 3:row + 4, left:right].any(axis=0)
+        self.assertGreater(np.count_nonzero(line), 0.9 * (right - left))
 
     def test_birds_move_with_the_slider(self):
         self.set("time", 1.5)
@@ -132,7 +137,7 @@ class Page(unittest.TestCase):
             pixels = self.browser.pixels()
             return {tuple(row) for row in np.unique(pixels.reshape(-1, 3), axis=0).tolist()}
         from avianlidar._look import CLASSES
-        hangar = tuple(int(CLASSES["hangar"][i:i + 2], 16) for i in (1, 3, 5))
+        hangar = tuple(int(0.55 * int(CLASSES["hangar"][i:i + 2], 16)) for i in (1, 3, 5))  # darker than the wall
         self.set("layer surfaces", False)
         self.set("colouring", "class")
         self.assertIn(hangar, colours())

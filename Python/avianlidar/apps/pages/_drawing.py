@@ -12,12 +12,12 @@ import numpy as np
 
 from ..._disk import write_whole
 from ..._look import SPECIES
+from ..._plot import fonts
 
 PIXELS = 150  # pixels per inch
 WIDTH = 7.0  # width of the text on A4, inches
 HEIGHT = 10.6  # height of the text on A4, inches
 SMALLEST = 8  # size of letters, points
-CJK = ("Noto Sans CJK JP", "WenQuanYi Micro Hei")  # fonts for letters that Matplotlib's own font lacks
 
 
 def require() -> None:
@@ -54,14 +54,12 @@ def drawn(size: Tuple[float, float], work: Callable[[Any], Any], rows: int = 1, 
     """A picture (PNG). @param size inches on paper @param work function that draws into the given axes; with several
     rows or columns, into a list of axes"""
     from cycler import cycler
-    from matplotlib import font_manager, rc_context
+    from matplotlib import rc_context
     from matplotlib.figure import Figure
     content = io.BytesIO()
-    known = {font.name for font in font_manager.fontManager.ttflist}
-    fonts = ["DejaVu Sans", *(name for name in CJK if name in known)]
     style = {"font.size": SMALLEST, **{f"{part}.labelsize": SMALLEST for part in ("axes", "xtick", "ytick")},
              "axes.titlesize": 9, "legend.fontsize": SMALLEST, "grid.alpha": 0.4, "lines.markersize": 4,
-             "axes.prop_cycle": cycler(color=SPECIES), "font.family": fonts,
+             "axes.prop_cycle": cycler(color=SPECIES), "font.family": fonts(),
              "text.parse_math": False}  # names keep their $
     with rc_context(style), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # boxes replace letters that no font has

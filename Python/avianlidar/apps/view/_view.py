@@ -17,9 +17,9 @@ from ... import vtkAvianLidar as _wrapped
 from ..._cloud import Cloud, as_numpy, field_values, triangles_of
 from ..._disk import write_whole
 from ..._files import numbers_of
-from ..._look import GROUND, UNKNOWN, class_colour, scale_of, species_colours
+from ..._look import GROUND, UNKNOWN, class_colour, on_surfaces, scale_of, species_colours
 from ..._pipeline import Error, callers_level, update
-from ..._plot import hue_colors
+from ..._plot import hue_colors, shortened
 from ..._scene import Scene
 from ..inputs._json import naming
 from ..inputs._tables import read_table
@@ -62,13 +62,15 @@ def _surfaces(scene: Scene, centre: np.ndarray) -> Dict[str, Any]:
     layer = np.array([GROUND.index(word) + 1 if word in GROUND else len(GROUND) + 1 for word in words])
     sorting = np.argsort(layer[of], kind="stable")
     cells, of = cells[sorting], of[sorting]
-    edges = _edges(points, cells[layer[of] > len(GROUND)])
+    edges = _edges(points, cells[layer[of] > len(GROUND)]).reshape(-1, 2, 3)
+    about = centre if scene.lidar_position is None else np.array(scene.lidar_position)
+    edges = edges[np.argsort(np.hypot(*(edges[:, 0, :2] - about[:2]).T), kind="stable")]  # the nearest first
     return {"points": _block((points - centre).astype(np.float32)), "cells": _block(cells.astype(np.uint32)),
             "objects": _block(of.astype(np.uint32)), "names": [*names, "surface"],
             "classes": [word or "surface" for word in words], "layers": layer.tolist(),
             "colours": [class_colour(word) for word in words],
-            "edges": _block((edges[:2 * MOST_EDGES] - centre).astype(np.float32)),
-            "edges_left_out": max(0, len(edges) // 2 - MOST_EDGES)}
+            "edges": _block((edges[:MOST_EDGES].reshape(-1, 3) - centre).astype(np.float32)),
+            "edges_left_out": max(0, len(edges) - MOST_EDGES)}
 
 
 def _edges(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -96,8 +98,19 @@ def _labels(scene: Scene) -> List[Dict[str, Any]]:
     landmarks.SetInputDataObject(1, scene._merged())
     update(landmarks)
     names = landmarks.GetOutput(2)
-    return [{"text": names.GetPointData().GetAbstractArray("name").GetValue(i), "at": [*names.GetPoint(i)]}
+    return [{"text": shortened(names.GetPointData().GetAbstractArray("name").GetValue(i)), "at": [*names.GetPoint(i)]}
             for i in range(names.GetNumberOfPoints())]
+
+
+def _on_one_scale(clouds: Iterable[Dict[str, Any]]) -> None:
+    """Gives the energies of all clouds one scale of colours, and each cloud a unit that fits."""
+    found = [one["energy"] for one in clouds if "energy" in one]
+    ends = [end([energy[key] for energy in found], default=1.0) for end, key in ((min, "low"), (max, "high"))]
+    words = ["{1:.3g} {0}".format(unit, end * scale) for end in ends for unit, scale in [scale_of(end)]]
+    for energy in found:
+        unit, scale = scale_of(energy["high"])
+        energy.update(low=energy["low"] * scale, high=energy["high"] * scale, unit=unit, ends=words,
+                      scale=[end * scale for end in ends])
 
 
 def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generator) -> Dict[str, Any]:
@@ -113,10 +126,8 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
         high = fields.get("upper_energy_limit", energy.max(initial=0.0))
         low, high = (float(np.ravel(limit)[0]) for limit in (low, high))
         if 0.0 < low < high < np.inf:
-            unit, scale = scale_of(high)
             whole = np.log(np.clip(energy, low, high) / low) / np.log(high / low)
-            found["energy"] = {"low": low * scale, "high": high * scale, "unit": unit,
-                               "steps": _block(np.rint(65535 * whole).astype(np.uint16))}
+            found["energy"] = {"low": low, "high": high, "steps": _block(np.rint(65535 * whole).astype(np.uint16))}
     if "object_id" in cloud:
         ids, names = cloud["object_id"][kept], list(fields.get("object_names", ()))
         classes = list(fields.get("object_classes", ()))
@@ -124,7 +135,7 @@ def _echoes(cloud: Cloud, name: str, share: float, generator: np.random.Generato
             (ids < 0) | (ids >= len(names)), len(names) + 2, ids)))
         words = [*classes, *["unknown"] * (len(names) - len(classes)), "noise", "air", "unknown"]
         found["objects"] = {"names": [*names, "false alarm", "air", "unknown"], "of": _block(ids.astype(np.uint32)),
-                            "classes": words, "colours": [class_colour(word) for word in words]}
+                            "classes": words, "colours": [on_surfaces(class_colour(word)) for word in words]}
     elif "semantic_label" in cloud:
         labels = cloud["semantic_label"][kept].astype(np.int64)
         known, of = np.unique(labels, return_inverse=True)
@@ -248,6 +259,7 @@ def page(scene: Scene, title: str, echoes: Sequence[Tuple[str, Cloud]] = (), seq
     echoes = [*echoes, *([("scan 0", birds.pop("scan"))] if birds else [])]
     share = min(1.0, MOST_ECHOES / max(1, sum(cloud.number_of_points for _, cloud in echoes)))
     shown = [_echoes(cloud, name, share, generator) for name, cloud in echoes]
+    _on_one_scale(shown)
     lidar = lidar or next((one["lidar"] for one in shown if "lidar" in one), scene.lidar_position)
     data = {"title": title, "centre": centre.tolist(), "bounds": bounds.tolist(), "lidar": lidar,
             "surfaces": _surfaces(scene, centre), "labels": _labels(scene), "echoes": shown,

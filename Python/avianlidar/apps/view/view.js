@@ -215,8 +215,8 @@
       for (let i = 0; i < cloud.count; ++i) {
         let colour = [60, 60, 60];
         if (colouring === "energy" && cloud.energy) {
-          const { low, high } = cloud.of.energy;
-          const share = high > 100 * low ? cloud.energy[i] / 65535 : (energyOf(cloud, i) - low) / (high - low);
+          const [low, high] = cloud.of.energy.scale, energy = energyOf(cloud, i);
+          const share = high > 100 * low ? Math.log(energy / low) / Math.log(high / low) : (energy - low) / (high - low);
           colour = hues[Math.round(share * (hues.length - 1))];
         } else if (colouring === "distance" && cloud.lidar) {
           colour = shares[Math.round(255 * rangeOf(cloud, i) / farthest)];
@@ -265,9 +265,8 @@
     legend.textContent = "";
     const withEnergy = clouds.find((cloud) => cloud.energy);
     if (colouring === "energy" && withEnergy) {
-      const { low, high, unit } = withEnergy.of.energy;
-      scale(legend, `energy of echoes (${unit}${high > 100 * low ? ", logarithmic" : ""})`, data.hues, figures(low, 3),
-        figures(high, 3));
+      const { scale: [low, high], ends } = withEnergy.of.energy;
+      scale(legend, `energy of echoes${high > 100 * low ? " (logarithmic)" : ""}`, data.hues, ...ends);
     } else if (colouring === "distance" && farthest) {
       scale(legend, "distance (m)", data.shades, "0", figures(farthest, 3));
     } else if (colouring === "class") {
@@ -317,8 +316,10 @@
         ends.push(local(cloud.lidar), new THREE.Vector3().fromArray(cloud.places, 3 * i));
       }
     });
-    beams.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(ends), new THREE.LineBasicMaterial({
-      color: 0xd7191c, transparent: true, opacity: 0.25 })));
+    if (ends.length) {
+      beams.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(ends), new THREE.LineBasicMaterial({
+        color: 0xd7191c, transparent: true, opacity: 0.25 })));
+    }
   }
 
   // Movers --------------------------------------------------------------------------------------------------------
@@ -479,18 +480,20 @@
     marks.add(new THREE.Points(new THREE.BufferGeometry().setFromPoints(measured), new THREE.PointsMaterial({ size: 9,
       sizeAttenuation: false, color: 0x000000, depthTest: false })));
     if (measured.length < 2) {
+      marks.children[0].renderOrder = 9; // after the surfaces
       say("Now click the other end.");
       return;
     }
     marks.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(measured), new THREE.LineBasicMaterial({
       color: 0x000000, depthTest: false })));
+    marks.children.forEach((one) => { one.renderOrder = 9; });
     const [a, b] = measured;
     say(`distance ${a.distanceTo(b).toFixed(1)} m, level ${Math.hypot(b.x - a.x, b.y - a.y).toFixed(1)} m, up ` +
       `${(b.z - a.z).toFixed(1)} m`);
   }
   let pressed = null;
-  renderer.domElement.addEventListener("mousedown", (event) => { pressed = [event.clientX, event.clientY]; });
-  renderer.domElement.addEventListener("mouseup", (event) => {
+  renderer.domElement.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+  renderer.domElement.addEventListener("pointerup", (event) => {
     if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 3) {
       return;
     }
