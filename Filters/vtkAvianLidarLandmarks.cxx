@@ -215,6 +215,10 @@ private:
       xy += (p[0] - middle.x) * (p[1] - middle.y);
       yy += (p[1] - middle.y) * (p[1] - middle.y);
     }
+    if (!std::isfinite(xx + yy))
+    {
+      return;
+    }
     const double turn = 0.5 * std::atan2(2.0 * xy, xx - yy);
     const Vec3 axis(std::cos(turn), std::sin(turn), 0.0);
     vtkBoundingBox box; // along, across
@@ -403,6 +407,8 @@ int vtkAvianLidarLandmarks::RequestData(
       {
         Vec3 middle;
         beams->GetPoint(0, &middle.x);
+        const std::string misplaced = checkPosition(middle);
+        vtkAvianLidarRequire(misplaced, "Input port 0, first beam: ");
         AddRings(
           middle, this->RingSpacing, this->NumberOfRings, this->RangeDirection, rings, ranges);
         AddFan(beams, this->RingSpacing, fan);

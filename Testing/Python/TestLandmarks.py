@@ -96,6 +96,18 @@ class Landmarks(unittest.TestCase):
             algorithm.Update()
             self.assertIn(f"{name} is ", said.errors[0])
 
+    def test_places_that_are_not_finite(self):
+        broken = surfaces()
+        broken.GetPoints().SetPoint(0, math.nan, 0, 0)  # of the runway
+        self.assertEqual(list(texts(landmarks(data=broken)[2])), ["Terminal 2", "Old tower"])
+        beams = al.Sensor("Airport16", azimuth_step=30).beams.data
+        beams.GetPoints().SetPoint(0, math.nan, 0, 0)
+        algorithm = vtkAvianLidarLandmarks()
+        algorithm.SetInputDataObject(0, beams)
+        said = Messages(algorithm)
+        algorithm.Update()
+        self.assertIn("Input port 0, first beam: position", said.errors[0])
+
 
 if __name__ == "__main__":
     unittest.main()
