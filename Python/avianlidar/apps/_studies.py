@@ -89,15 +89,15 @@ def track(options) -> None:
     tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
                         dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads,
                         **_changes(options))
+    def page() -> bool:
+        name, folder = next(iter(tracks.folders.items()))
+        return _view.beside(options.out / "view.html", read_scenario(folder / "manifest.json")["scene"], name,
+                            sequence=folder, tracks=options.out / "tracks.csv", tracks_of=name)
     with _goes_on(options.out, "followed/*/*.json", "sequences followed"):
-        card = tracks.write(options.out, ranks, None if ranks.rank else bar)
+        card = tracks.write(options.out, ranks, None if ranks.rank else bar, page)
     if ranks.rank == 0:
         table([("score", *card["names"]), *((row["words"], *row["cells"]) for row in card["overall"])])
-        name, folder = next(iter(tracks.folders.items()))
-        shown = _view.beside(options.out / "view.html", read_scenario(folder / "manifest.json")["scene"], name,
-                             sequence=folder, tracks=options.out / "tracks.csv", tracks_of=name)
-        tell(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it"
-             f"{', view.html shows the first sequence' if shown else ''}")
+        tell(f"{options.out / 'card.html'}: the report card; its tables and pictures are beside it")
 
 
 def bench(options) -> None:

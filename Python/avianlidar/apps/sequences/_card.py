@@ -150,9 +150,10 @@ def _tables(names: Sequence[str], results: Sequence[Mapping[str, Any]], parts: S
 
 def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Mapping[str, Any]],
                runways: Sequence[Sequence[Any]], settings: Dict[str, Any],
-               progress: Callable[[str, int, int], Any]) -> Dict[str, Any]:
+               progress: Callable[[str, int, int], Any], page: Optional[Callable[[], bool]] = None) -> Dict[str, Any]:
     """Writes card.csv, tracks.csv, birds.csv, inputs.csv, pictures, card.json and card.html. @param results results of
-    each input, by the number of the sequence @return the content of card.json"""
+    each input, by the number of the sequence @param page writes view.html, and returns whether it is there @return the
+    content of card.json"""
     names, sequences = [of.name for of in inputs], [list(of.values()) for of in results]
     birds = [[bird for one in of for bird in one["birds"]] for of in sequences]
     of_flocks = [of_birds(flock) for flock in birds]
@@ -181,9 +182,9 @@ def write_card(out: pathlib.Path, inputs: Sequence[Input], results: Sequence[Map
     shown = list(_pictures(out, inputs, results, runways))
     progress("pictures", 1, 1)
     write_whole(out / "card.json", as_json(card))
-    write_whole(out / "card.html", render(
-        "sequences/card.html.jinja", card=card, pictures=shown[1:], rows=ROWS, most=SHOWN,
-        first=_first(card, overall[0], warned, shown[0])))
+    first = _first(card, overall[0], warned, shown[0])._replace(interactive="view.html" if page and page() else "")
+    write_whole(out / "card.html", render("sequences/card.html.jinja", card=card, pictures=shown[1:], rows=ROWS,
+                                          most=SHOWN, first=first))
     return card
 
 

@@ -96,11 +96,13 @@ class BirdTracks:
         self.folders[name] = folder
         return name
 
-    def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None) -> Dict[str, Any]:
+    def write(self, folder, ranks: Optional[Ranks] = None, progress: Optional[Progress] = None,
+              page: Optional[Callable[[], bool]] = None) -> Dict[str, Any]:
         """Makes the sequences of scenarios (`folder`/sequences/NAME), follows the birds of each sequence
         (`folder`/followed/NAME/NN.json), then writes card.html, card.csv, card.json, tracks.csv, birds.csv and
         pictures. Results of the same files and settings are kept. Each rank takes whole sequences. @param progress
-        called with the name of the work, the completed amount and the total @return the content of card.json"""
+        called with the name of the work, the completed amount and the total @param page writes view.html after the
+        tables, and returns whether it is there for a link @return the content of card.json"""
         ranks, out, step = ranks or Ranks(), pathlib.Path(folder), progress or (lambda *_: None)
 
         def known() -> Any:
@@ -132,7 +134,7 @@ class BirdTracks:
                 settings = {"learning_scans": self.learning, "cutoff": self.cutoff, "order": self.order,
                             "runways": [[runway.name for runway in runways] for runways in everywhere],
                             "chains": [chain.properties() for chain in chains]}
-                card = write_card(out, inputs, results, everywhere, settings, step)
+                card = write_card(out, inputs, results, everywhere, settings, step, page)
             ranks.wait()
             return card
 
