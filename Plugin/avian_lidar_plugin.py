@@ -354,7 +354,7 @@ def light(view):
     look = data("look.json")
     view.UseColorPaletteForBackground = 0
     view.BackgroundColorMode, view.Background = "Single Color", rgb(look["sky"])
-    view.OrientationAxesVisibility = 0  # names and rings tell directions, which the axes would cover
+    view.OrientationAxesLabelColor = [0.0] * 3
     return look
 
 
@@ -403,6 +403,7 @@ def show_landmarks(tree, beams, view):
         registrationName=free_name("Landmarks"), Beams=beams, Surfaces=tree, RangeDirection=(ahead + RANGES_AT) % 360,
         RingSpacing=next(size * 10.0 ** power for power in range(-3, 9) for size in (1, 2, 5)
                          if size * 10.0 ** power >= least))
+    view.OrientationAxesVisibility = 0  # N tells directions, and names lie where the axes would be
     rings, ranges, names, fan = (simple.OutputPort(landmarks, port) for port in range(4))
     for texts in (ranges, names):
         simple.Show(texts, view)

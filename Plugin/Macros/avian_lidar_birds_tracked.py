@@ -2,10 +2,10 @@
 """ParaView macro: birds over an airport, tracked from scan to scan, to play.
 
 The macro makes the scans of the macro "birds over the airport", an Avian Lidar Clutter Filter that learns clutter, and
-an Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are black. Each confirmed track has its
-own colour. Thin lines show the paths of the birds. The macro executes all scans once. Play goes from scan to scan. In
-the first five scans the filter learns, and all points are clutter. After an error there are no new objects, and Output
-Messages gives the reason.
+an Avian Lidar Tracker of the other echoes. Clutter is grey, and other echoes are black. Confirmed tracks are thick
+black lines. Thin lines show the paths of the birds, in the colours of their species. The macro executes all scans once.
+Play goes from scan to scan. In the first five scans the filter learns, and all points are clutter. After an error there
+are no new objects, and Output Messages gives the reason.
 
 In ParaView: select surfaces, or nothing, and choose the macro in the menu Macros. In a script: track(view, surfaces).
 """
@@ -15,7 +15,7 @@ from avian_lidar_plugin import free_name, neighbour, run, show, start
 
 BIRDS = "avian_lidar_birds_over_the_airport"
 REVOLUTIONS = 20
-CLUTTER_COLOUR, POINT_COLOUR = (0.55, 0.55, 0.6), (0.0, 0.0, 0.0)
+CLUTTER_COLOUR, POINT_COLOUR = (0.55, 0.55, 0.6), (0.0, 0.0, 0.0)  # tracks are black, too
 CLUTTER_SIZE, POINT_SIZE, TRACK_WIDTH, TRAIL_WIDTH = 3, 6, 4, 1  # sizes of points and widths of lines, pixels
 
 
@@ -41,11 +41,7 @@ def track(view=None, surfaces=None):
         points = simple.Threshold(registrationName=free_name(title), Input=clutter, Scalars=["POINTS", "is_clutter"],
                                   LowerThreshold=value - 0.5, UpperThreshold=value + 0.5)
         show(points, view, colour, Representation="Points", PointSize=size)
-    display = show(confirmed, view, Representation="Wireframe", LineWidth=TRACK_WIDTH)
-    simple.ColorBy(display, ("CELLS", "track_id"))
-    colours = simple.GetColorTransferFunction("track_id")
-    colours.ApplyPreset("Rainbow Uniform", True)
-    display.RescaleTransferFunctionToDataRange()
+    show(confirmed, view, POINT_COLOUR, Representation="Wireframe", LineWidth=TRACK_WIDTH)
     simple.SetActiveSource(tracker)
     return ways, echoes, clutter, tracker
 

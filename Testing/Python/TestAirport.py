@@ -310,11 +310,13 @@ class Extracts(unittest.TestCase):
             self.assertTrue(any((folder / str(value)).is_file() for value in asked.values()) or "track " in line, line)
 
     def test_colours_are_told_apart(self):
-        """Those of any two classes and of any two species, by the distance of CIE 1976; also with two kinds of cones."""
+        """Those of any two classes, the ground among them, and of any two species, by the distance of CIE 1976; also with
+        two kinds of cones."""
         classes = {kind["class"] for kind in KNOWN["kinds"].values()}
         self.assertEqual(classes - set(_look.CLASSES), set())
         for eye, least in (("all", 14), ("without long", 7), ("without middle", 7)):
-            for colours, limit in ((_look.CLASSES.values(), least), (_look.SPECIES, 17)):
+            classes = [*_look.CLASSES.values(), _look.class_colour("ground")]
+            for colours, limit in ((classes, least), (_look.SPECIES, 17)):
                 for one, other in itertools.combinations(colours, 2):
                     self.assertGreater(np.linalg.norm(lab(one, eye) - lab(other, eye)), limit, (eye, one, other))
         np.testing.assert_allclose(lab("#ff0000", "all"), (53.24, 80.09, 67.20), atol=0.05)
