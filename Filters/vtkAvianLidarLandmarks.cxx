@@ -46,7 +46,7 @@ using avianlidar::Vec3;
 constexpr double Slender = 0.1; ///< greatest width of a runway, as a share of its length
 constexpr double Wide = 0.25;   ///< greatest width of a building, as a share of the scene's
 constexpr double Low = 2.0;     ///< least height of a building, m
-constexpr int Corners = 180;    ///< of a ring
+constexpr int Corners = 180;    ///< corners of each ring
 constexpr int Ways = 12;        ///< directions around the lidar in which beams are drawn
 constexpr int MostLasers = 16;  ///< drawn beams in a direction
 constexpr Arrays::Name Text{ "name", "" };
@@ -245,7 +245,7 @@ private:
   vtkPolyData* Surfaces;
   vtkStringArray* Names;
   std::map<vtkIdType, std::set<vtkIdType>> CornersOf;
-  std::map<vtkIdType, std::vector<Vec3>> MiddlesOf; ///< of polygons
+  std::map<vtkIdType, std::vector<Vec3>> MiddlesOf; ///< middles of its polygons
 };
 
 /// For each drawn laser and direction, the beam that is nearest to the direction.

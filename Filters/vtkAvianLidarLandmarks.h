@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarLandmarks
- * @brief Makes what tells places in a picture of a scan: names, and rings of equal range.
+ * @brief Names places in a picture of a scan, and makes rings of equal range around the lidar.
  *
  * Input port 0 (optional) is vtkPolyData: beams, with `direction` and `laser_id`. Input port 1
  * (optional) is vtkPolyData: surfaces, with the cell array `object_id` and the field data
@@ -15,10 +15,11 @@
  *   `name`. An end of a runway "09/27" has the designator of the direction in which aircraft land
  *   at this end. Ends of other runways are named by the wind. A runway is at least ten times as
  *   long as wide. Buildings are at least 2 m high, at most a quarter as wide as the scene, and have
- *   a name of their own, unlike "Hangar 3".
+ *   a name of their own, unlike "Hangar 3". Other things get no name.
  * - Port 3, fan: beams in twelve directions, of up to 16 lasers, to the first ring.
  *
- * A bad number gives empty outputs and an error that names the property. Setters accept any value.
+ * A bad number, or a first beam that is not at a finite place, gives empty outputs and an error
+ * that names the property or the input. Setters accept any value.
  *
  * @sa vtkAvianLidarBeamSource, vtkAvianLidarSceneReader
  */

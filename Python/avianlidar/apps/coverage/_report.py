@@ -408,6 +408,8 @@ class Report:
         air += [f"attenuation {float(known['attenuation_coefficient']):.3g} per metre"]
         ground = "not in the scene" if plan.ground is None else f"at {rounded([plan.ground])[0]} m"
         lines = " ".join(_lines(self.scene.get("comment")))
+        if len(lines) > LONGEST:  # whole sentences
+            lines = lines[:LONGEST].rpartition(". ")[0] + ". (Continued in the scene file.)"
         spread = f", {plan.spread_words}" if plan.runways else ""
         return [["birds", f"{plan.bird}{size}, reflectance {cover.reflectance:g} (all assumed)"],
                 ["air", f"{', '.join(air)}; air sends light back only if the plan's weather says so"],
@@ -416,7 +418,7 @@ class Report:
                 ["clutter", "of surfaces that stand still, not of vehicles" if cover.clutter else "not counted"],
                 ["places", f"{int(plan.overall['places']):,}, drawn {plan.where}{spread} (assumed)"],
                 *([["runways", "; ".join(runway.words() for runway in plan.runways)]] if plan.runways else []),
-                ["scene", f"{pathlib.Path(self.plan['scene']).name}. {lines[:LONGEST]}{'…' * (len(lines) > LONGEST)}"]]
+                ["scene", f"{pathlib.Path(self.plan['scene']).name}. {lines}"]]
 
     def _in_three_dimensions(self, view: Plan, file: pathlib.Path) -> bool:
         """Writes a page with the scene, the sensor and the maps in three dimensions. @return whether it is there"""
