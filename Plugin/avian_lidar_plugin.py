@@ -30,6 +30,8 @@ RINGS_IN_VIEW = 6  # rings between the middle and the side of the view, at most
 RANGES_AT = 60  # direction of the ranges of rings from the middle, clockwise from straight ahead, deg
 AMBIENT = 0.35  # share of the light that has no direction
 WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with the plugin"
+# Fonts with Chinese and Japanese letters, which ParaView's own font lacks.
+FONTS = ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc")
 # Views that macros put beside another view.
 REASONS, SHARES = "Reasons", "Shares of the beam"
 # Place of the lidar if the scene does not give a position: metres above the lowest point, share of the width or depth.
@@ -37,7 +39,7 @@ HEIGHT = 3
 DISTANCE = 0.1
 SENSOR_SIZE = 12  # size of the sensor's point, pixels
 # Diffuse reflectances kd drawn as black and as white, for surfaces without classes.
-GREY_RANGE = (-0.05, 0.6)
+GREY_RANGE = (-0.9, 0.6)
 MARGIN = 1.15
 
 
@@ -405,8 +407,10 @@ def show_landmarks(tree, beams, view):
                          if size * 10.0 ** power >= least))
     view.OrientationAxesVisibility = 0  # N tells directions, and names lie where the axes would be
     rings, ranges, names, fan = (simple.OutputPort(landmarks, port) for port in range(4))
-    for texts in (ranges, names):
-        simple.Show(texts, view)
+    shown = [simple.Show(texts, view) for texts in (ranges, names)]
+    font = next(filter(os.path.exists, FONTS), None)
+    if font and any(letter > "\u02ff" for letter in "".join(texts_of(tree, "object_names"))):
+        shown[1].PointLabelFontFamily, shown[1].PointLabelFontFile = "File", font
     show(rings, view, rgb(look["edges"]), Opacity=0.5)
     show(fan, view, rgb(look["lidar"]), Opacity=0.3)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which birds does a search lidar see over an airport? Scans a scenario of birds and clutter, and writes the picture
-from-above.png of successive scans and the table birds-over-airport.md, which counts the birds by status.
+"""Which birds does a search lidar see over an airport? Scans a scenario of birds and clutter, and writes the pictures
+from-above.png of successive scans and range.png of the first scan, and the table birds-over-airport.md, which counts
+the birds by status.
 
     birds_over_airport.py --out build/birds-over-airport
     birds_over_airport.py --scans 20 --no-pictures
@@ -47,7 +48,8 @@ def arguments(argv=None):
 
 
 def run(options):
-    """Scans the scenario. @return a dictionary of the data of the table and the picture"""
+    """Scans the scenario, and draws the range image of the first scan. @return a dictionary of the data of the table
+    and of the picture from above"""
     changes = {} if options.seed is None else {"seed": options.seed}
     sequence = al.Sequence(options.scenario, threads=options.threads, number_of_scans=options.scans,
                            scans_per_sequence=options.shown, **changes)
@@ -60,6 +62,9 @@ def run(options):
             if k == 0:
                 end = len(sequence.span(0)) * seconds
                 first = {"species": species, "trails": trails(scan.movers, species, end)}
+                if not options.no_pictures:
+                    with tools.figure(options.out / "range.png", figsize=(10, 3.4)) as axes:
+                        scan.plot_range_image("energy", axes=axes)
     truth = {name: np.array([row[TRUTH.index(name)] for row in rows]) for name in ("species", "status")}
     return {"sequence": sequence, "truth": truth, "echoes": echoes, **first}
 

@@ -346,6 +346,16 @@ class Macros(Case):
         beam = macro.show_beam(scan, beam_id)
         self.assertEqual({name: getattr(beam, name) for name in air}, air)
 
+    def test_names_in_chinese(self):
+        folder = tempfile.mkdtemp(dir=OUTPUT_DIR)
+        for file in pathlib.Path(SOURCE_DIR, "Examples", "airport", "scene").glob("hongqiao.*"):
+            text = file.read_text("utf-8").replace("Terminal 2", "\u8679\u68652\u53f7\u822a\u7ad9\u697c")
+            pathlib.Path(folder, file.name).write_text(text, "utf-8")
+        run(AIRPORT, simple.OpenDataFile(os.path.join(folder, "hongqiao.lidarscene.json")))
+        names = servermanager.GetRepresentation(simple.FindSource("Landmarks")[2], self.view)
+        self.assertTrue(os.path.exists(names.PointLabelFontFile), names.PointLabelFontFile)  # fonts-wqy-microhei
+        self.assertEqual(names.PointLabelFontFamily, "File")
+
 
 class MoreMacros(Case):
     """Takes minutes."""

@@ -36,4 +36,5 @@ class Pictures(unittest.TestCase):
     def test_birds_over_airport(self):
         folder = et.folder("ExamplePicturesBirds")
         birds_over_airport.main(["--scans", "2", "--shown", "2", "--out", folder])
-        compare(os.path.join(folder, "from-above.png"), "ExampleBirds-from-above.png")
+        for name in ("from-above", "range"):
+            compare(os.path.join(folder, f"{name}.png"), f"ExampleBirds-{name}.png")

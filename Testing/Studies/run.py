@@ -32,7 +32,7 @@ PICTURES = {
     "airport_time": {"revolutions": "time-revolutions"},
     "beam_shapes": {"shapes": "beams-shapes"},
     "birds": {"species": "birds-species", "detection": "birds-detection"},
-    "birds_over_airport": {"from-above": "birds-over-airport"},
+    "birds_over_airport": {"from-above": "birds-over-airport", "range": "birds-range-image"},
     "check_fit": {"silver-metallic-paint": "materials-silver-metallic-paint"},
     "corridor": {"corridor": "corridor-corridor"},
     "design": {"head": "design-head"},

@@ -15,7 +15,7 @@ from running import AIRPORT, argument, study
 
 SIZE, SMALL = (1280, 720), (800, 450)  # pixels of the still and of the moving picture
 # Where the camera stands and what it looks at, m east, north and up of the scene's origin.
-EYE, TARGET = (40.0, -640.0, 260.0), (260.0, -40.0, 0.0)
+EYE, TARGET = (10.0, -680.0, 275.0), (230.0, -40.0, 0.0)
 QUALITY = 60  # of the moving picture, 0 to 100
 
 

@@ -285,7 +285,8 @@ def datasheet(manifest: Dict[str, Any]) -> str:
     classes = classes_of(scenario.get("bird_class", BIRD))
     lines = ["# Data sheet", "", f"{counted(scans, 'scan')} of {counted(manifest['beams'], 'beam')} in "
              f"{counted(len(parts), 'sequence')}; avian-lidar {manifest['avian_lidar_version']}. All scans are "
-             "simulated; nothing was measured.", "",
+             "simulated; nothing was measured. The command `avianlidar sequence` also makes a page in three dimensions, "
+             "[view.html](view.html), of the first sequence.", "",
              f"Scene {pathlib.Path(scenario['scene']).name}, sensor {scenario['sensor']['preset']}. Birds are seen in "
              f"{seen} scans ({100 * seen / max(scans, 1):.1f} %).", "",
              f"Weather: {in_words(scenario.get('weather', ())) or 'none, unless the settings of scan give some'}.", "",
