@@ -63,9 +63,10 @@ string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
   python3-numpy
   python3-paraview
   python3-tqdm)
-# Imports of some helpers, for pictures, maps, reports, plans and scenarios, fits, tables.
+# Imports of some helpers, for pictures, maps, reports, plans and scenarios, fits, tables, bags.
 string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
-  python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas libjs-three)
+  python3-matplotlib python3-gdal python3-jinja2 python3-jsonschema python3-scipy python3-pandas python3-lz4 python3-zstandard
+  libjs-three)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   "${avianlidar_debian}/postinst"
   "${avianlidar_debian}/prerm")

@@ -50,6 +50,7 @@ set(cloud_sources
   IO/Clouds/PlyFormat.cxx
   IO/Clouds/ReadCloud.cxx
   IO/Clouds/Scalars.cxx
+  IO/Clouds/ScanTimes.cxx
   IO/Clouds/SemanticLabels.cxx)
 set(scene_sources
   IO/Scenes/Extrusion.cxx

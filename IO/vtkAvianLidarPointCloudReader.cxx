@@ -4,6 +4,7 @@
 #include "CoordinateSystem.h"
 #include "GeodeticFrame.h"
 #include "ReadCloud.h"
+#include "ScanTimes.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCloudFields.h"
@@ -92,9 +93,11 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* data)
 
 struct vtkAvianLidarPointCloudReader::vtkInternals
 {
+  std::vector<std::string> Files;
   formats::PacketIndex Packets;
-  std::vector<double> Times; ///< times of the revolutions, s
-  std::string Problem;       ///< reason why packets cannot be read, or empty
+  formats::ScanTimes Scans;  ///< scans of several files
+  std::vector<double> Times; ///< times of the revolutions or of several files, s
+  std::string Problem;       ///< reason why packets or several files cannot be read, or empty
 };
 
 vtkStandardNewMacro(vtkAvianLidarPointCloudReader);
@@ -109,8 +112,64 @@ vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
 //------------------------------------------------------------------------------
 vtkAvianLidarPointCloudReader::~vtkAvianLidarPointCloudReader()
 {
-  this->SetFileName(nullptr);
   this->SetSensorAddress(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPointCloudReader::SetFileName(const char* name)
+{
+  std::vector<std::string> files;
+  if (name && *name)
+  {
+    files.emplace_back(name);
+  }
+  if (files != this->Internals->Files)
+  {
+    this->Internals->Files = files;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+const char* vtkAvianLidarPointCloudReader::GetFileName()
+{
+  return this->Internals->Files.empty() ? nullptr : this->Internals->Files.front().c_str();
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPointCloudReader::AddFileName(const char* name)
+{
+  if (name && *name)
+  {
+    this->Internals->Files.emplace_back(name);
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarPointCloudReader::RemoveAllFileNames()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarPointCloudReader::GetNumberOfFileNames()
+{
+  return static_cast<int>(this->Internals->Files.size());
+}
+
+//------------------------------------------------------------------------------
+const char* vtkAvianLidarPointCloudReader::GetScanFileName(int step)
+{
+  const std::vector<std::string>& files = this->Internals->Scans.files;
+  const bool known = step >= 0 && static_cast<std::size_t>(step) < files.size();
+  return known ? files[static_cast<std::size_t>(step)].c_str() : nullptr;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarPointCloudReader::GetScanTimes()
+{
+  return this->Internals->Scans.origin;
 }
 
 //------------------------------------------------------------------------------
@@ -137,23 +196,43 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   vtkInternals& internals = *this->Internals;
-  internals = vtkInternals();
-  const formats::CloudFormat* const format =
-    this->FileName ? formats::formatOf(this->FileName) : nullptr;
-  if (format && format->hasTurns)
+  internals = vtkInternals{ internals.Files, {}, {}, {}, {} };
+  const std::vector<std::string>& files = internals.Files;
+  const auto hasTurns = [](const std::string& file)
   {
-    // RequestData() reports the error.
+    const formats::CloudFormat* const format = formats::formatOf(file);
+    return format && format->hasTurns;
+  };
+  // RequestData() reports the errors.
+  if (files.size() > 1)
+  {
+    internals.Problem = vtkAvianLidarGuard::ProblemOf(
+      [&]
+      {
+        const double rate = this->GetScanRate();
+        avianlidar::failIf(!(rate >= 0.0 && rate <= 1e6), "ScanRate is ", rate,
+          ", expected 0 to 1e6 scans a second");
+        const auto packets = std::find_if(files.begin(), files.end(), hasTurns);
+        avianlidar::failIf(packets != files.end(),
+          packets == files.end() ? std::string() : *packets,
+          " has packets, expected this file alone: each revolution is a time step");
+        internals.Scans = formats::timesOfScans(files, rate);
+        internals.Times = internals.Scans.seconds;
+      });
+  }
+  else if (!files.empty() && hasTurns(files.front()))
+  {
     const auto index = [&]
     {
-      avianlidar::FileSource source(this->FileName);
+      avianlidar::FileSource source(files.front());
       internals.Packets =
         formats::indexPackets(source, this->SensorAddress ? this->SensorAddress : "", {});
     };
     internals.Problem =
-      vtkAvianLidarGuard::ProblemOf([&] { fields::Within(this->FileName, NoMemory, index); });
+      vtkAvianLidarGuard::ProblemOf([&] { fields::Within(files.front(), NoMemory, index); });
     if (!internals.Packets.warning.empty())
     {
-      this->Warn(internals.Packets.warning);
+      this->Warn(files.front(), internals.Packets.warning);
     }
   }
   for (const formats::PacketIndex::Turn& turn : internals.Packets.turns)
@@ -174,23 +253,26 @@ int vtkAvianLidarPointCloudReader::RequestData(
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkPolyData* output = vtkPolyData::GetData(info);
       output->Initialize();
-      avianlidar::failIf(!this->FileName || !*this->FileName,
-        "FileName is not set, expected the name of a ", formats::knownEndings(), " file");
+      const vtkInternals& internals = *this->Internals;
+      avianlidar::failIf(internals.Files.empty(), "FileName is not set, expected the name of a ",
+        formats::knownEndings(), " file");
       if (fields::IsOtherPiece(info))
       {
         return;
       }
-      vtkAvianLidarRequire(this->Internals->Problem);
-      fields::Within(this->FileName, NoMemory,
+      vtkAvianLidarRequire(internals.Problem);
+      const std::vector<double>& times = internals.Times;
+      const std::size_t step = fields::StepOf(times, info);
+      const bool isSeries = !internals.Scans.files.empty();
+      const std::string& file = isSeries ? internals.Scans.files[step] : internals.Files.front();
+      fields::Within(file, NoMemory,
         [&]
         {
-          const std::vector<double>& times = this->Internals->Times;
-          const std::size_t turn = fields::StepOf(times, info);
-          Cloud cloud = formats::readCloud(this->FileName, vtkAvianLidarAbort::KeepGoing(this),
-            times.empty() ? nullptr : &this->Internals->Packets, turn);
+          Cloud cloud = formats::readCloud(file, vtkAvianLidarAbort::KeepGoing(this),
+            times.empty() || isSeries ? nullptr : &internals.Packets, step);
           if (!times.empty())
           {
-            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[turn]);
+            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[step]);
           }
           std::string all;
           for (const std::string& warning : cloud.warnings)
@@ -199,7 +281,12 @@ int vtkAvianLidarPointCloudReader::RequestData(
           }
           if (!all.empty())
           {
-            this->Warn(all);
+            this->Warn(file, all);
+          }
+          if (isSeries)
+          {
+            names::SetFieldStrings(
+              output->GetFieldData(), names::ScanTimes, { internals.Scans.origin });
           }
           Place(cloud, this->LocalCoordinates, output->GetFieldData());
           fields::ToPolyData(cloud, output);
@@ -211,11 +298,11 @@ int vtkAvianLidarPointCloudReader::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarPointCloudReader::Warn(const std::string& what)
+void vtkAvianLidarPointCloudReader::Warn(const std::string& file, const std::string& what)
 {
-  vtkWarningMacro("" << vtkAvianLidarText(this->FileName + (": " + what)) << ".");
+  vtkWarningMacro("" << vtkAvianLidarText(file + ": " + what) << ".");
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPrintSelfMacro(
-  vtkAvianLidarPointCloudReader, ErrorsAsData, FileName, LocalCoordinates, SensorAddress);
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarPointCloudReader, ErrorsAsData, GetFileName(),
+  GetNumberOfFileNames(), LocalCoordinates, SensorAddress, ScanRate);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkAvianLidarPointCloudReader
- * @brief Reads a point cloud, real or simulated, with the array names of this project.
+ * @brief Reads point clouds, real or simulated, with the array names of this project.
  *
  * The file extension gives the format. Documentation/reference/formats.md lists the formats and the
  * parts of each format that the reader reads, refuses or leaves out with a warning.
@@ -19,8 +19,16 @@
  * `utm_zone` give the coordinate system. The output has the field data `position`, `revolution`,
  * `number_of_revolutions`, `description` and `comment` if the file has them.
  *
+ * Several files are the scans of one recording. Each scan is a time step, s: the number of the scan
+ * divided by ScanRate if ScanRate is set, else the time in a file `times.txt` or `timestamps.txt`
+ * beside the files or in the folder above, else the time in the name of the file (s, ms, us or ns
+ * since 1970, or ISO 8601), else the number in the name, or the place in the list, at 10 scans a
+ * second (assumed). The field data `scan_times` says which. Any other time gives the last scan
+ * before this time, or the first scan.
+ *
  * Each revolution in a file of packets is a time step. Times are in seconds since the full hour
- * before the first packet. Other files do not have time steps. Piece 0 has the whole cloud.
+ * before the first packet. Packets must be one file. A single file of another format has no time
+ * steps. Piece 0 has the whole cloud.
  *
  * Errors name the file and the fault. The output is empty after an error or an abort.
  *
@@ -50,11 +58,29 @@ public:
 
   ///@{
   /**
-   * Name of the file. Call Modified() if the file changes. Default: no name, which gives an error.
+   * Name of the file, which replaces all files. Call Modified() if the file changes. Default: no
+   * name, which gives an error. GetFileName() returns the first name.
    */
-  vtkSetFilePathMacro(FileName);
-  vtkGetFilePathMacro(FileName);
+  virtual void SetFileName(VTK_FILEPATH const char* name);
+  virtual VTK_FILEPATH const char* GetFileName();
   ///@}
+
+  ///@{
+  /**
+   * Names of the files of a recording, in any order. GetScanFileName() returns the file of a time
+   * step after UpdateInformation(), or null.
+   */
+  void AddFileName(VTK_FILEPATH const char* name);
+  void RemoveAllFileNames();
+  int GetNumberOfFileNames();
+  VTK_FILEPATH const char* GetScanFileName(int step);
+  ///@}
+
+  /// Number of scans in a second, Hz, 0 to 1e6, for several files. Default 0: as the files say.
+  vtkAvianLidarPropertyMacro(ScanRate, double, 0.0);
+
+  /// Returns words on where the times of several files come from, after UpdateInformation().
+  std::string GetScanTimes();
 
   /// Whether points are metres east, north, up of the file's `geodetic_origin`. Default: on.
   vtkAvianLidarSwitchMacro(LocalCoordinates, true);
@@ -82,11 +108,10 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
-  char* FileName = nullptr;
   char* SensorAddress = nullptr;
 
 private:
-  void Warn(const std::string& what);
+  void Warn(const std::string& file, const std::string& what);
 
   struct vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

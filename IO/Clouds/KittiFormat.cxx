@@ -11,21 +11,24 @@ namespace avianlidar::formats
 {
 namespace
 {
-constexpr std::uint64_t PointSize = 16;
+constexpr std::uint64_t PointSize = 16;     // of KITTI, bytes
+constexpr std::uint64_t LongPointSize = 20; // of nuScenes, bytes
 constexpr std::uint64_t LabelSize = 4;
-constexpr std::uint64_t LongPointSize = 20; // size of a point in other data sets, bytes
-constexpr const char* LongPoints = "five float32 a point, as nuScenes has them: this is not a scan "
-                                   "of KITTI, whose points have four";
+constexpr float GreatestRing = 4096.0f;
 
-/// Returns whether the bytes may be points of five numbers, the last number a ring or a label.
-bool mayHaveFive(ByteSource& points)
+/// Returns whether the bytes may be points of nuScenes: intensity and ring behind the coordinates.
+bool isNuScenes(ByteSource& points)
 {
-  bool may = points.size() % LongPointSize == 0;
-  const auto isWhole = [](float value) { return value >= 0 && value == std::floor(value); };
-  forEachRecord(points, 0, LongPointSize, points.size() / LongPointSize,
-    [&](std::uint64_t, const unsigned char* bytes)
-    { may &= load<float>(bytes + 12) >= 0 && isWhole(load<float>(bytes + 16)); });
-  return may;
+  bool is = points.size() > 0 && points.size() % LongPointSize == 0;
+  const auto isWhole = [](float value)
+  { return value >= 0 && value < GreatestRing && value == std::floor(value); };
+  for (std::uint64_t i = 0; is && i < points.size() / LongPointSize; ++i)
+  {
+    const unsigned char* const bytes = points.at(i * LongPointSize, LongPointSize);
+    const float intensity = load<float>(bytes + 12);
+    is = intensity >= 0 && intensity <= KittiGreatestIntensity && isWhole(load<float>(bytes + 16));
+  }
+  return is;
 }
 
 /// Throws FormatError if another size of a point than four numbers gives smaller steps from point
@@ -63,23 +66,57 @@ void checkStride(ByteSource& points)
 
 /// Throws FormatError unless the fourth numbers of all points may be reflectances (0 to 1) or
 /// intensities (0 to 255). In files of other layouts, coordinates are among these numbers.
-void checkReflectance(double least, double greatest, ByteSource& points)
+void checkReflectance(double least, double greatest)
 {
-  const bool fits = least >= 0.0 && greatest <= KittiGreatestIntensity;
-  failIf((!fits || greatest > 1.0) && mayHaveFive(points), "it has ", LongPoints);
-  failIf(!fits, "the fourth numbers of its points go from ", least, " to ", greatest,
+  failIf(!(least >= 0.0 && greatest <= KittiGreatestIntensity),
+    "the fourth numbers of its points go from ", least, " to ", greatest,
     ", expected reflectances (0 to 1) or intensities (0 to 255): this is not a scan of KITTI, "
     "which has x, y, z and reflectance as float32");
 }
+
+/// Reads points of nuScenes, whose axes are those of this project's clouds.
+Cloud readNuScenes(ByteSource& points, const KeepGoing& keepGoing)
+{
+  const std::uint64_t n = points.size() / LongPointSize;
+  requireMemoryFor(n, LongPointSize);
+  Cloud cloud;
+  cloud.points.resize(3 * n);
+  std::vector<double> intensity(n);
+  std::vector<std::uint16_t> ring(n);
+  forEachRecord(points, 0, LongPointSize, n,
+    [&](std::uint64_t i, const unsigned char* bytes)
+    {
+      for (std::uint64_t axis = 0; axis < 3; ++axis)
+      {
+        cloud.points[3 * i + axis] = load<float>(bytes + 4 * axis);
+      }
+      intensity[i] = load<float>(bytes + 12);
+      ring[i] = static_cast<std::uint16_t>(load<float>(bytes + 16));
+      goOn(keepGoing, i, n);
+    });
+  cloud.columns.push_back({ "intensity", "1", 1, std::move(intensity) });
+  cloud.columns.push_back({ "laser_id", "", 1, std::move(ring) });
+  cloud.sensor = Point{ 0.0, 0.0, 0.0 };
+  dropEmptyCells(cloud);
+  return cloud;
+}
+}
+
+bool mayBeKitti(ByteSource& points)
+{
+  return points.size() % PointSize == 0 || points.size() % LongPointSize == 0;
 }
 
 Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoing)
 {
-  if (points.size() % PointSize != 0)
+  const bool mayBeFour = points.size() % PointSize == 0;
+  if (!mayBeFour && !labels && isNuScenes(points))
   {
-    fail("its length is ", points.size(), " bytes, expected a multiple of 16: four float32 a point",
-      mayHaveFive(points) ? std::string("; it has ") + LongPoints : "");
+    return readNuScenes(points, keepGoing);
   }
+  failIf(!mayBeFour, "its length is ", points.size(),
+    " bytes, expected a multiple of 16, four float32 a point, or points of nuScenes, whose five "
+    "float32 end with an intensity (0 to 255) and a ring");
   const std::uint64_t n = points.size() / PointSize;
   const std::uint64_t labelBytes = labels ? labels->size() : n * LabelSize;
   failIf(labelBytes != n * LabelSize, "the labels beside it have ", labelBytes,
@@ -107,7 +144,12 @@ Cloud readKitti(ByteSource& points, ByteSource* labels, const KeepGoing& keepGoi
       }
       goOn(keepGoing, i, n);
     });
-  checkReflectance(least, greatest, points);
+  const bool isReflectance = least >= 0.0 && greatest <= 1.0;
+  if (!isReflectance && !labels && isNuScenes(points))
+  {
+    return readNuScenes(points, keepGoing);
+  }
+  checkReflectance(least, greatest);
   checkStride(points);
   if (greatest > 1.0)
   {

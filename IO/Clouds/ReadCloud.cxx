@@ -204,7 +204,7 @@ const std::vector<CloudFormat>& cloudFormats()
       withoutLabels<readPcd> },
     { { ".ply" }, [](ByteSource& file) { return !readPlyHeader(file).hasFaces; },
       withoutLabels<readPly> },
-    { { ".bin" }, [](ByteSource& file) { return file.size() % 16 == 0; }, readKitti, true },
+    { { ".bin" }, mayBeKitti, readKitti, true },
     { { ".pcap", ".pcapng" }, hasPackets, withoutLabels<readFirstTurn>, false, true },
   };
   return all;

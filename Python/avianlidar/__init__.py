@@ -23,6 +23,7 @@ from ._coverage import Coverage, places_of
 from ._files import load_cloud, save
 from ._pipeline import Error
 from ._plot import hue_colors, plot_map, plot_range_image
+from ._recording import Recording, load_clouds
 from ._scan import Scan
 from ._scene import Scene, example_scene, load_scene, materials, mesh, mover
 from ._sensor import Sensor
@@ -32,6 +33,6 @@ from .apps.sequences._flights import read_tracks
 from .apps.sequences._sequence import Sequence
 from .apps.sequences._tracks import BirdTracks
 
-__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Scan", "Scene", "Sensor", "Sequence",
-           "example_scene", "hue_colors", "load_cloud", "load_scene", "materials", "mesh", "mover", "places_of",
+__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Recording", "Scan", "Scene", "Sensor", "Sequence",
+           "example_scene", "hue_colors", "load_cloud", "load_clouds", "load_scene", "materials", "mesh", "mover", "places_of",
            "plot_map", "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]

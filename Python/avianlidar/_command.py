@@ -55,7 +55,7 @@ VERBS = {
 """),
     "convert": ("a cloud in another format",
         "Writes a cloud in another format. Names and units of arrays are kept as far as both formats have them. A "
-        "labelled sequence becomes one file of ROS 2 messages (MCAP).", """\
+        "labelled sequence becomes one file of ROS 2 messages (.mcap, .db3).", """\
   avianlidar convert echoes.las echoes.pcd
   avianlidar convert drive.pcap revolution.ply --sensor-address 192.168.1.201 --time 12.5
   avianlidar convert sequences/sequences/00 sequence.mcap
@@ -229,7 +229,7 @@ def parser() -> Parser:
     verb["compare"].add_argument("b", type=pathlib.Path, help="a second cloud, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
     verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence")
-    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap")
+    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap or .db3")
     verb["convert"].add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
         help="position of the sensor in the coordinates of the cloud, m, to which a KITTI scan (.bin) is relative; "
         "default: the position in the file")

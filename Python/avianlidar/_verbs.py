@@ -289,12 +289,12 @@ def compare(options) -> None:
 
 def convert(options) -> None:
     chosen = _of_packets(options, options.file)
-    if options.out.suffix.lower() == ".mcap":
+    if options.out.suffix.lower() in (".mcap", ".db3"):
         if options.position:
             raise ValueError("--position is for one cloud, expected none for a sequence: its poses are in poses.txt")
         check_target(options.out)
-        from .apps.sequences import _mcap
-        tell(f"{options.out}: {_mcap.write(options.file, options.out)} scans of {options.file}")
+        from .apps.sequences import _rosbag
+        tell(f"{options.out}: {_rosbag.write(options.file, options.out)} scans of {options.file}")
         return
     check_suffix(options.out)
     check_target(options.out)

@@ -195,16 +195,21 @@ class TestPointCloudReader(InFolder):
             self.assertIn(word, field(read(FILE), "crs_wkt")[0])
 
     def test_scans_of_other_data_sets(self):
-        """Other numbers a point than four are an error; intensities of 0 to 255 are taken as they are."""
+        """Points of nuScenes are read, other numbers a point than four are an error, and intensities of 0 to 255 are
+        taken as they are."""
         name = FILE.replace(".las", ".bin")
         draw = np.random.default_rng(7)
         places = draw.uniform(-50, 50, (1000, 3))
         ring, bright = draw.integers(0, 32, (1000, 1)), draw.integers(0, 256, (1000, 1))
         turned = np.linspace(0, np.pi / 2, 1000)[:, None]  # a scan about a corner: no coordinate below zero
         corner = np.hstack([30 * np.cos(turned), 20 * np.sin(turned), 2 + turned, 0.5 + 0 * turned, turned, turned])
-        for rows, words in (([places, bright, ring], "it has five float32 a point, as nuScenes has them"),
-                            ([places[:999], bright[:999], ring[:999]],
-                             "expected a multiple of 16: four float32 a point; it has five"),
+        for count in (1000, 999):  # the first number of bytes would fit four float32 a point, too
+            np.hstack([places, bright, ring])[:count].astype("<f4").tofile(name)
+            data = read(name)
+            np.testing.assert_array_equal(points(data), places[:count].astype("<f4"))
+            np.testing.assert_array_equal(array(data, "intensity"), bright[:count, 0])
+            np.testing.assert_array_equal(array(data, "laser_id"), ring[:count, 0])
+        for rows, words in (([places[:999], bright[:999], ring[:999] + 0.5], "expected a multiple of 16, four float32"),
                             ([places, bright, ring, ring], "the fourth numbers of its points go from -"),
                             ([places, 300 + bright], "go from 0 to 55"),
                             *(([corner[:, :count]], f"it seems to have {count} float32 a point")

@@ -333,6 +333,8 @@ constexpr Name Height{ "height", "m" };
 constexpr Name UTMZone{ "utm_zone", "" };
 /// coordinate reference system of the points, WKT (text)
 constexpr Name CrsWkt{ "crs_wkt", "" };
+/// where the times of a recording's scans come from (text)
+constexpr Name ScanTimes{ "scan_times", "" };
 
 // Range image (field data).
 /// azimuth of each column

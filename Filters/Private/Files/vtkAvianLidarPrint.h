@@ -40,7 +40,7 @@ void Value(std::ostream& os, const T& value)
       space = " ";
     }
   }
-  else if constexpr (std::is_same_v<T, char*>)
+  else if constexpr (std::is_same_v<T, char*> || std::is_same_v<T, const char*>)
   {
     os << (value ? value : "(none)");
   }

@@ -1,93 +1,40 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes a sequence as one MCAP file of ROS 2 messages: clouds, the pose of the sensor, and boxes around movers.
+"""Writes a sequence as one file of ROS 2 messages (.mcap or .db3): clouds, the pose of the sensor, and boxes around
+movers.
 
-Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; OMG CDR, little endian; definitions in
-common_interfaces and geometry2 (Humble and later)."""
+Sources: the MCAP specification (mcap.dev/spec), profile `ros2`; the SQLite schema of rosbag2 (Foxy), which all later
+versions read."""
 from __future__ import annotations
 
+import contextlib
 import math
 import pathlib
-import re
+import sqlite3
 import struct
 import zlib
-from typing import Iterator, List, Sequence, Tuple
+from typing import Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
+from ..._bags import CHANNEL, CHUNK, CHUNKS, END, FOOTER, HEADER, MAGIC, MESSAGE, MESSAGES, SCHEMA, STATISTICS
 from ..._disk import replacing
 from ..._files import numbers_of, read_regular
+from ..._recording import kitti_poses
+from ..._ros import CLOUD, TRANSFORMS, packed, schema
 from ..._version import __version__
 
-_MAGIC = b"\x89MCAP0\r\n"
-_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGES, _CHUNKS, _STATISTICS, _END = *range(1, 9), 11, 15
 _TF, _POINTS, _BOXES = 1, 2, 3  # numbers of the channels and of their schemas
-_TOPICS = {_TF: ("/tf", "tf2_msgs/TFMessage"), _POINTS: ("/points", "sensor_msgs/PointCloud2"),
+_TOPICS = {_TF: ("/tf", TRANSFORMS), _POINTS: ("/points", CLOUD),
            _BOXES: ("/boxes", "visualization_msgs/MarkerArray")}
-_STAMPED = "std_msgs/Header header"
-_XYZ = "float64 x, float64 y, float64 z"
-_TYPES = {
-    "builtin_interfaces/Duration": "int32 sec, uint32 nanosec",
-    "builtin_interfaces/Time": "int32 sec, uint32 nanosec",
-    "geometry_msgs/Point": _XYZ,
-    "geometry_msgs/Pose": "geometry_msgs/Point position, geometry_msgs/Quaternion orientation",
-    "geometry_msgs/Quaternion": f"{_XYZ}, float64 w",
-    "geometry_msgs/Transform": "geometry_msgs/Vector3 translation, geometry_msgs/Quaternion rotation",
-    "geometry_msgs/TransformStamped": f"{_STAMPED}, string child_frame_id, geometry_msgs/Transform transform",
-    "geometry_msgs/Vector3": _XYZ,
-    "sensor_msgs/CompressedImage": f"{_STAMPED}, string format, uint8[] data",
-    "sensor_msgs/PointCloud2": f"{_STAMPED}, uint32 height, uint32 width, sensor_msgs/PointField[] fields, "
-                               "bool is_bigendian, uint32 point_step, uint32 row_step, uint8[] data, bool is_dense",
-    "sensor_msgs/PointField": "string name, uint32 offset, uint8 datatype, uint32 count",
-    "std_msgs/ColorRGBA": "float32 r, float32 g, float32 b, float32 a",
-    "std_msgs/Header": "builtin_interfaces/Time stamp, string frame_id",
-    "tf2_msgs/TFMessage": "geometry_msgs/TransformStamped[] transforms",
-    "visualization_msgs/Marker":
-        f"{_STAMPED}, string ns, int32 id, int32 type, int32 action, geometry_msgs/Pose pose, "
-        "geometry_msgs/Vector3 scale, std_msgs/ColorRGBA color, builtin_interfaces/Duration lifetime, "
-        "bool frame_locked, geometry_msgs/Point[] points, std_msgs/ColorRGBA[] colors, string texture_resource, "
-        "sensor_msgs/CompressedImage texture, visualization_msgs/UVCoordinate[] uv_coordinates, string text, "
-        "string mesh_resource, visualization_msgs/MeshFile mesh_file, bool mesh_use_embedded_materials",
-    "visualization_msgs/MarkerArray": "visualization_msgs/Marker[] markers",
-    "visualization_msgs/MeshFile": "string filename, uint8[] data",
-    "visualization_msgs/UVCoordinate": "float32 u, float32 v"}
-_CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # in module struct
 _CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # type and actions of markers
 _BIRD, _OTHER = (0.1, 0.7, 0.3, 0.5), (0.6, 0.3, 0.8, 0.5)  # red, green, blue, opacity of birds and of other movers
 _POINT = np.dtype([*((name, "<f4") for name in ("x", "y", "z", "intensity")), ("label", "<u2"), ("instance", "<u2")])
 _DATATYPES = {"f": 7, "u": 4}  # in PointField, by the kind of a field of _POINT
 
 
-def _schema(name: str) -> str:
-    """The definition of a message, followed by the definitions of the types inside."""
-    names = [name]
-    for one in names:
-        names += [kind for kind in dict.fromkeys(re.findall(r"\w+/\w+", _TYPES[one])) if kind not in names]
-    texts = [_TYPES[one].replace(", ", "\n") + "\n" for one in names]
-    return f"{'=' * 80}\n".join([texts[0], *(f"MSG: {one}\n{text}" for one, text in zip(names[1:], texts[1:]))])
-
-
-def _put(data: bytearray, kind: str, value) -> bytearray:
-    """Appends a value of a type; a message is the tuple of its fields. Each number starts at a multiple of its size."""
-    if kind.endswith("[]"):
-        _put(data, "uint32", len(value))
-        if kind == "uint8[]":
-            data += value
-        else:
-            for one in value:
-                _put(data, kind[:-2], one)
-    elif kind == "string":
-        _put(data, "uint8[]", value.encode() + b"\0")
-    elif kind in _CODES:
-        data += bytes(-len(data) % struct.calcsize(_CODES[kind])) + struct.pack("<" + _CODES[kind], value)
-    else:
-        for field, one in zip(_TYPES[kind].split(", "), value):
-            _put(data, field.split()[0], one)
-    return data
-
-
 def _message(key: int, *fields) -> bytes:
     """A message in a channel, little endian."""
-    return b"\0\1\0\0" + _put(bytearray(), _TOPICS[key][1], fields)
+    return packed(_TOPICS[key][1], *fields)
 
 
 def _transform(time: int, pose: np.ndarray) -> bytes:
@@ -137,15 +84,10 @@ def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndar
                          "expected one with velodyne/, times.txt and poses.txt")
     files = sorted((folder / "velodyne").glob("*.bin"))
     times = numbers_of(folder / "times.txt", 1, least=0)[:, 0]
-    poses = numbers_of(folder / "poses.txt", 12).reshape(-1, 3, 4)
+    poses = kitti_poses(folder)
     if not len(files) == len(times) == len(poses):
         raise ValueError(f"{folder}: has {len(files)} scans, {len(times)} times and {len(poses)} poses, "
                          "expected as many of each")
-    last = [0, 0, 0, 1]
-    camera = np.vstack([*numbers_of(folder / "calib.txt", 12, key="Tr:").reshape(-1, 4), last])
-    if camera.shape != (4, 4) or abs(np.linalg.det(camera)) < 0.5:
-        raise ValueError(f"{folder / 'calib.txt'}: "
-                         "expected one line Tr: with a rotation and a translation in 12 numbers")
     for file, time, pose in zip(files, times, poses):
         content, label = read_regular(file), folder / "labels" / f"{file.stem}.label"
         given = read_regular(label) if label.parent.is_dir() else bytes(len(content) // 16 * 4)
@@ -158,7 +100,7 @@ def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndar
             raise ValueError(f"{file}: the fourth numbers of its points are not all reflectances, "
                              "expected 0 to 1, as KITTI has them")
         points = np.rec.fromarrays([x, y, z, 255 * light, labels & 0xffff, labels >> 16], dtype=_POINT)
-        yield file.stem, round(1e9 * time), (np.linalg.inv(camera) @ np.vstack([pose, last]) @ camera)[:3], points
+        yield file.stem, round(1e9 * time), pose, points
 
 
 def _record(kind: int, content: bytes) -> bytes:
@@ -170,42 +112,71 @@ def _bytes(*contents: bytes) -> bytes:
     return b"".join(struct.pack("<I", len(content)) + content for content in contents)
 
 
+def _messages(folder: pathlib.Path) -> Iterator[Tuple[int, Dict[int, bytes]]]:
+    """Time (ns) and messages of each scan, by the channel."""
+    boxes = (folder / "boxes").is_dir()
+    for name, time, pose, points in _scans(folder):
+        found = {_TF: _transform(time, pose), _POINTS: _cloud(time, points)}
+        if boxes:
+            found[_BOXES] = _boxes(time, folder / "boxes" / f"{name}.txt")
+        yield time, found
+
+
 def write(folder: pathlib.Path, out: pathlib.Path) -> int:
-    """Writes a sequence and returns the number of scans. Each scan is a chunk with an index, not compressed."""
+    """Writes a sequence and returns the number of scans. The suffix of `out` gives the format."""
     topics = {key: topic for key, topic in _TOPICS.items() if key != _BOXES or (folder / "boxes").is_dir()}
+    with replacing(out) as name:
+        return (_write_mcap if out.suffix.lower() == ".mcap" else _write_db3)(_messages(folder), topics, name)
+
+
+def _write_db3(scans: Iterator[Tuple[int, Dict[int, bytes]]], topics: Dict[int, Tuple[str, str]], name: str) -> int:
+    count = 0
+    with contextlib.closing(sqlite3.connect(name)) as db, db:
+        db.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
+                   "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)")
+        db.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT "
+                   "NULL, data BLOB NOT NULL)")
+        db.execute("CREATE INDEX timestamp_idx ON messages (timestamp ASC)")
+        db.executemany("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')",
+                       ((key, topic, kind.replace("/", "/msg/")) for key, (topic, kind) in topics.items()))
+        for count, (time, messages) in enumerate(scans, 1):
+            db.executemany("INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)",
+                           ((key, time, message) for key, message in messages.items()))
+    return count
+
+
+def _write_mcap(scans: Iterator[Tuple[int, Dict[int, bytes]]], topics: Dict[int, Tuple[str, str]], name: str) -> int:
+    """Each scan is a chunk with an index, not compressed."""
     known = b"".join(
-        _record(_SCHEMA, struct.pack("<H", key) + _bytes(
-            kind.replace("/", "/msg/").encode(), b"ros2msg", _schema(kind).encode()))
-        + _record(_CHANNEL, struct.pack("<HH", key, key) + _bytes(topic.encode(), b"cdr", b""))
+        _record(SCHEMA, struct.pack("<H", key) + _bytes(
+            kind.replace("/", "/msg/").encode(), b"ros2msg", schema(kind).encode()))
+        + _record(CHANNEL, struct.pack("<HH", key, key) + _bytes(topic.encode(), b"cdr", b""))
         for key, (topic, kind) in topics.items())
     indices: List[bytes] = []
     times: List[int] = []
-    with replacing(out) as name, open(name, "wb") as file:
-        file.write(_MAGIC + _record(_HEADER, _bytes(b"ros2", f"avian-lidar {__version__}".encode())) + known)
-        for number, (name_of_scan, time, pose, points) in enumerate(_scans(folder)):
+    with open(name, "wb") as file:
+        file.write(MAGIC + _record(HEADER, _bytes(b"ros2", f"avian-lidar {__version__}".encode())) + known)
+        for number, (time, messages) in enumerate(scans):
             times.append(time)
-            messages = {_TF: _transform(time, pose), _POINTS: _cloud(time, points)}
-            if _BOXES in topics:
-                messages[_BOXES] = _boxes(time, folder / "boxes" / f"{name_of_scan}.txt")
             records, offsets = b"", []
             for key, message in messages.items():
                 offsets.append((key, len(records)))
-                records += _record(_MESSAGE, struct.pack("<HIQQ", key, number, time, time) + message)
-            chunk = _record(_CHUNK, struct.pack("<QQQI", time, time, len(records), zlib.crc32(records)) + _bytes(b"")
+                records += _record(MESSAGE, struct.pack("<HIQQ", key, number, time, time) + message)
+            chunk = _record(CHUNK, struct.pack("<QQQI", time, time, len(records), zlib.crc32(records)) + _bytes(b"")
                             + struct.pack("<Q", len(records)) + records)
             begin, places = file.tell(), b""
             file.write(chunk)
             for key, offset in offsets:
                 places += struct.pack("<HQ", key, file.tell())
-                file.write(_record(_MESSAGES, struct.pack("<HIQQ", key, 16, time, offset)))
-            indices.append(_record(_CHUNKS, struct.pack("<QQQQ", time, time, begin, len(chunk)) + _bytes(places)
+                file.write(_record(MESSAGES, struct.pack("<HIQQ", key, 16, time, offset)))
+            indices.append(_record(CHUNKS, struct.pack("<QQQQ", time, time, begin, len(chunk)) + _bytes(places)
                                    + struct.pack("<Q", file.tell() - begin - len(chunk)) + _bytes(b"")
                                    + struct.pack("<QQ", len(records), len(records))))
-        file.write(_record(_END, bytes(4)))
+        file.write(_record(END, bytes(4)))
         summary, count = file.tell(), len(times)
         times = times or [0]
         numbers = count * len(topics), len(topics), len(topics), 0, 0, count, min(times), max(times)
         counts = _bytes(b"".join(struct.pack("<HQ", key, count) for key in topics))
-        file.write(known + _record(_STATISTICS, struct.pack("<QHIIIIQQ", *numbers) + counts) + b"".join(indices))
-        file.write(_record(_FOOTER, struct.pack("<QQI", summary, 0, 0)) + _MAGIC)
+        file.write(known + _record(STATISTICS, struct.pack("<QHIIIIQQ", *numbers) + counts) + b"".join(indices))
+        file.write(_record(FOOTER, struct.pack("<QQI", summary, 0, 0)) + MAGIC)
     return count

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sequence as MCAP: what the libraries @mcap/core and rosmsg2-serialization read of it (Node.js), and what is wrong
+"""A sequence as a bag: what the libraries @mcap/core and rosmsg2-serialization read of it (Node.js), and what is wrong
 with a folder."""
 import base64
 import json
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import avianlidar
-from avianlidar.apps.sequences import _mcap
+from avianlidar.apps.sequences import _rosbag
 from cloudtools import pose_line, write_sequence
 from echotools import InFolder
 from helpertools import run
@@ -24,7 +24,7 @@ COUNTS = (5, 0, 70000)
 TIMES = (0.0, 2.5, 1234567.000001)
 
 
-class TestMcap(InFolder):
+class TestBags(InFolder):
     def setUp(self):
         super().setUp()
         self.sequence, self.out = self.folder / "00", self.folder / "out.mcap"
@@ -37,7 +37,7 @@ class TestMcap(InFolder):
         (self.sequence / name).write_text(text, "utf-8")
 
     def read(self):
-        self.assertEqual(_mcap.write(self.sequence, self.out), 3)
+        self.assertEqual(_rosbag.write(self.sequence, self.out), 3)
         if not (MODULES / "@mcap").is_dir():
             self.skipTest("the node modules of Testing/IO are not there")
         return json.loads(subprocess.run([os.environ["AVIANLIDAR_NODE"], READER, self.out], check=True,
@@ -76,6 +76,19 @@ class TestMcap(InFolder):
         self.assertAlmostEqual(np.linalg.norm(turn), 1, 9)
         self.assertLess(np.abs(Rotation.from_quat(turn).as_matrix() - rotation).max(), 1e-9)
 
+    def test_files_of_another_program(self):
+        if not (MODULES / "@mcap").is_dir():
+            self.skipTest("the node modules of Testing/IO are not there")
+        for chunks in ("true", "false"):
+            subprocess.run([os.environ["AVIANLIDAR_NODE"], READER.with_name("write_mcap.js"), self.out, chunks], check=True)
+            recording = avianlidar.load_clouds(self.out)
+            np.testing.assert_allclose(recording.times, [7.0000005, 8.0000005], rtol=0, atol=1e-12)
+            first, second = recording
+            np.testing.assert_array_equal(second.points, [[-9, 8, 10], [-14, 13, 15], [-19, 18, 20]])
+            np.testing.assert_array_equal(first["laser_id"], [4, 9, 14])
+            # half a turn about z, then x right and y forward
+            np.testing.assert_allclose(recording.pose(1), [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3]], atol=1e-12)
+
     def test_boxes(self):
         (self.sequence / "boxes").mkdir()
         for number, text in enumerate(("bird 0.00 0.25 -180.25 -226.5 27.75 0.5 1.25 0.125 1.6271 10000 3\ncar 0.5 "
@@ -101,7 +114,7 @@ class TestMcap(InFolder):
         self.put("boxes/000002.txt", "bird 0 0 1 2 3\n")
         with self.assertRaisesRegex(ValueError,
                                     "000002.txt: expected lines of a class, 9 numbers, an id and a number of points"):
-            _mcap.write(self.sequence, self.out)
+            _rosbag.write(self.sequence, self.out)
 
     def test_poses_of_a_camera(self):
         """KITTI's: x right, y down, z forward. One that drives forward drives along x of the lidar."""
@@ -123,13 +136,13 @@ class TestMcap(InFolder):
 
     def test_a_sequence_without_labels(self):
         shutil.rmtree(self.sequence / "labels")
-        self.assertEqual(_mcap.write(self.sequence, self.out), 3)
+        self.assertEqual(_rosbag.write(self.sequence, self.out), 3)
 
     def test_errors(self):
         """What the command says, and each file with what is wrong in it; no file is left."""
         def refused(words, source=None):
             with self.assertRaises((ValueError, avianlidar.Error)) as caught:
-                _mcap.write(pathlib.Path(source or self.sequence), self.out)
+                _rosbag.write(pathlib.Path(source or self.sequence), self.out)
             self.assertIn(words, str(caught.exception))
             self.assertFalse(self.out.exists())
 
