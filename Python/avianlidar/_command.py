@@ -23,6 +23,8 @@ PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.032 s; 9.2 %%, 
            "Paper": "the paper's method, its noise of 100 rays: 16 %%, 0.2 s; 16 %%, 0.4 s"}
 SENSOR = "a name that `avianlidar sensors` lists, or a .lidarsensor.json file"
 MANY = "may be given many times"
+RECORDING = ("a folder or a quoted pattern of numbered files, a bag of ROS 2 (.mcap, .db3), packets, or a folder of "
+             "SemanticKITTI or nuScenes")
 RESUMES = "The same command continues a stopped run. `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work."
 
 # For each verb: a few words, a description and examples.
@@ -43,9 +45,10 @@ VERBS = {
   avianlidar advise hangar.stl --position 0 -60 2 --missed 0.005 --beams 4000 -o advice.json -o advice.png
 """),
     "info": ("what is in a file",
-        "Shows what a file holds: a scene, a mesh, a cloud, a sensor, a plan or a scenario.", """\
+        "Shows what a file holds: a scene, a mesh, a cloud, a sensor, a plan, a scenario or recorded scans.", """\
   avianlidar info hangar.stl
   avianlidar info echoes.las
+  avianlidar info drive.mcap
 """),
     "compare": ("how far two clouds are apart",
         "Computes distances between the nearest points of two clouds: the median and other percentiles, the Hausdorff "
@@ -55,10 +58,12 @@ VERBS = {
 """),
     "convert": ("a cloud in another format",
         "Writes a cloud in another format. Names and units of arrays are kept as far as both formats have them. A "
-        "labelled sequence becomes one file of ROS 2 messages (.mcap, .db3).", """\
+        "labelled sequence becomes one file of ROS 2 messages (.mcap, .db3). A recording becomes a folder of numbered "
+        "files (.pcd).", """\
   avianlidar convert echoes.las echoes.pcd
   avianlidar convert drive.pcap revolution.ply --sensor-address 192.168.1.201 --time 12.5
   avianlidar convert sequences/sequences/00 sequence.mcap
+  avianlidar convert drive.mcap scans
 """),
     "view": ("a scene with echoes, birds and coverage as one page that any browser opens",
         "Writes one page of HTML with a scene in three dimensions, which works without the internet: surfaces, echoes "
@@ -78,12 +83,15 @@ VERBS = {
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """),
-    "track": ("tracks of birds in labelled scans, with scores",
+    "track": ("tracks of birds in simulated or recorded scans",
         "Writes a report card (HTML, CSV) of tracks in sequences: share of birds tracked, delay, identity switches, "
         "false tracks an hour, warning time. Sequences of a scenario are made first. Several inputs are compared. "
-        f"{RESUMES}", """\
+        f"{RESUMES} For recorded scans, writes the tracks of all that moves, without scores (HTML, CSV, GeoJSON, a "
+        "state for ParaView).", """\
   avianlidar track sequences -o tracks --runways hongqiao.geojson
   avianlidar track hongqiao.scenario.json -o tracks --sensor Search905 --sensor Search1550 --scans 500
+  avianlidar track "scans/*.pcd" -o tracks --rate 10
+  avianlidar track drive.mcap -o tracks --origin 31.1979 121.3363 3 --heading 12
 """),
     "bench": ("clutter filters compared with labels",
         "Compares predictions for labelled sequences (in SemanticKITTI's format) with the labels: a page (HTML) and "
@@ -180,6 +188,13 @@ def _out(verb, what: str, required: bool = True, **options: Any) -> None:
     verb.add_argument("-o", "--out", type=pathlib.Path, help=what, required=required, **options)
 
 
+def _of_recording(add) -> None:
+    """Adds the options that choose scans of a recording."""
+    add("--rate", type=float, metavar="HZ", help="scans a second of a recording in numbered files; default: times in "
+        "times.txt or timestamps.txt beside the files, or in their names, else 10 (assumed)")
+    add("--topic", help="topic of the clouds in a bag, or scene of nuScenes; default: the only one")
+
+
 def parser() -> Parser:
     """The parser of all arguments."""
     from ._version import __version__
@@ -223,16 +238,21 @@ def parser() -> Parser:
                  action="append", default=[])
 
     add = verb["info"].add_argument
-    add("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario")
+    add("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario, or a recording: "
+        f"{RECORDING}")
     add("--quiet", action="store_true", help="omits, for a cloud, the lines on what was modelled and what was left out")
     verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
     verb["compare"].add_argument("b", type=pathlib.Path, help="a second cloud, in the same coordinates")
     _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
-    verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence")
-    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap or .db3")
+    verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence; or a "
+                                 "recording")
+    verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap or .db3; for a "
+                                 "recording a folder")
     verb["convert"].add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
         help="position of the sensor in the coordinates of the cloud, m, to which a KITTI scan (.bin) is relative; "
         "default: the position in the file")
+    for name in ("info", "convert"):
+        _of_recording(verb[name].add_argument)
     for name in ("info", "compare", "convert"):
         add = verb[name].add_argument
         add("--sensor-address", metavar="ADDRESS", help="address of the sensor in packets (.pcap), as 192.168.1.201 or "
@@ -286,12 +306,18 @@ def parser() -> Parser:
     add("--scans", type=int, help="number of scans that replaces the number in the scenario")
 
     add = verb["track"].add_argument
-    add("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files")
+    add("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files; or recordings: "
+        f"{RECORDING}")
+    _of_recording(add)
+    add("--origin", nargs=3, type=float, metavar=("LAT", "LON", "HEIGHT"),
+        help="place of a recording's origin, deg and m above the ellipsoid WGS84, for GeoJSON")
+    add("--heading", type=float, help="direction of a recording's y axis, deg clockwise from north; default 0")
     add("--runways", type=pathlib.Path,
         help="a GeoJSON file with lines of kind runway, for warning times before birds enter a strip or a glide path")
     add("--sensor", action="append", default=[],
-        help=f"sensor that replaces the sensor of scenarios, a name or a .lidarsensor.json file; {MANY}")
-    add("--scans", type=int, help="number of scans that replaces the number in scenarios")
+        help=f"sensor that replaces the sensor of scenarios, a name or a .lidarsensor.json file; {MANY}; of a recording "
+        "the sensor whose steps between beams are used")
+    add("--scans", type=int, help="number of scans that replaces the number in scenarios, or that are read")
     add("--learn", type=int, default=20,
         help="number of scans at the beginning of a sequence from which only clutter is learned; default 20")
     add("--cutoff", type=float, default=20.0, help="distance in m from which on a track is not assigned to a bird; "

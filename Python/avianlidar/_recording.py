@@ -37,6 +37,7 @@ class _Scans(NamedTuple):
     poses: list[np.ndarray] | None  # 3 x 4, of each scan
     clouds: Callable[[], Iterator[Cloud]]
     left_out: dict[str, int]  # number of scans by the reason
+    files: list[pathlib.Path]  # that vtkAvianLidarPointCloudReader reads as the same scans
 
 
 class Recording:
@@ -49,9 +50,9 @@ class Recording:
     ...     print(time, cloud.number_of_points)
     """
 
-    def __init__(self, source, scans: _Scans):
-        self.source = source
-        self.times, self.times_from, self.frame, self.poses, self._clouds, self.left_out = scans
+    def __init__(self, source, scans: _Scans, rate: float | None = None):
+        self.source, self.rate = source, rate
+        self.times, self.times_from, self.frame, self.poses, self._clouds, self.left_out, self.files = scans
 
     def __len__(self) -> int:
         return len(self.times)
@@ -106,9 +107,9 @@ def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
     (suffix,) = suffixes
     if suffix in PACKETS and len(files) > 1:
         raise ValueError(f"{files[0]}: {len(files)} files of packets, expected one: each of its revolutions is a scan")
-    frame = SENSOR if suffix in (".bin", *PACKETS) else OF_FILE
+    frame, known = SENSOR if suffix in (".bin", *PACKETS) else OF_FILE, files if suffix in READERS else []
     if len(files) == 1 and suffix not in PACKETS:
-        return _Scans(np.zeros(1), "one file", frame, None, lambda: iter([_cloud(files[0])]), {})
+        return _Scans(np.zeros(1), "one file", frame, None, lambda: iter([_cloud(files[0])]), {}, known)
     reader = _wrapped.vtkAvianLidarPointCloudReader()
     for file in files:
         reader.AddFileName(file_name(file))
@@ -120,7 +121,7 @@ def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
     times = np.array(found)
     if suffix in PACKETS:
         return _Scans(times, "packets, s since the full hour", frame, None,
-                      lambda: (_cloud(files[0], time=time) for time in times.tolist()), {})
+                      lambda: (_cloud(files[0], time=time) for time in times.tolist()), {}, known)
     names = [pathlib.Path(reader.GetScanFileName(k)) for k in range(len(times))]
     poses, home = None, files[0].parent.parent
     if suffix == ".bin" and (home / "poses.txt").exists():
@@ -128,7 +129,7 @@ def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
         if len(poses) != len(names):
             raise ValueError(f"{home / 'poses.txt'}: has {len(poses)} poses, expected one for each of "
                              f"{len(names)} scans")
-    return _Scans(times, reader.GetScanTimes(), frame, poses, lambda: map(_cloud, names), {})
+    return _Scans(times, reader.GetScanTimes(), frame, poses, lambda: map(_cloud, names), {}, names if known else [])
 
 
 class _Transforms:
@@ -232,7 +233,7 @@ def _of_bag(source, files: list[pathlib.Path], topic: str | None) -> _Scans:
             except _bags.Torn:  # counted above
                 pass
     times = np.array([1e-9 * stamps[topic][number][0] for number in kept])
-    return _Scans(times, f"messages of {topic}, s", SENSOR, known, clouds, left_out)
+    return _Scans(times, f"messages of {topic}, s", SENSOR, known, clouds, left_out, [])
 
 
 def _from_rows(cloud: _ros.PointCloud, file: pathlib.Path) -> Cloud:
@@ -299,7 +300,7 @@ def _of_nuscenes(root: pathlib.Path, scene: str | None) -> _Scans:
         raise ValueError(f"{home}: its tables lack {error}") from None
     files = [root / row["filename"] for row in rows]
     return _Scans(1e-6 * np.array([row["timestamp"] for row in rows]), "tables of nuScenes, s since 1970", SENSOR, poses,
-                  lambda: map(_cloud, files), {})
+                  lambda: map(_cloud, files), {}, files)
 
 
 def _in_folder(folder: pathlib.Path) -> list[pathlib.Path]:
@@ -351,7 +352,7 @@ def load_clouds(source, rate: float | None = None, topic: str | None = None) -> 
         raise ValueError(f"{source} is not a recording{wrong}: expected {EXPECTED}")
     if topic is not None:
         raise ValueError(f"topic is {topic!r}, expected none for {source}: only bags and nuScenes have topics")
-    return Recording(source, _of_files(files, rate))
+    return Recording(source, _of_files(files, rate), rate)
 
 
 def warn_of_left_out(recording: Recording) -> None:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The verbs of the command `avianlidar`. A function imports modules of `apps` that only some verbs need."""
+import glob
 import pathlib
 import textwrap
 import warnings
@@ -8,17 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from . import Cloud, Scan, Scene, Sensor, _display, _scene, _sheet, load_cloud, save
+from . import Cloud, Scan, Scene, Sensor, _display, _scene, _sheet, load_cloud, load_clouds, save
 from . import vtkAvianLidar as _wrapped
 from ._advice import check_suffix as check_advice
 from ._advice import notes_of, table_rows, to_act_on
+from ._bags import SUFFIXES
 from ._cloud import add_array, vertices
-from ._disk import replacing
+from ._disk import only_run, replacing, write_whole
 from ._numbers import figures
 from ._pipeline import update
 from ._sight import extent, of_scene
 from ._suffixes import OF_SENSOR, PACKETS, POINTS
-from ._terminal import bar, table, tell, warn
+from ._terminal import bar, close_bar, table, tell, warn
 from ._weather import weather
 from ._writers import check_suffix, check_target
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
@@ -176,8 +178,46 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
         table(notes_of(fields))
 
 
+def _say_recording(options) -> None:
+    """Prints what a recording holds. All scans are read."""
+    recording = load_clouds(str(options.file), options.rate, options.topic)
+    gaps = np.diff(recording.times)
+    counts, ranges = [], {}
+    for number, cloud in enumerate(recording):
+        counts.append(cloud.number_of_points)
+        for name, values in cloud.items():
+            finite = values[np.isfinite(values)]
+            if finite.size:
+                low, high, _ = ranges.get(name, (np.inf, -np.inf, ""))
+                ranges[name] = min(low, finite.min()), max(high, finite.max()), cloud.units[name]
+        bar("scans read", number + 1, len(recording))
+    close_bar()
+    tell(f"{options.file}: a recording of {len(recording)} scans")
+    for reason, count in recording.left_out.items():
+        warn(f"{options.file}: {count} left out: {reason}")
+    rows = {"times from": recording.times_from, "frame": recording.frame,
+            "points a scan": f"{min(counts)} to {max(counts)}, {np.mean(counts):.1f} on average"}
+    if len(gaps):
+        middle = np.median(gaps)
+        rows["duration"] = f"{recording.times[-1] - recording.times[0]:.6g} s, from {recording.times[0]:.10g} s on"
+        rows["rate"] = f"{1.0 / middle:.4g} Hz"
+        rows["gaps"] = f"{(gaps > 1.5 * middle).sum()} longer than 1.5 scans, the longest {gaps.max():.4g} s"
+    place = recording.pose(0)[:, 3]
+    rows["pose"] = "none" if recording.poses is None else (
+        f"the sensor {'moves' if recording.moves else 'stands still'}, at first at ({_words(place)}) m")
+    table(rows.items())
+    table([("array", "unit", "least", "greatest"),
+           *((name, unit or "-", figures(low), figures(high)) for name, (low, high, unit) in ranges.items())])
+
+
 def info(options) -> None:
     file, name = options.file, options.file.name.lower()
+    if file.is_dir() or file.suffix.lower() in SUFFIXES or not file.exists() and glob.has_magic(str(file)):
+        _say_recording(options)
+        return
+    for option in ("rate", "topic"):
+        if getattr(options, option) is not None:
+            raise ValueError(f"--{option} is for recordings, expected none for {file}")
     if not file.exists():
         raise FileNotFoundError(f"no such file: {file}")
     chosen = _of_packets(options, file)
@@ -287,6 +327,20 @@ def compare(options) -> None:
         tell(f"{options.out}: {a} with nearest_distance (m)")
 
 
+def _convert_recording(options) -> None:
+    """Writes the scans of a recording as numbered files and times.txt."""
+    recording = load_clouds(str(options.file), options.rate, options.topic)
+    with only_run(options.out, goes_on=False):
+        for number, cloud in enumerate(recording):
+            save(cloud, options.out / f"{number:06d}.pcd")
+            bar("scans written", number + 1, len(recording))
+        write_whole(options.out / "times.txt", "".join(f"{time:.9f}\n" for time in recording.times).encode())
+    close_bar()
+    tell(f"{options.out}: {len(recording)} scans of {options.file}, and times.txt; times from: {recording.times_from}")
+    if recording.poses is not None:
+        warn(f"{options.file}: its poses are not in {options.out}, whose scans are in the frame {recording.frame}")
+
+
 def convert(options) -> None:
     chosen = _of_packets(options, options.file)
     if options.out.suffix.lower() in (".mcap", ".db3"):
@@ -295,6 +349,9 @@ def convert(options) -> None:
         check_target(options.out)
         from .apps.sequences import _rosbag
         tell(f"{options.out}: {_rosbag.write(options.file, options.out)} scans of {options.file}")
+        return
+    if not options.out.suffix:
+        _convert_recording(options)
         return
     check_suffix(options.out)
     check_target(options.out)

@@ -10,10 +10,12 @@ from typing import Any, Dict, Iterator, List, Tuple
 
 from .. import reach as ranges
 from .._disk import only_run
+from .._files import checked_name
 from .._properties import PATTERN, in_snake_case, snake
 from .._ranks import Ranks
+from .._recording import load_clouds
 from .._sensor import Sensor
-from .._terminal import bar, close_bar, table, tell, warn
+from .._terminal import bar, close_bar, in_time, table, tell, warn
 from .._weather import without_air
 from .coverage import _sites_page
 from .coverage._answer import percent, share_of
@@ -27,6 +29,7 @@ from .inputs._read import PROPERTIES, read_plan, read_scenario
 from .inputs._tables import write_table
 from .pages import _drawing as drawing
 from .pages._words import counted
+from .sequences._recorded import RecordedTracks
 from .sequences._sequence import Sequence
 from .sequences._tracks import BirdTracks
 from .view import _view
@@ -84,7 +87,46 @@ def sequence(options) -> None:
              f"{', view.html shows the first sequence' if shown else ''}")
 
 
+_OF_RECORDINGS = ("rate", "topic", "origin", "heading")
+
+
+def is_recording(name: str) -> bool:
+    """Whether an input is recorded scans, neither a folder of sequences nor a scenario."""
+    path = pathlib.Path(name)
+    return not (path / "manifest.json").exists() if path.is_dir() else path.suffix.lower() != ".json"
+
+
+def _track_recordings(options) -> None:
+    if len(options.sensor) > 1:
+        raise ValueError(f"--sensor is given {len(options.sensor)} times, expected once for a recording: its own sensor")
+    if options.weather:
+        raise ValueError("--weather is for scenarios, expected none for a recording")
+    names = [pathlib.Path(name).name.split(".")[0] for name in options.inputs]
+    for number, name in enumerate(options.inputs):
+        recording = load_clouds(name, options.rate, options.topic)
+        for reason, count in recording.left_out.items():
+            warn(f"{name}: {counted(count, 'scan')} left out: {reason}")
+        out = options.out / checked_name(names[number], "the name of a recording") if len(names) > 1 else options.out
+        found = RecordedTracks(recording, Sensor(options.sensor[0]) if options.sensor else None, options.learn,
+                               dict(options.clutter_set), dict(options.tracker_set), options.origin,
+                               options.heading or 0.0, options.runways, options.scans).write(out, bar)
+        close_bar()
+        tell(f"{name}: {counted(len(recording), 'scan')}; times from: {recording.times_from}",
+             f"{out / 'tracks.html'}: {counted(found['tracks'], 'confirmed track')} in "
+             f"{in_time(found['seconds'])}; play.py is a state for ParaView")
+
+
 def track(options) -> None:
+    recorded = [name for name in options.inputs if is_recording(name)]
+    if recorded and len(recorded) == len(options.inputs):
+        drawing.require()
+        _track_recordings(options)
+        return
+    if recorded:
+        raise ValueError(f"{recorded[0]} is a recording, but other inputs are sequences or scenarios: expected one kind")
+    for name in _OF_RECORDINGS:
+        if getattr(options, name) is not None:
+            raise ValueError(f"--{name} is for recordings, expected none for sequences and scenarios")
     ranks, threads = _job(options)
     tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
                         dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads,

@@ -7,7 +7,7 @@ import functools
 import json
 import math
 import pathlib
-from typing import Any, Counter, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence as Many, Tuple
+from typing import Any, Counter, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence as Many, Tuple, Union
 
 import numpy as np
 
@@ -59,10 +59,18 @@ class Scan(NamedTuple):
     labels: np.ndarray
 
 
+class Beams(NamedTuple):
+    """What the clutter filter and the tracker know of the sensor."""
+    azimuth_step: float  # deg, 0 for unknown
+    elevation_step: float
+    half_beamwidth: float  # rad
+    position: Many[float]  # m
+
+
 class Chain:
     """A clutter filter and a tracker, which process one scan after another."""
 
-    def __init__(self, sensor: Sensor, learning: int, clutter: Dict[str, Any], tracker: Dict[str, Any]):
+    def __init__(self, sensor: Union[Sensor, Beams], learning: int, clutter: Dict[str, Any], tracker: Dict[str, Any]):
         """Steps of the grid and width of the beam are taken from the sensor unless they are set."""
         steps = {"azimuth_step": sensor.azimuth_step, "elevation_step": sensor.elevation_step}
         steps = {name: step for name, step in steps.items() if step > 0.0}
@@ -70,9 +78,11 @@ class Chain:
         self.filter, self.tracker = _wrapped.vtkAvianLidarClutterFilter(), _wrapped.vtkAvianLidarTracker()
         self.filter.SetController(None)  # ranks process different sequences
         self.tracker.SetController(None)
-        set_properties(self.filter, "vtkAvianLidarClutterFilter", **{"warm_up": learning, **steps, **clutter})
-        set_properties(self.tracker, "vtkAvianLidarTracker", **{
-            "half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0, **angle, **tracker})
+        self.of_filter = {"warm_up": learning, **steps, **clutter}
+        self.of_tracker = {"half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0, **angle,
+                           **tracker}
+        set_properties(self.filter, "vtkAvianLidarClutterFilter", **self.of_filter)
+        set_properties(self.tracker, "vtkAvianLidarTracker", **self.of_tracker)
         self.position = np.array(sensor.position, float)
 
     def properties(self) -> Dict[str, str]:
