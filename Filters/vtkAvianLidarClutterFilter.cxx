@@ -23,6 +23,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -83,10 +84,16 @@ void SharePosition(const vtkAvianLidarRanks& ranks, bool hasPoints, double posit
 std::vector<ClutterMap::Key> KeysOf(vtkPointSet* cloud, const Setup& setup)
 {
   std::vector<ClutterMap::Key> keys(static_cast<std::size_t>(cloud->GetNumberOfPoints()));
+  vtkPoints* points = cloud->GetPoints();
+  auto* const doubles = vtkDoubleArray::SafeDownCast(points ? points->GetData() : nullptr);
   for (std::size_t i = 0; i < keys.size(); ++i)
   {
-    double p[3];
-    cloud->GetPoint(static_cast<vtkIdType>(i), p);
+    double copied[3];
+    const double* const p = doubles ? doubles->GetPointer(0) + 3 * i : copied;
+    if (!doubles)
+    {
+      points->GetPoint(static_cast<vtkIdType>(i), copied);
+    }
     const std::string wrong = avianlidar::checkPosition({ p[0], p[1], p[2] });
     if (!wrong.empty())
     {
@@ -181,12 +188,17 @@ void WriteTable(const ClutterMap& map, const double position[3], vtkPolyData* ou
   auto points = Arrays::MakePoints(size);
   auto persistence = Arrays::Make<vtkDoubleArray>(Arrays::ClutterProbability, size);
   auto indices = Arrays::Make<vtkIntArray>(Arrays::ClutterCell, size, 3);
+  const std::vector<avianlidar::Vec3> middles = map.middles();
+  double* place = vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0);
   for (vtkIdType i = 0; i < size; ++i)
   {
     const auto k = static_cast<std::size_t>(i);
     const ClutterCell cell = ClutterMap::cellOf(map.keys()[k]);
-    const avianlidar::Vec3 middle = ClutterMap::middleOf(map.grid(), cell);
-    points->SetPoint(i, position[0] + middle.x, position[1] + middle.y, position[2] + middle.z);
+    const avianlidar::Vec3& middle = middles[k];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      *place++ = position[axis] + middle[axis];
+    }
     persistence->SetValue(i, map.persistence(k));
     indices->SetTypedComponent(i, 0, cell.azimuth);
     indices->SetTypedComponent(i, 1, cell.elevation);

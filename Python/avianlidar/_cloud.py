@@ -100,10 +100,10 @@ def add_array(arrays, name: str, values, unit: str = "") -> None:
     arrays.AddArray(array)
 
 
-def with_points(rows) -> vtkPolyData:
-    """vtkPolyData whose points are a copy of n rows of x, y, z, without cells."""
+def with_points(rows, deep: bool = True) -> vtkPolyData:
+    """vtkPolyData whose points are n rows of x, y, z, without cells. @param deep whether the points are a copy"""
     data, places = vtkPolyData(), vtkPoints()
-    places.SetData(numpy_to_vtk(np.ascontiguousarray(rows), deep=True))
+    places.SetData(numpy_to_vtk(np.ascontiguousarray(rows), deep=deep))
     data.SetPoints(places)
     return data
 

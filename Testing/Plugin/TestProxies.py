@@ -35,8 +35,14 @@ NO_PAIR = {"Advise", "KnownSpecies", "Reload", "TimestepValues", "TablesOfPreset
 OTHER_NAMES = {"MeteorologicalVisibility": "Visibility", "ObjectName": "NameOfObject"}
 # Properties with any number of values: the method that counts them, the one that gives them.
 LISTS = {"ChannelElevations": ("GetNumberOfChannelElevations", "GetChannelElevation"),
-         "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit")}
+         "HeightLimits": ("GetNumberOfHeightLimits", "GetHeightLimit"),
+         "AvianLidarPointCloudReader.FileName": ("GetNumberOfFileNames", "GetScanFileName")}
 FREE_TEXTS = ("GivenFileName", "ObjectName", "BlockNamePattern", "Name", "SensorAddress")
+
+
+def listed(name, prop):
+    """The methods of a list of any length."""
+    return LISTS.get(name, LISTS.get(prop))
 
 
 def made(name):
@@ -197,8 +203,8 @@ class TestProxies(unittest.TestCase):
     def test_default_is_that_of_the_class(self):
         for name, instance, smproperty, prop in self.each_property():
             with self.subTest(name):
-                if prop in LISTS:
-                    count, value = (getattr(instance, method) for method in LISTS[prop])
+                if listed(name, prop):
+                    count, value = (getattr(instance, method) for method in listed(name, prop))
                     expected = [value(i) for i in range(count())]
                 elif prop == "BeamwidthMilliradians":
                     expected = [round(2000 * instance.GetHalfBeamwidth(), 9)]
@@ -214,7 +220,7 @@ class TestProxies(unittest.TestCase):
         fresh.update((writer[len("vtk"):] + "Core", core_of(writer).SMProxy) for writer in WRITERS)
         for name, _, smproperty, prop in self.each_property():
             proxy = fresh.get(name.split(".")[0])
-            if proxy and prop not in LISTS and prop != "BeamwidthMilliradians" and smproperty.GetCommand():
+            if proxy and not listed(name, prop) and prop != "BeamwidthMilliradians" and smproperty.GetCommand():
                 smproperty = proxy.GetProperty(prop)
                 last = values_of(smproperty)[-1]
                 value = last + "x" if isinstance(last, str) else last + 1 if last != 1 else 0

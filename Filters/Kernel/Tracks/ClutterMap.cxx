@@ -128,13 +128,40 @@ bool ClutterMap::holds(const ClutterGrid& grid, const ClutterCell& cell)
 }
 
 //------------------------------------------------------------------------------
-Vec3 ClutterMap::middleOf(const ClutterGrid& grid, const ClutterCell& cell)
+std::vector<Vec3> ClutterMap::middles() const
 {
-  const double azimuth = 2.0 * Pi * cell.azimuth / grid.columns();
-  const double elevation = cell.elevation * grid.elevationStep * RadiansPerDegree;
-  const double range = (cell.range + 0.5) * grid.rangeStep;
-  const double across = range * std::cos(elevation);
-  return { across * std::sin(azimuth), across * std::cos(azimuth), range * std::sin(elevation) };
+  // Sine and cosine of each elevation that occurs, found once.
+  const int rows = static_cast<int>(std::lround(90.0 / this->Grid.elevationStep));
+  constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::pair<double, double>> elevations(
+    static_cast<std::size_t>(2 * rows + 1), { Unknown, Unknown });
+  std::vector<Vec3> found;
+  found.reserve(this->Keys.size());
+  int column = -1;
+  double east = 0.0;
+  double north = 0.0;
+  for (const Key key : this->Keys)
+  {
+    const ClutterCell cell = cellOf(key);
+    if (cell.azimuth != column) // cells are sorted by azimuth
+    {
+      const double azimuth = 2.0 * Pi * cell.azimuth / this->Grid.columns();
+      column = cell.azimuth;
+      east = std::sin(azimuth);
+      north = std::cos(azimuth);
+    }
+    auto& [rise, level] = elevations[static_cast<std::size_t>(cell.elevation + rows)];
+    if (std::isnan(rise))
+    {
+      const double elevation = cell.elevation * this->Grid.elevationStep * RadiansPerDegree;
+      rise = std::sin(elevation);
+      level = std::cos(elevation);
+    }
+    const double range = (cell.range + 0.5) * this->Grid.rangeStep;
+    const double across = range * level;
+    found.push_back({ across * east, across * north, range * rise });
+  }
+  return found;
 }
 
 //------------------------------------------------------------------------------
@@ -144,15 +171,16 @@ double ClutterMap::persistenceKept() const
 }
 
 //------------------------------------------------------------------------------
-double ClutterMap::total() const
+void ClutterMap::setScans(int scans)
 {
-  return -this->Window * std::expm1(this->Scans * std::log1p(-1.0 / this->Window));
+  this->Scans = scans;
+  this->Total = -this->Window * std::expm1(scans * std::log1p(-1.0 / this->Window));
 }
 
 //------------------------------------------------------------------------------
 double ClutterMap::shareOf(double sum) const
 {
-  return sum > 0.0 ? std::min(1.0, sum / this->total()) : 0.0; // rounding may leave more than 1
+  return sum > 0.0 ? std::min(1.0, sum / this->Total) : 0.0; // rounding may leave more than 1
 }
 
 //------------------------------------------------------------------------------
@@ -160,11 +188,11 @@ ClutterMap ClutterMap::learned(std::vector<Key> points) const
 {
   const std::vector<Key> scan = distinct(std::move(points));
   ClutterMap result(this->Grid, this->Window);
-  result.Scans = std::min(this->Scans, std::numeric_limits<int>::max() - 1) + 1;
+  result.setScans(std::min(this->Scans, std::numeric_limits<int>::max() - 1) + 1);
   result.Keys.reserve(this->Keys.size() + scan.size());
   result.Sums.reserve(this->Keys.size() + scan.size());
   const double weight = 1.0 - 1.0 / this->Window;
-  const double least = this->persistenceKept() * result.total();
+  const double least = this->persistenceKept() * result.Total;
   std::size_t old = 0;
   std::size_t fresh = 0;
   while (old < this->Keys.size() || fresh < scan.size())
@@ -192,11 +220,11 @@ ClutterMap ClutterMap::restored(
   const std::vector<Key>& cells, const std::vector<double>& persistences, int scans) const
 {
   ClutterMap result(this->Grid, this->Window);
-  result.Scans = scans;
+  result.setScans(scans);
   std::vector<std::pair<Key, double>> both(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i)
   {
-    both[i] = { cells[i], persistences[i] * result.total() };
+    both[i] = { cells[i], persistences[i] * result.Total };
   }
   std::sort(both.begin(), both.end());
   for (const auto& [key, sum] : both)
@@ -221,35 +249,60 @@ std::vector<double> ClutterMap::probabilities(
   const int columns = this->Grid.columns();
   // On a coarse circle the neighbours of both sides meet.
   const int sides = std::min(angularTolerance, columns / 2);
+  std::vector<std::pair<int, int>> rows; // of neighbours, the nearest first
   for (int turn = -sides; turn <= sides; ++turn)
   {
     for (int rise = -angularTolerance; rise <= angularTolerance; ++rise)
     {
-      std::size_t place = 0;
-      Key before = 0;
-      for (std::size_t i = 0; i < scan.size(); ++i)
+      rows.emplace_back(turn, rise);
+    }
+  }
+  std::stable_sort(rows.begin(), rows.end(),
+    [](const auto& a, const auto& b)
+    { return std::abs(a.first) + std::abs(a.second) < std::abs(b.first) + std::abs(b.second); });
+  const auto column = [](int azimuth)
+  { return static_cast<Key>(azimuth) << (ElevationBits + RangeBits); }; // modulo 2^64 if below zero
+  for (const auto& [turn, rise] : rows)
+  {
+    const Key step =
+      column(turn) + (static_cast<Key>(rise) << RangeBits) - static_cast<Key>(rangeTolerance);
+    std::size_t place = 0;
+    Key before = 0;
+    for (std::size_t i = 0; i < scan.size(); ++i)
+    {
+      if (largest[i] >= this->Total) // nothing is larger
       {
-        ClutterCell cell = cellOf(scan[i]);
-        cell.azimuth = (cell.azimuth + turn + columns) % columns;
-        cell.elevation += rise;
-        cell.range -= rangeTolerance;
-        const Key first = keyOf(cell);
-        place = gallop(this->Keys, first < before ? 0 : place, first);
-        before = first;
-        const Key last = first + static_cast<Key>(2 * rangeTolerance);
-        for (std::size_t k = place; k < this->Keys.size() && this->Keys[k] <= last; ++k)
-        {
-          largest[i] = std::max(largest[i], this->Sums[k]);
-        }
+        continue;
+      }
+      Key first = scan[i] + step;
+      if (turn < 0 && scan[i] < column(-turn))
+      {
+        first += column(columns);
+      }
+      else if (turn > 0 && scan[i] >= column(columns - turn))
+      {
+        first -= column(columns);
+      }
+      place = gallop(this->Keys, first < before ? 0 : place, first);
+      before = first;
+      const Key last = first + static_cast<Key>(2 * rangeTolerance);
+      for (std::size_t k = place; k < this->Keys.size() && this->Keys[k] <= last; ++k)
+      {
+        largest[i] = std::max(largest[i], this->Sums[k]);
       }
     }
   }
+  for (double& sum : largest)
+  {
+    sum = this->shareOf(sum);
+  }
   std::vector<double> result(points.size());
+  std::size_t at = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    const auto found = std::lower_bound(scan.begin(), scan.end(), points[i]);
-    const double sum = largest[static_cast<std::size_t>(found - scan.begin())];
-    result[i] = this->shareOf(sum);
+    const bool isAhead = at < scan.size() && scan[at] <= points[i]; // often near the point before
+    at = gallop(scan, isAhead ? at : 0, points[i]);
+    result[i] = largest[at];
   }
   return result;
 }

@@ -71,8 +71,8 @@ public:
   static ClutterCell cellOf(Key key);
   /// True if the grid has this cell.
   static bool holds(const ClutterGrid& grid, const ClutterCell& cell);
-  /// The middle of a cell relative to the sensor, m.
-  static Vec3 middleOf(const ClutterGrid& grid, const ClutterCell& cell);
+  /// The middles of all cells relative to the sensor, m, in the order of keys().
+  std::vector<Vec3> middles() const;
 
   /// The map after one more scan. @param points keys of the scan's points, in any order
   ClutterMap learned(std::vector<Key> points) const;
@@ -95,12 +95,13 @@ public:
   double persistenceKept() const;
 
 private:
-  double total() const; ///< sum of the weights of all scans
+  void setScans(int scans);
   double shareOf(double sum) const;
 
   ClutterGrid Grid;
   double Window;
   int Scans = 0;
+  double Total = 0.0; ///< sum of the weights of all scans
   std::vector<Key> Keys;
   std::vector<double> Sums; ///< sum of the weights of scans with an echo, by cell
 };

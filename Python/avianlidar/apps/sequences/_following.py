@@ -12,11 +12,11 @@ from typing import Any, Counter, Dict, Iterable, Iterator, List, NamedTuple, Opt
 import numpy as np
 
 from ... import vtkAvianLidar as _wrapped
-from ..._cloud import Cloud, add_array, as_numpy
+from ..._cloud import Cloud, add_array, as_numpy, with_points
 from ..._pipeline import Error, Updates, update
 from ..._properties import get_property, property_names, set_properties
 from ..._ranks import digest_of_arrays
-from ..._scene import Scene, load_scene, mesh
+from ..._scene import Scene, load_scene
 from ..._sensor import Sensor
 from ..inputs._json import naming
 from ..inputs._read import read_manifest, read_scenario
@@ -111,7 +111,7 @@ class Chain:
 
 
 def _cloud(points: np.ndarray, time: float, position: np.ndarray):
-    cloud = mesh(points, np.empty((0, 3), int))
+    cloud = with_points(points, deep=False)
     add_array(cloud.GetFieldData(), "TimeValue", np.array([time]))
     add_array(cloud.GetFieldData(), "position", position.reshape(1, 3))
     return cloud
