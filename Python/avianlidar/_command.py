@@ -50,11 +50,14 @@ VERBS = {
   avianlidar info echoes.las
   avianlidar info drive.mcap
 """),
-    "compare": ("how far two clouds are apart",
+    "compare": ("how far two clouds, or a recording and the simulation of its scene, are apart",
         "Computes distances between the nearest points of two clouds: the median and other percentiles, the Hausdorff "
-        "distance, the root mean square (paper, Eq. 19 and 20) and the density-aware Chamfer distance.", """\
+        "distance, the root mean square (paper, Eq. 19 and 20) and the density-aware Chamfer distance. For a scene and "
+        "a recording, simulates the scene with the sensor at the recording's pose and writes a page (HTML, CSV) that "
+        "compares echoes, ranges, intensities and drop-outs.", """\
   avianlidar compare simulated.las measured.pcd
   avianlidar compare simulated.las measured.pcd -o distances.vtp
+  avianlidar compare airport.lidarscene.json drive.mcap --sensor OS1_64 --align -o compared
 """),
     "convert": ("a cloud in another format",
         "Writes a cloud in another format. Names and units of arrays are kept as far as both formats have them. A "
@@ -241,9 +244,18 @@ def parser() -> Parser:
     add("file", type=pathlib.Path, help="a scene, mesh, cloud, sensor, plan or scenario, or a recording: "
         f"{RECORDING}")
     add("--quiet", action="store_true", help="omits, for a cloud, the lines on what was modelled and what was left out")
-    verb["compare"].add_argument("a", type=pathlib.Path, help=f"a cloud: {READ}")
-    verb["compare"].add_argument("b", type=pathlib.Path, help="a second cloud, in the same coordinates")
-    _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point", required=False)
+    add = verb["compare"].add_argument
+    add("a", type=pathlib.Path, help=f"a cloud: {READ}; or a scene")
+    add("b", type=pathlib.Path, help=f"a second cloud, in the same coordinates; or a recording: {RECORDING}")
+    _out(verb["compare"], "file: the first cloud, with nearest_distance (m) of every point; of a scene and a recording a "
+         "folder", required=False)
+    add("--sensor", help=f"the lidar that recorded, {SENSOR}")
+    add("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
+        help="position of the sensor in the scene, m; default: of the recording, else the lidar's place in the scene")
+    add("--heading", type=float,
+        help="direction of the sensor's forward axis, deg from north, clockwise; default: of the recording, else 0")
+    add("--align", action="store_true", help="improve the pose until the recorded points lie on the surfaces")
+    add("--scans", type=int, help="number of scans that are read; default: all")
     verb["convert"].add_argument("file", type=pathlib.Path, help=f"a cloud: {READ}; or the folder of a sequence; or a "
                                  "recording")
     verb["convert"].add_argument("out", type=pathlib.Path, help=f"file: {WRITTEN}; for a sequence .mcap or .db3; for a "
@@ -251,7 +263,7 @@ def parser() -> Parser:
     verb["convert"].add_argument("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
         help="position of the sensor in the coordinates of the cloud, m, to which a KITTI scan (.bin) is relative; "
         "default: the position in the file")
-    for name in ("info", "convert"):
+    for name in ("info", "compare", "convert"):
         _of_recording(verb[name].add_argument)
     for name in ("info", "compare", "convert"):
         add = verb[name].add_argument

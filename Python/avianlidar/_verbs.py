@@ -285,8 +285,40 @@ def _say_apart(files, clouds) -> None:
              "its sensor, move it into the frame of the other first")
 
 
+_OF_SCENES = ("sensor", "position", "heading", "align", "scans", "rate", "topic")
+
+
+def _compare_scene(options) -> None:
+    """Compares a recording with the simulation of a scene."""
+    from .apps.pages import _drawing
+    from .apps.sequences._compared import Comparison
+    if not options.out or options.out.suffix:
+        raise ValueError(f"-o is {options.out}, expected a folder for the page that compares {options.b} with {options.a}")
+    if not options.sensor:
+        raise ValueError(f"compare: {options.a} is a scene, expected --sensor, the lidar that recorded {options.b}")
+    _drawing.require()
+    recording = load_clouds(str(options.b), options.rate, options.topic)
+    for reason, count in recording.left_out.items():
+        warn(f"{options.b}: {count} left out: {reason}")
+    if recording.moves:
+        warn(f"{options.b}: the sensor moves, but all scans are compared with one simulated scan, at the first pose")
+    scene = Scene(options.a, progress=_percent_of("scene"))
+    compared = Comparison(scene, recording, Sensor(options.sensor), options.position, options.heading, options.align,
+                          options.scans, bar)
+    found = compared.write(options.out)
+    close_bar()
+    tell(f"the sensor stands at {compared.pose.words()}", *filter(None, [compared.change]), compared.sentence(found),
+         f"{options.out / 'compare.html'}: the page; its tables are beside it")
+
+
 def compare(options) -> None:
     files = options.a, options.b
+    if options.a.is_file() and options.a.suffix.lower() not in SUFFIXES and not _has_points_only(options.a):
+        _compare_scene(options)
+        return
+    for name in _OF_SCENES:
+        if getattr(options, name):
+            raise ValueError(f"--{name} is for a scene and a recording, but {options.a} is no scene")
     if options.out:
         check_suffix(options.out)
         check_target(options.out, files)

@@ -198,7 +198,7 @@ class RecordedTracks:
                 learning=self.learning, share=self.clutter / max(self.points, 1),
                 settings=", ".join(f"{name} {value:.4g}" if isinstance(value, float) else f"{name} {value}" for name, value in
                                    {**self.chain.of_filter, **self.chain.of_tracker}.items()), version=__version__, source=str(self.recording.source),
-                scans=self.count))
+                scans=counted(self.count, "scan")))
             return found
 
     def seconds(self) -> float:
