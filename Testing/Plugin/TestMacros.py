@@ -356,6 +356,24 @@ class Macros(Case):
         self.assertTrue(os.path.exists(names.PointLabelFontFile), names.PointLabelFontFile)  # fonts-wqy-microhei
         self.assertEqual(names.PointLabelFontFamily, "File")
 
+    def test_the_state_of_a_recording(self):
+        """`avianlidar track` writes it: in a session with the plugin alone, it shows the bird's track at the end."""
+        import avianlidar
+        from avianlidar.apps.sequences._recorded import RecordedTracks
+        from TestRecordedTracks import RATE, SPEED, scan
+        folder = pathlib.Path(tempfile.mkdtemp(dir=OUTPUT_DIR))
+        for number in range(20):
+            avianlidar.save(scan(number), folder / f"{number}.pcd")
+        RecordedTracks(avianlidar.load_clouds(folder, rate=RATE), learning=8).write(folder / "out")
+        run(str(folder / "out" / "play.py"))
+        scans, tracks = find("Scans", "Tracks")
+        self.assertEqual([*scans.TimestepValues], [number / RATE for number in range(20)])
+        for time in scans.TimestepValues:
+            tracks.UpdatePipeline(time)
+        path = fetch(tracks)
+        numpy.testing.assert_allclose(path["velocity"][-1][:2], SPEED, atol=1.0)
+        self.assertTrue(all(shown(source, simple.GetActiveView()) for source in find("Clutter", "What is left")))
+
 
 class MoreMacros(Case):
     """Takes minutes."""
