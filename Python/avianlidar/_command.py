@@ -339,7 +339,8 @@ def parser() -> Parser:
               tracker="confirm_hits=2")
 
     add = verb["bench"].add_argument
-    add("folders", nargs="+", type=pathlib.Path, help="folders that `avianlidar sequence` has made")
+    add("folders", nargs="+", type=pathlib.Path, help="folders that `avianlidar sequence` has made, or of recorded scans "
+        "with labels in sequences/NN/velodyne and sequences/NN/labels, as SemanticKITTI has them")
     add("--predictions", nargs="+", type=pathlib.Path, required=True, help="folders with "
         "sequences/NN/predictions/NNNNNN.label, and .score files (float32) if scores are known; for several sets, each "
         "set's predictions in a folder with the name of the set")

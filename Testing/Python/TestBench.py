@@ -249,3 +249,25 @@ class Files(unittest.TestCase):
             self.assertFalse((OUTPUT / "out-wrong").exists())
         with self.assertRaisesRegex(al.Error, "two are called wrong"):
             write_bench([self.home], [wrong, wrong], OUTPUT / "out")
+
+
+class Recorded(unittest.TestCase):
+    def test_recorded_scans_have_the_scores_of_their_labels(self):
+        """Without manifest, subsets and truth, and beside the simulated set."""
+        simulated, recorded = OUTPUT / "both" / "simulated", OUTPUT / "both" / "recorded"
+        labels = write_set(simulated)
+        shutil.copytree(simulated, recorded)
+        for path in (recorded / "manifest.json", *recorded.glob("sequences/*/truth.csv")):
+            path.unlink()
+        for path in recorded.glob("sequences/*/subsets"):
+            shutil.rmtree(path)
+        for name in ("simulated", "recorded"):
+            write_predictions(OUTPUT / "both" / "mine" / name, labels, lambda kind: np.where(kind == WALL, 0, BIRD))
+        found = write_bench([simulated, recorded], [OUTPUT / "both" / "mine"], OUTPUT / "both" / "out")
+        one, two = (scored.values[_bench.ALL] for (scored,) in found)
+        self.assertEqual(one, two)
+        self.assertEqual([scored.set.weather for (scored,) in found], ["rain of 2 mm/h", "recorded"])
+        text = (OUTPUT / "both" / "out" / "bench.html").read_text("utf-8")
+        self.assertIn("recorded", text)
+        with self.assertRaisesRegex(al.Error, "recorded scans in sequences/NN/velodyne and labels"):
+            write_bench([OUTPUT / "both" / "out"], [OUTPUT / "both" / "mine"], OUTPUT / "both" / "no")

@@ -31,6 +31,7 @@ GROUPS = (*(f"{low:g} to {high:g} m" for low, high in zip((0.0, *RANGES), RANGES
 LOST = 3  # number of consecutive scans with points of a bird, none of which is predicted as bird, that lose its track
 FALSE = (1, 10)  # allowed false points a scan
 RECALLS = np.linspace(0.0, 1.0, 101)  # recalls of the curve
+NO_SUBSET = 255  # of points of recorded scans
 SHOWN = 5  # greatest number of sets on paper; files have all
 SURE = 2.0  # a difference is sure if it is larger than this number of standard errors
 # Scores with the words and the unit of the page.
@@ -56,11 +57,15 @@ class Points(NamedTuple):
 
 
 class Set:
-    """A folder that `avianlidar sequence` has made."""
+    """A folder that `avianlidar sequence` has made, or recorded scans with labels in the same folders."""
 
     def __init__(self, folder, numbers: Sequence[str] = (), first: int = 0):
         """@param numbers the scored sequences, default all @param first first scored scan of each sequence"""
-        self.folder, self.first, manifest = pathlib.Path(folder), first, read_manifest(folder)
+        self.folder, self.first = pathlib.Path(folder), first
+        recorded = {home.parent.name: {} for home in sorted(self.folder.glob("sequences/*/labels"))}
+        self.is_recorded = bool(recorded) and not (self.folder / "manifest.json").exists()
+        manifest = {"sequences": recorded, "scenario": {"scene": "recorded", "sensor": {"preset": "a lidar"}}} \
+            if self.is_recorded else read_manifest(folder, ", or recorded scans in sequences/NN/velodyne and labels")
         parts, scenario = sorted(manifest["sequences"]), manifest["scenario"]
         self.numbers = [number for number in parts if not numbers or number in numbers]
         if {*numbers} - {*parts}:
@@ -73,12 +78,14 @@ class Set:
         self.name = self.folder.resolve().name
         with naming(f"{self.folder / 'manifest.json'}: scenario"):
             self.bird_class = int(scenario.get("bird_class", BIRD))
-            self.weather = in_words(scenario.get("weather", ())) or "clear"
+            self.weather = "recorded" if self.is_recorded else in_words(scenario.get("weather", ())) or "clear"
             files = scenario["scene"], scenario["sensor"]["preset"]
             self.scene, self.sensor = (pathlib.Path(name).name.split(".")[0] for name in files)
 
     def species(self, number: str) -> Dict[int, str]:
-        """The species of the birds of a sequence by instance."""
+        """The species of the birds of a sequence by instance; none for recorded scans."""
+        if self.is_recorded:
+            return {}
         file = self.folder / "sequences" / number / "truth.csv"
         rows = read_table(file, ("bird", "species"), "the truth of a sequence")
         return {int(row["bird"]) + 1: row["species"] for row in rows}
@@ -91,6 +98,8 @@ class Set:
             raise Error(f"{home}: has no scan from number {self.first} on, "
                         "expected longer sequences or a smaller --first")
         kinds = [(home / "labels", ".label", "<u4"), (home / "subsets", ".subset", "u1"), (theirs, ".label", "<u4")]
+        if self.is_recorded:
+            del kinds[1]
         if any((theirs / f"{name}.score").exists() for name in names):  # then all scans need scores
             kinds.append((theirs, ".score", "<f4"))
         scans = []
@@ -99,6 +108,8 @@ class Set:
             scans.append([points, *(_content(folder / f"{name}{suffix}", kind, len(points))
                                     for folder, suffix, kind in kinds)])
         parts: List[Any] = [*map(np.concatenate, zip(*scans))]
+        if self.is_recorded:
+            parts.insert(2, np.full(len(parts[0]), NO_SUBSET, np.uint8))
         places, labels, subset, predicted, *score = parts
         kind = labels & 0xffff
         bird = kind == self.bird_class
@@ -358,9 +369,10 @@ def _first(scored: Sequence[Scored], shown: Dict[str, Any], sets: int) -> First:
         [{"head": "See whether the lead is sure.", "words": shown["verdict"], "command": ""},
          {"head": "Look at subsets, ranges and species.", "command": "",
           "words": f"The next page{'s' if sets > 1 else ''} and bench.csv have the scores of each."}],
-        ["The scans and labels are simulated. Nothing was measured, and the scores are not a claim about real birds. "
-         "Kinds and flights of birds and the sensor's numbers are assumed, as in the scenario. Points of other moving "
-         "objects count as neither right nor wrong."])
+        ["The scans are recorded, and the labels are those in the folder." if scored[0].set.is_recorded else
+         "The scans and labels are simulated. Nothing was measured, and the scores are not a claim about real birds. "
+         "Kinds and flights of birds and the sensor's numbers are assumed, as in the scenario.",
+         "Points of other moving objects count as neither right nor wrong."])
 
 
 def _picture(out: pathlib.Path, scored: Sequence[Scored]) -> Dict[str, Any]:
