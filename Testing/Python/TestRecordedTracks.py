@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import os
+import pathlib
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from helpertools import run
 SPEED, CLIMB = np.array([9.0, -4.0]), 0.5  # m/s
 START = np.array([-40.0, 60.0, 12.0])
 RATE = 5.0  # Hz
+SCENARIO = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "sequence" / "hongqiao.scenario.json"
 RADIUS = 6371000.0
 
 
@@ -36,6 +39,10 @@ def scan(number, place=(0.0, 0.0, 0.0)):
     add_array(cloud.data.GetPointData(), "laser_id", ring_of(points - place))
     add_array(cloud.data.GetFieldData(), "position", np.array(place), "m")
     return cloud
+
+
+def score_birds(followed):
+    return {row["bird"] for _, rows, _, _ in followed.scored for row in rows}
 
 
 class Recorded(InFolder):
@@ -79,6 +86,23 @@ class Recorded(InFolder):
         self.assertIn("1 thing moved through the beams in 6 s", page)
         self.assertIn("0.4 by 0.4 deg between beams, measured in the first scans", page)
         self.assertIn("5 scans a second, as given", page)
+
+    def test_scores_are_those_of_the_report_card(self):
+        """Of a sequence as a recording with its truth; with the labels alone, birds that return are known."""
+        made = al.Sequence(SCENARIO, number_of_scans=24)
+        made.write(self.folder / "made")
+        home = self.folder / "made" / "sequences" / "00"
+        card = al.BirdTracks([self.folder / "made"], learning_scans=10).write(self.folder / "card")
+        followed = RecordedTracks(al.load_clouds(home), al.Sensor("Search905", position=made.sensor.position), 10,
+                                  truth=home / "truth.csv")
+        found = dict(followed.write(self.folder / "out")["scores"])
+        self.assertEqual(found, {row["words"]: row["cells"][0] for row in card["overall"]})
+        labelled = RecordedTracks(al.load_clouds(home), learning=10)
+        found = dict(labelled.write(self.folder / "labels")["scores"])
+        birds = {label for k in range(10, 24) for label in np.fromfile(home / "labels" / f"{k:06d}.label", "<u4")
+                 if label & 0xffff == 99}
+        self.assertEqual(len(score_birds(labelled)), len(birds))
+        self.assertIn("birds tracked", found)
 
     def test_the_command(self):
         home, out = self.write(8), self.folder / "out"

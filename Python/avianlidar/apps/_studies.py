@@ -87,7 +87,7 @@ def sequence(options) -> None:
              f"{', view.html shows the first sequence' if shown else ''}")
 
 
-_OF_RECORDINGS = ("rate", "topic", "origin", "heading")
+_OF_RECORDINGS = ("rate", "topic", "origin", "heading", "truth")
 
 
 def is_recording(name: str) -> bool:
@@ -109,8 +109,11 @@ def _track_recordings(options) -> None:
         out = options.out / checked_name(names[number], "the name of a recording") if len(names) > 1 else options.out
         found = RecordedTracks(recording, Sensor(options.sensor[0]) if options.sensor else None, options.learn,
                                dict(options.clutter_set), dict(options.tracker_set), options.origin,
-                               options.heading or 0.0, options.runways, options.scans).write(out, bar)
+                               options.heading or 0.0, options.runways, options.scans, options.truth, options.cutoff,
+                               options.order).write(out, bar)
         close_bar()
+        if found["scores"]:
+            table([("score", name), *map(tuple, found["scores"])])
         tell(f"{name}: {counted(len(recording), 'scan')}; times from: {recording.times_from}",
              f"{out / 'tracks.html'}: {counted(found['tracks'], 'confirmed track')} in "
              f"{in_time(found['seconds'])}; play.py is a state for ParaView")

@@ -7,7 +7,7 @@ import functools
 import json
 import math
 import pathlib
-from typing import Any, Counter, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence as Many, Tuple, Union
+from typing import Any, Callable, Counter, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence as Many, Tuple, Union
 
 import numpy as np
 
@@ -131,6 +131,20 @@ def _last(tracks) -> np.ndarray:
     found["time"], found["place"] = points["time"][last], points.points[last]
     found["velocity"] = points["velocity"][last]
     return found
+
+
+def firing_times(sensor: Sensor) -> Optional[Callable[[np.ndarray], np.ndarray]]:
+    """A function that gives the times of points since the beginning of the revolution, us, by the nearest beams; None
+    for rotating prisms, whose beams differ from scan to scan. Points are relative to the sensor, in the scene's axes."""
+    from scipy.spatial import cKDTree
+    if sensor.algorithm.GetNumberOfPrisms() > 0:
+        return None
+    nearest, fired = cKDTree(np.array(sensor.beams["direction"])), np.array(sensor.beams["timestamp"])
+
+    def times(points: np.ndarray) -> np.ndarray:
+        ranges = np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-9)
+        return fired[nearest.query(points / ranges)[1]]
+    return times
 
 
 def origin_of(labels: np.ndarray) -> np.ndarray:
@@ -300,18 +314,13 @@ class Input:
 
     def scans(self, number: str) -> Iterator[Scan]:
         """The scans of a sequence."""
-        from scipy.spatial import cKDTree
         home, first = self.folder / "sequences" / number, int(self.content[number]["inputs"]["scans"].split()[0])
         starts, poses = (np.loadtxt(home / name, ndmin=1) for name in ("times.txt", "poses.txt"))
         pose = poses.reshape(-1, 12)[0].reshape(3, 4)
-        beams, fired = self.sensor.beams, np.array(self.sensor.beams["timestamp"])
-        nearest = cKDTree(np.array(beams["direction"])) if self.sensor.algorithm.GetNumberOfPrisms() == 0 else None
+        fired = firing_times(self.sensor)
         for k, start in enumerate(starts.tolist()):
             points = np.fromfile(home / "velodyne" / f"{k:06d}.bin", "<f4").reshape(-1, 4)[:, :3].astype(float)
             labels = np.fromfile(home / "labels" / f"{k:06d}.label", "<u4")
             turned = points @ pose[:, :3].T
-            times = None
-            if nearest is not None:
-                ranges = np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-9)
-                times = 1e6 * start + fired[nearest.query(turned / ranges)[1]]
+            times = None if fired is None else 1e6 * start + fired(turned)
             yield Scan(first + k, start, points[:, [1, 0, 2]] * (-1, 1, 1), turned + pose[:, 3], times, labels)

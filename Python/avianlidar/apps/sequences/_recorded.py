@@ -26,7 +26,9 @@ from ..pages._html import First, Number, render, short_enough
 from ..pages._words import counted
 from ..places._from_above import draw_airport
 from ..places._geojson import read_runways, to_geodetic
-from ._following import Beams, Chain, Scan
+from ._card import cell, of_birds, of_tracks
+from ._following import ORIGINS, Beams, Chain, Live, Scan, firing_times, read_truth, score
+from ._labels import BIRD, MOVING
 
 HEAD = ("track", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
 DEGREES = ("longitude", "latitude", "height_m")
@@ -37,6 +39,7 @@ FASTEST = 2.0  # s: times of points further from the time of the scan are not us
 NEAREST = 30.0  # least half width of the map, m
 MOST_POINTS = 20000  # points of a scan on the map
 HALF_BEAMWIDTH = 1.5e-3  # rad, of sensors that are not given (assumed)
+NO_TRUTH = "Nothing says which of them are birds, and no score is known, because the recording has no truth."
 MOST_HOURS = 24  # rows of the table on the page
 
 
@@ -91,8 +94,9 @@ def beams_of(recording: Recording, sensor: Optional[Sensor]) -> Tuple[Beams, str
             f"{across:.3g} by {up:.3g} deg between beams, measured in the first scans")
 
 
-def _scans(recording: Recording) -> Iterator[Tuple[Scan, np.ndarray]]:
-    """Each scan, and the position of the sensor."""
+def _scans(recording: Recording, fired: Optional[Callable[[np.ndarray], np.ndarray]] = None
+           ) -> Iterator[Tuple[Scan, np.ndarray]]:
+    """Each scan, and the position of the sensor. @param fired times of points by `firing_times`, if they have none"""
     for number, (cloud, time) in enumerate(zip(recording, recording.times.tolist())):
         points = cloud.points
         if recording.frame == OF_FILE:
@@ -103,7 +107,14 @@ def _scans(recording: Recording) -> Iterator[Tuple[Scan, np.ndarray]]:
             relative, placed, position = points, points @ pose[:, :3].T + pose[:, 3], pose[:, 3]
         times = np.asarray(cloud["timestamp"], float) if cloud.units.get("timestamp") == "us" else np.empty(0)
         known = times if len(times) and abs(1e-6 * times - time).max() < FASTEST else None
-        yield Scan(number, time, relative, placed, known, np.zeros(len(points), np.uint32)), position
+        if known is None and fired is not None:
+            known = 1e6 * time + fired(placed - position)
+        labels = np.zeros(len(points), np.uint32)
+        if "semantic_label" in cloud:
+            labels = np.asarray(cloud["semantic_label"], np.uint32)
+            if "instance_id" in cloud:
+                labels = labels | np.asarray(cloud["instance_id"], np.uint32) << 16
+        yield Scan(number, time, relative, placed, known, labels), position
 
 
 class RecordedTracks:
@@ -112,7 +123,7 @@ class RecordedTracks:
     def __init__(self, recording: Recording, sensor: Optional[Sensor] = None, learning: int = 20,
                  clutter: Optional[Dict[str, Any]] = None, tracker: Optional[Dict[str, Any]] = None,
                  origin: Optional[Many[float]] = None, heading: float = 0.0, runways=None,
-                 scans: Optional[int] = None):
+                 scans: Optional[int] = None, truth=None, cutoff: float = 20.0, order: float = 2.0):
         """Checks the inputs; `write` does the work.
 
         recording         of `load_clouds`; its sensor must stand still
@@ -123,6 +134,9 @@ class RecordedTracks:
         heading           direction of the recording's y axis, deg from north, clockwise
         runways           a GeoJSON file, which needs an origin
         scans             number of scans that are read; default: all
+        truth             a CSV file as truth.csv of a sequence, with places in the fixed frame of the recording;
+                          default: the labels of birds, if the scans have labels
+        cutoff, order     as in BirdTracks, for the scores
         """
         if origin is not None and not (abs(origin[0]) <= 90 and abs(origin[1]) <= 360 and abs(origin[2]) < 1e5):
             raise ValueError(f"the origin is {tuple(origin)}, expected latitude, longitude (deg) and height (m)")
@@ -140,8 +154,11 @@ class RecordedTracks:
             warn(f"{recording.source}: the sensor moves, but the clutter filter expects a sensor that stands still: "
                  "tracks may be walls")
         self.beams, self.beams_from = beams_of(recording, sensor)
+        self.fired = firing_times(sensor) if sensor else None
         self.chain = Chain(self.beams, self.learning, dict(clutter or {}), dict(tracker or {}))
         self.runways = read_runways(runways, origin) if runways and origin is not None else []
+        self.truth = None if truth is None else read_truth(truth)
+        self.cutoff, self.order, self.scored = cutoff, order, []
         self.tracks: Dict[int, Track] = collections.defaultdict(Track)
         self.points = self.clutter = 0
 
@@ -156,10 +173,12 @@ class RecordedTracks:
 
     def _rows(self, progress: Callable[[str, int, int], Any]) -> Iterator[List[Any]]:
         """Rows of tracks.csv, as the scans are followed."""
-        scans = (scan for scan, _ in _scans(self.recording))
+        scans = (scan for scan, _ in _scans(self.recording, self.fired))
         for scan, live in self.chain.follow(scan for _, scan in zip(range(self.count), scans)):
             self.points += len(scan.points)
             self.clutter += int(live.clutter.sum())
+            if scan.number >= self.learning:
+                self._keep(scan, live)
             self.last, self.last_clutter = self._to_north(_padded(scan.placed))[:, 1:4], live.clutter
             for one in live.tracks[live.tracks["confirmed"]]:
                 track = self.tracks[int(one["id"])]
@@ -171,6 +190,38 @@ class RecordedTracks:
                 yield [int(one["id"]), f"{row[0, 0]:.6f}", *(f"{value:.3f}" for value in row[0, 1:]),
                        *(f"{value:.8f}" for value in degrees[:2]), *(f"{value:.2f}" for value in degrees[2:])]
             progress("scans followed", scan.number + 1, self.count)
+
+    def _keep(self, scan: Scan, live: Live) -> None:
+        """Keeps what the scores need, if the recording has a truth."""
+        kind = scan.labels & 0xffff
+        if self.truth is None:
+            if not kind.any():
+                return
+            rows = []
+            for bird in np.unique(scan.labels[kind == BIRD]):
+                place = scan.placed[scan.labels == bird].mean(axis=0)
+                rows.append({"bird": int(bird) >> 16, "species": "bird", "in": True, "time": scan.time,
+                             "place": place.tolist(), "range": float(np.linalg.norm(place - self.beams.position)),
+                             "weather": "as recorded"})
+        else:
+            rows = self.truth.get(scan.number, [])
+        if kind.any():
+            names = np.select([kind == BIRD, np.isin(kind, [*MOVING.values()])], ["bird", "vehicle"], "surface")
+        else:  # a point near a bird is of the bird
+            birds = np.array([row["place"] for row in rows]).reshape(-1, 1, 3)
+            near = (np.linalg.norm(birds - scan.placed[live.of_points >= 0], axis=2) < self.cutoff).any(axis=0)
+            names = np.full(len(scan.placed), "surface")
+            names[live.of_points >= 0] = np.where(near, "bird", "surface")
+        origins = np.array([ORIGINS.index(name) for name in names], np.uint8)
+        self.scored.append((scan.number, rows, live, origins))
+
+    def scores(self) -> List[List[str]]:
+        """Rows of scores, with their errors by chance, if the recording has a truth and a bird."""
+        if not any(rows for _, rows, _, _ in self.scored):
+            return []
+        found = {**score(self.scored, self.cutoff, self.order, []), "seconds": self.seconds()}
+        return [[words, cell(value, unit)] for words, (unit, value) in
+                {**of_birds(found["birds"]), **of_tracks([found])}.items()]
 
     def write(self, folder, progress: Callable[[str, int, int], Any] = lambda *_: None) -> Dict[str, Any]:
         """Writes tracks.csv (each position), summary.csv (each track), hours.csv, tracks.geojson with an origin,
@@ -190,10 +241,14 @@ class RecordedTracks:
             if self.origin is not None:
                 write_whole(out / "tracks.geojson", as_json(self._shapes(facts)))
             write_whole(out / "play.py", self._script().encode())
-            found = {"tracks": len(facts), "seconds": self.seconds(), "points": self.points, "clutter": self.clutter}
+            scores = self.scores()
+            if scores:
+                write_whole(out / "scores.csv", as_csv([["score", "value"], *scores]))
+            found = {"tracks": len(facts), "seconds": self.seconds(), "points": self.points, "clutter": self.clutter, "scores": scores}
             write_whole(out / "tracks.html", render(
                 "sequences/recorded.html.jinja", first=self._first(out, facts), pictures=self._pictures(out, facts),
-                hours=[[f"{cell:.3g}" if isinstance(cell, float) else cell for cell in row]
+                scores=scores, cutoff=self.cutoff,
+                hours=[[f"{value:.3g}" if isinstance(value, float) else value for value in row]
                        for row in hours[:MOST_HOURS]], head=HOUR_HEAD, more=len(hours) - MOST_HOURS, recording=self.recording,
                 learning=self.learning, share=self.clutter / max(self.points, 1),
                 settings=", ".join(f"{name} {value:.4g}" if isinstance(value, float) else f"{name} {value}" for name, value in
@@ -202,9 +257,10 @@ class RecordedTracks:
             return found
 
     def seconds(self) -> float:
-        """Time after learning, s."""
-        times = self.recording.times[:self.count]
-        return float(times[-1] - times[min(self.learning, len(times) - 1)])
+        """Time after learning, s, with the time that the last scan takes."""
+        times = self.recording.times[self.learning:self.count]
+        gaps = np.diff(self.recording.times[:self.count])
+        return float(times[-1] - times[0] + np.median(gaps)) if len(gaps) else 0.0
 
     def _hours(self, facts: Many[Dict[str, float]]) -> List[List[Any]]:
         """A row for each hour in which a track begins."""
@@ -264,8 +320,8 @@ class RecordedTracks:
              Number(middle(heights, "m"), "median height", f"of tracks, {heights_are}"),
              Number(middle(speeds, "m/s"), "median speed", "of tracks, over ground")],
             [{"head": head, "words": words, "command": ""} for head, words in steps],
-            ["Tracks are of all that moves: birds, people, cars, leaves and rain. Nothing says here which of them are "
-             f"birds, and no score is known, because the recording has no truth. Times are from: "
+            ["Tracks are of all that moves: birds, people, cars, leaves and rain. "
+             f"{'The next page has scores by the truth.' if self.scored else NO_TRUTH} Times are from: "
              f"{self.recording.times_from}. Of the sensor: {self.beams_from}."])
 
     def _extent(self) -> Tuple[float, float, float, float]:
