@@ -107,6 +107,7 @@ VERBS = {
         "Writes maps of where a bird would be detected and why it is missed elsewhere (GeoTIFF, GeoJSON), shares "
         "(CSV) and clutter (VTP) for a plan. A plan that compares sensors makes a folder for each sensor.", """\
   avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
+  avianlidar coverage hongqiao.coverage.json -o maps --tracks radar.csv
 """),
     "siting": ("where lidars should stand",
         "Writes candidates by rank (CSV, GeoJSON, VTP), the best networks and what changes these networks, for a "
@@ -357,6 +358,9 @@ def parser() -> Parser:
         if name != "coverage":
             add("--metar", type=pathlib.Path,
                 help="file of METAR reports, from which the year's weather is counted by the hour")
+        if name == "coverage":
+            add("--tracks", type=pathlib.Path, metavar="FILE", help="birds that a radar or a GPS logger has recorded "
+                "(CSV): the share of scans that detects each bird, in birds.csv")
         if name in ("siting", "report"):
             _settings(verb[name], siting="a part of the plan's siting, for example spacing=100; file names are "
                                          "relative to the plan's folder")

@@ -614,3 +614,27 @@ class Scenarios(unittest.TestCase):
         self.assertLessEqual({"pattern", "species", "file_name", "height_reference", "geoid_undulation", "columns",
                               "origin"}, {*listed})
         self.assertTrue({"first_object_id", "seed", "time_range"}.isdisjoint(listed))
+
+
+class Covered(unittest.TestCase):
+    def test_shares_are_those_of_simulated_scans(self):
+        """Of the shipped table: the expected number of scans that detect each bird, and the scans that do."""
+        examples = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples"
+        out = emptied("covered")
+        code, said, errors = run("coverage", examples / "coverage" / "hongqiao.coverage.json", "-o", out / "maps",
+                                 "--tracks", examples / "sequence" / "radar.csv")
+        self.assertEqual(code, 0, errors)
+        self.assertIn("of 10 recorded birds", said)
+        found = {row["track"]: row for row in rows_of(out / "maps" / "Search905" / "birds.csv")}
+        al.Sequence(examples / "sequence" / "radar.scenario.json").write(out / "scans")
+        seen = dict.fromkeys(found, 0)
+        for row in rows_of(out / "scans" / "sequences" / "00" / "truth.csv"):
+            seen[row["track"]] += row["status"] == "seen"
+        self.assertEqual(sum(seen.values()) > 200, True)
+        for track, row in found.items():
+            expected, scans = float(row["detected_scans"]), int(row["scans"])
+            error = np.sqrt(max(expected * (1 - expected / max(scans, 1)), 0.25))
+            # a scan more or less at the ends of a track, and when the bird is next to a wall
+            self.assertLess(abs(seen[track] - expected), 3 * error + 2, row)
+        self.assertEqual(float(found["1104"]["detected_twice"]), 0.0)
+

@@ -20,6 +20,7 @@ from .._weather import without_air
 from .coverage import _sites_page
 from .coverage._answer import percent, share_of
 from .coverage._design_page import Designs, answers
+from .coverage._flown import write_flown
 from .coverage._maps import write_maps
 from .coverage._plan import Plan
 from .coverage._report import Report
@@ -195,11 +196,12 @@ def coverage(options) -> None:
             folder = options.out / plan.name if len(plans) > 1 else options.out
             with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
                 count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
+                birds = [write_flown(plan, options.tracks, folder)] if options.tracks else []
             row = plan.overall
             tell(f"{folder}: {counted(count, 'file')}; "
                  f"{plan.bird if any(plan.mix) else 'the target'} detected in one scan: "
                  f"{share_of(row)} {plan.where} (assumed: bird{', receiver' if plan.assumed else ''})",
-                 *filter(None, [ranges.uncertainty(plan.name, plan.sensor)]))
+                 *birds, *filter(None, [ranges.uncertainty(plan.name, plan.sensor)]))
 
 
 def siting(options) -> None:
