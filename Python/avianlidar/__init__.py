@@ -33,6 +33,6 @@ from .apps.sequences._flights import read_tracks
 from .apps.sequences._sequence import Sequence
 from .apps.sequences._tracks import BirdTracks
 
-__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Recording", "Scan", "Scene", "Sensor", "Sequence",
-           "example_scene", "hue_colors", "load_cloud", "load_clouds", "load_scene", "materials", "mesh", "mover", "places_of",
-           "plot_map", "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]
+__all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Recording", "Scan", "Scene", "Sensor",
+           "Sequence", "example_scene", "hue_colors", "load_cloud", "load_clouds", "load_scene", "materials", "mesh",
+           "mover", "places_of", "plot_map", "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages in bags of ROS 2: .mcap and .db3 files, read from the beginning to the end.
+"""Messages in bags of ROS: .mcap, .db3 and .bag files (the last by Debian's python3-rosbag), read from the beginning to
+the end.
 
 Sources: the MCAP specification (mcap.dev/spec); the SQLite schema of rosbag2."""
 import contextlib
@@ -13,8 +14,9 @@ from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple
 
 from ._files import require_regular
+from ._ros import ROS1
 
-SUFFIXES = (".mcap", ".db3")
+SUFFIXES = (".mcap", ".db3", ".bag")
 MAGIC = b"\x89MCAP0\r\n"
 MOST = 1 << 30  # bytes of a chunk or a message after decompression
 (HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGES, CHUNKS), STATISTICS, END = range(1, 9), 11, 15  # records
@@ -131,8 +133,8 @@ def _in_mcap(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
 def _in_db3(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
     with contextlib.closing(sqlite3.connect(f"file:{urllib.parse.quote(str(path.resolve()))}?mode=ro", uri=True)) as db:
         topics = {number: (name, kind.replace("/msg/", "/"))
-                  for number, name, kind, encoding in db.execute("SELECT id, name, type, serialization_format FROM topics")
-                  if encoding == "cdr"}
+                  for number, name, kind, encoding in db.execute(
+                      "SELECT id, name, type, serialization_format FROM topics") if encoding == "cdr"}
         wanted = [number for number, (_, kind) in topics.items() if kind in kinds]
         query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({','.join('?' * len(wanted))}) " \
                 "ORDER BY timestamp"
@@ -144,21 +146,41 @@ def _in_db3(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
             yield Message(*topics[number], time, data)
 
 
+def _in_bag(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
+    """The messages of a bag of ROS 1."""
+    try:
+        import rosbag
+    except ImportError:
+        raise ImportError(f"{path}: a bag of ROS 1 needs rosbag, which is not installed: install python3-rosbag"
+                          ) from None
+    try:
+        with rosbag.Bag(str(path)) as bag:
+            for topic, (kind, data, *_), time in bag.read_messages(raw=True):
+                kind = "tf2_msgs/TFMessage" if kind == "tf/tfMessage" else kind  # the same message
+                if kind in kinds:
+                    yield Message(topic, kind, time.to_nsec(), ROS1 + data)
+    except rosbag.ROSBagUnindexedException:
+        raise ValueError("has no index, as after a recording that was killed: `rosbag reindex` makes it") from None
+    except rosbag.ROSBagException as error:
+        raise ValueError(f"is not a bag of ROS 1 ({error})") from None
+
+
 def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
     """The files of a bag in a folder, in the order of the numbers at the ends of their names."""
     files = [file for file in sorted(folder.iterdir()) if file.suffix.lower() in SUFFIXES]
     packed = [file.name for file in folder.glob("*.db3.zstd")]
     if not files and packed:
-        raise ValueError(f"{folder}: {packed[0]} is compressed as a whole, expected .db3 or .mcap: decompress it first, "
-                         "by zstd -d")
+        raise ValueError(f"{folder}: {packed[0]} is compressed as a whole, expected .db3 or .mcap: decompress it "
+                         "first, by zstd -d")
     return sorted(files, key=lambda file: (file.suffix, int((re.findall(r"\d+", file.stem) or ["0"])[-1])))
 
 
 def messages(files: list[pathlib.Path], kinds: Collection[str]) -> Iterator[Message]:
-    """The messages of some kinds in the files of a bag. Torn is raised behind the last message if its end is missing."""
+    """The messages of some kinds in the files of a bag. `Torn` is raised behind the last message if the end is
+    missing."""
     for file in files:
         require_regular(file)
-        read = _in_mcap if file.suffix.lower() == ".mcap" else _in_db3
+        read = {".mcap": _in_mcap, ".db3": _in_db3, ".bag": _in_bag}[file.suffix.lower()]
         began = False
         try:
             for message in read(file, kinds):

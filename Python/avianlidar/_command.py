@@ -23,8 +23,8 @@ PRESETS = {"Preview": "100 rays alone, one reflection: 7.7 %%, 0.032 s; 9.2 %%, 
            "Paper": "the paper's method, its noise of 100 rays: 16 %%, 0.2 s; 16 %%, 0.4 s"}
 SENSOR = "a name that `avianlidar sensors` lists, or a .lidarsensor.json file"
 MANY = "may be given many times"
-RECORDING = ("a folder or a quoted pattern of numbered files, a bag of ROS 2 (.mcap, .db3), packets, or a folder of "
-             "SemanticKITTI or nuScenes")
+RECORDING = ("a folder or a quoted pattern of numbered files, a bag of ROS (.mcap, .db3, .bag), packets, or a folder "
+             "of SemanticKITTI or nuScenes")
 RESUMES = "The same command continues a stopped run. `mpiexec -n 2 pvbatch --sym -m avianlidar` shares the work."
 
 # For each verb: a few words, a description and examples.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recorded scans as one source: numbered files, bags of ROS 2, and folders of SemanticKITTI and nuScenes."""
+"""Recorded scans as one source: numbered files, bags of ROS, and folders of SemanticKITTI and nuScenes."""
 import collections
 import glob
 import json
@@ -23,7 +23,7 @@ SUFFIXES = (*READERS, *TABLES, ".vtp")
 # From x forward, y left, as KITTI and ROS have it, to x right, y forward, as clouds have it.
 TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 SENSOR, OF_FILE = "of the sensor: right, forward and up", "of the files"
-EXPECTED = ("numbered files, a folder or a pattern of them, a bag of ROS 2 (.mcap, .db3, or its folder), a sequence of "
+EXPECTED = ("numbered files, a folder or a pattern of them, a bag of ROS (.mcap, .db3, .bag, or its folder), a sequence of "
             "SemanticKITTI, or the folder of nuScenes")
 # Times of points in clouds of ROS: the field, the type of the driver's numbers, and their size in us.
 _POINT_TIMES = (("t", "u", 1e-3), ("time", "f", 1e6), ("timestamp", "f", 1e6), ("timestamp", "u", 1e-3))
@@ -316,7 +316,7 @@ def load_clouds(source, rate: float | None = None, topic: str | None = None) -> 
     """Opens recorded scans as one source, whose scans are read one after another.
 
     source  names of files, a pattern ("scans/*.pcd"), a folder of numbered files in any format of `load_cloud`, a file
-            of packets, a bag of ROS 2 (.mcap or .db3, or the folder of a bag), a sequence of SemanticKITTI, or the
+            of packets, a bag of ROS (.mcap, .db3, .bag, or the folder of a bag), a sequence of SemanticKITTI, or the
             folder of nuScenes
     rate    scans a second, Hz, above 0 to 1e6, for numbered files; default: times in times.txt or timestamps.txt beside
             the files, or in the names of the files, else 10 (assumed, as `times_from` says)

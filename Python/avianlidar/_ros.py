@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ROS 2 messages as bytes: clouds, transforms and boxes.
+"""Messages of ROS as bytes: clouds, transforms and boxes.
 
-Sources: OMG CDR (XCDR1, of both byte orders); definitions in common_interfaces and geometry2 (Humble and later)."""
+Sources: OMG CDR (XCDR1, of both byte orders); definitions in common_interfaces and geometry2 (Humble and later);
+wiki.ros.org/msg for ROS 1, which has the same messages without gaps between numbers."""
 import re
 import struct
 from typing import Any, NamedTuple
@@ -36,6 +37,7 @@ _TYPES = {
     "visualization_msgs/MarkerArray": "visualization_msgs/Marker[] markers",
     "visualization_msgs/MeshFile": "string filename, uint8[] data",
     "visualization_msgs/UVCoordinate": "float32 u, float32 v"}
+ROS1 = b"\x7f\1\0\0"  # stands before a message of ROS 1, where CDR has its header
 _CODES = {"bool": "?", "uint8": "B", "int32": "i", "uint32": "I", "float32": "f", "float64": "d"}  # in module struct
 _NUMBERS = ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")  # datatypes of PointField, from 1 on
 
@@ -77,7 +79,8 @@ class _Reading:
     """A position in the bytes of a message."""
 
     def __init__(self, data: memoryview):
-        if len(data) < 4 or data[0] != 0 or data[1] > 1:
+        self.is_ros1 = bytes(data[:4]) == ROS1
+        if len(data) < 4 or data[0] != 0 and not self.is_ros1 or data[1] > 1:
             raise ValueError("is not CDR as ROS 2 writes it")
         self.data, self.at, self.order = data[4:], 0, "<" if data[1] else ">"
 
@@ -97,11 +100,13 @@ class _Reading:
         if kind in _CODES:
             code = self.order + _CODES[kind]
             size = struct.calcsize(code)
-            begin = self.at + -self.at % size
+            begin = self.at if self.is_ros1 else self.at + -self.at % size
             if begin + size > len(self.data):
                 raise ValueError("ends too early")
             self.at = begin + size
             return struct.unpack_from(code, self.data, begin)[0]
+        if self.is_ros1 and kind == "std_msgs/Header":
+            self.take("uint32")  # number of the message
         return tuple(self.take(field.split()[0]) for field in _TYPES[kind].split(", "))
 
 

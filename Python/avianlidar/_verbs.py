@@ -182,7 +182,8 @@ def _say_recording(options) -> None:
     """Prints what a recording holds. All scans are read."""
     recording = load_clouds(str(options.file), options.rate, options.topic)
     gaps = np.diff(recording.times)
-    counts, ranges = [], {}
+    counts: list[int] = []
+    ranges: dict[str, tuple[Any, Any, str]] = {}
     for number, cloud in enumerate(recording):
         counts.append(cloud.number_of_points)
         for name, values in cloud.items():

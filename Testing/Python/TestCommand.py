@@ -258,7 +258,7 @@ class Verbs(unittest.TestCase):
              "Airport16 has no receiver_aperture .* choose for example --sensor Search905"),
             (("info", OUTPUT / "table.csv"), r"table.csv: is not a cloud"), (("info", OUTPUT / "fake.vtp"), "fake.vtp"),
             (("info", OUTPUT / "cut.vtp"), "cut.vtp: vtkXMLDataParser: Error parsing XML"),
-            (("info", "none.vtp"), "no such file: none.vtp"), (("info", OUTPUT), "is not a regular file"),
+            (("info", "none.vtp"), "no such file: none.vtp"), (("info", OUTPUT), "expected the files of one kind"),
             (("convert", self.files["las"], "x.doc"), "cannot write 'x.doc'"),
             (("sensors", "VLP99"), "'VLP99' is not known"))
         for arguments, words in cases:

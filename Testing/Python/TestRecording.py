@@ -162,7 +162,8 @@ class Files(InFolder):
         for source, words in ((home, "has 1 .pcd, 1 .las, expected the files of one kind"),
                               (self.folder / "none", "no such file or folder"),
                               (self.folder / "*.pcd", "is not a recording: expected numbered files"),
-                              ([], "is not a recording"), (__file__, "is not a recording: .*TestRecording.py: expected")):
+                              ([], "is not a recording"),
+                              (__file__, "is not a recording: .*TestRecording.py: expected")):
             with self.assertRaisesRegex((ValueError, OSError), words):
                 al.load_clouds(source)
         for options, words in (({"rate": 0}, "rate is 0, expected above 0"), ({"rate": float("nan")}, "rate is nan"),
@@ -221,6 +222,38 @@ class Bags(InFolder):
                 self.check_rows(clouds[4])
                 np.testing.assert_allclose(clouds[1]["timestamp"], 1e-3 * self.stamps[1] + np.arange(24), rtol=1e-15)
                 self.assertEqual(clouds[1].units["timestamp"], "us")
+
+    def test_bags_of_ros_1(self):
+        """As rosbag writes them, compressed and not."""
+        import genpy
+        import geometry_msgs.msg
+        import rosbag
+        import sensor_msgs.msg
+        import tf2_msgs.msg
+        fields = [sensor_msgs.msg.PointField(name, offset, {"f4": 7, "u2": 4, "u4": 6}[kind.base.str[1:]],
+                                             int(np.prod(kind.shape, dtype=int)))
+                  for name, (kind, offset, *_) in self.rows.dtype.fields.items()]
+        for compression in ("none", "bz2", "lz4"):
+            file = self.folder / f"{compression}.bag"
+            with rosbag.Bag(str(file), "w", compression=compression) as bag:
+                for number, stamp in enumerate(self.stamps):
+                    cloud = sensor_msgs.msg.PointCloud2(height=1, width=24, fields=fields, point_step=48,
+                                                        row_step=48 * 24, data=self.rows.tobytes(), is_dense=True)
+                    cloud.header.stamp, cloud.header.frame_id = genpy.Time(*divmod(stamp, 10**9)), "velodyne"
+                    bag.write("/points", cloud, genpy.Time(number + 1))
+                pose = geometry_msgs.msg.TransformStamped(child_frame_id="velodyne")
+                pose.header.frame_id, pose.transform.translation.z, pose.transform.rotation.w = "map", 2.5, 1.0
+                bag.write("/tf_static", tf2_msgs.msg.TFMessage([pose]), genpy.Time(1))
+            recording = al.load_clouds(file)
+            np.testing.assert_allclose(recording.times, 1e-9 * np.array(self.stamps), rtol=1e-15)
+            self.check_rows(list(recording)[4])
+            np.testing.assert_allclose(recording.pose(2)[:, 3], (0, 0, 2.5))
+        (self.folder / "no.bag").write_bytes(b"nothing")
+        with self.assertRaisesRegex(ValueError, "no.bag: is not a bag of ROS 1"):
+            al.load_clouds(self.folder / "no.bag")
+        (self.folder / "cut.bag").write_bytes(file.read_bytes()[:-300])
+        with self.assertRaisesRegex(ValueError, "cut.bag: (has no index|is not a bag)"):
+            al.load_clouds(self.folder / "cut.bag")
 
     def test_the_folder_of_a_bag(self):
         """Parts in the order of their numbers, not of their names."""

@@ -52,7 +52,7 @@ PICTURES = {
 DATA = {"ranges": ("ranges.json", "Python/avianlidar/apps/inputs")}  # numbers that the package holds, by study
 TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "intervals", "media_time", "mirror_lobes",
           "more_reflections", "moved_scenes", "multiple_scattering", "others", "paper_times", "presets", "protocol",
-          "quadcopter", "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
+          "quadcopter", "recordings", "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
 LONG = ("accuracy_page", "sequence_costs")  # only when they are named
 
 

@@ -62,7 +62,7 @@ class Set:
     def __init__(self, folder, numbers: Sequence[str] = (), first: int = 0):
         """@param numbers the scored sequences, default all @param first first scored scan of each sequence"""
         self.folder, self.first = pathlib.Path(folder), first
-        recorded = {home.parent.name: {} for home in sorted(self.folder.glob("sequences/*/labels"))}
+        recorded: Dict[str, Any] = {home.parent.name: {} for home in sorted(self.folder.glob("sequences/*/labels"))}
         self.is_recorded = bool(recorded) and not (self.folder / "manifest.json").exists()
         manifest = {"sequences": recorded, "scenario": {"scene": "recorded", "sensor": {"preset": "a lidar"}}} \
             if self.is_recorded else read_manifest(folder, ", or recorded scans in sequences/NN/velodyne and labels")

@@ -312,7 +312,8 @@ class Comparison:
 def _bins(directions: np.ndarray, away: np.ndarray) -> np.ndarray:
     """Numbers of beams by sector and band of range."""
     azimuth = np.degrees(np.arctan2(directions[:, 0], directions[:, 1])) % 360.0
-    return np.histogram2d(azimuth, away, bins=(ANGLES, np.array([*RANGES[:-1], 1e9])))[0]
+    limits: Any = (ANGLES, np.array([*RANGES[:-1], 1e9]))
+    return np.histogram2d(azimuth, away, bins=limits)[0]
 
 
 def _cell(value: float) -> str:

@@ -64,7 +64,7 @@ class Beams(NamedTuple):
     azimuth_step: float  # deg, 0 for unknown
     elevation_step: float
     half_beamwidth: float  # rad
-    position: Many[float]  # m
+    position: np.ndarray  # m
 
 
 class Chain:
@@ -78,8 +78,8 @@ class Chain:
         self.filter, self.tracker = _wrapped.vtkAvianLidarClutterFilter(), _wrapped.vtkAvianLidarTracker()
         self.filter.SetController(None)  # ranks process different sequences
         self.tracker.SetController(None)
-        self.of_filter = {"warm_up": learning, **steps, **clutter}
-        self.of_tracker = {"half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0, **angle,
+        self.of_filter: Dict[str, Any] = {"warm_up": learning, **steps, **clutter}
+        self.of_tracker: Dict[str, Any] = {"half_beamwidth": sensor.half_beamwidth, "history_length": 1, "keep_time": 0.0, **angle,
                            **tracker}
         set_properties(self.filter, "vtkAvianLidarClutterFilter", **self.of_filter)
         set_properties(self.tracker, "vtkAvianLidarTracker", **self.of_tracker)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import csv
 import datetime
+import functools
 import math
 import pathlib
 import types
@@ -109,7 +110,7 @@ def _scans(recording: Recording, fired: Optional[Callable[[np.ndarray], np.ndarr
         known = times if len(times) and abs(1e-6 * times - time).max() < FASTEST else None
         if known is None and fired is not None:
             known = 1e6 * time + fired(placed - position)
-        labels = np.zeros(len(points), np.uint32)
+        labels: np.ndarray = np.zeros(len(points), np.uint32)
         if "semantic_label" in cloud:
             labels = np.asarray(cloud["semantic_label"], np.uint32)
             if "instance_id" in cloud:
@@ -158,7 +159,8 @@ class RecordedTracks:
         self.chain = Chain(self.beams, self.learning, dict(clutter or {}), dict(tracker or {}))
         self.runways = read_runways(runways, origin) if runways and origin is not None else []
         self.truth = None if truth is None else read_truth(truth)
-        self.cutoff, self.order, self.scored = cutoff, order, []
+        self.cutoff, self.order = cutoff, order
+        self.scored: List[Tuple[int, List[Dict[str, Any]], Live, np.ndarray]] = []
         self.tracks: Dict[int, Track] = collections.defaultdict(Track)
         self.points = self.clutter = 0
 
@@ -219,7 +221,7 @@ class RecordedTracks:
         """Rows of scores, with their errors by chance, if the recording has a truth and a bird."""
         if not any(rows for _, rows, _, _ in self.scored):
             return []
-        found = {**score(self.scored, self.cutoff, self.order, []), "seconds": self.seconds()}
+        found: Dict[str, Any] = {**score(self.scored, self.cutoff, self.order, []), "seconds": self.seconds()}
         return [[words, cell(value, unit)] for words, (unit, value) in
                 {**of_birds(found["birds"]), **of_tracks([found])}.items()]
 
@@ -233,7 +235,8 @@ class RecordedTracks:
                 table = csv.writer(stream)
                 table.writerow([*HEAD, *(DEGREES if self.origin is not None else ())])
                 table.writerows(self._rows(progress))
-            facts = [{"track": number, **track.facts()} for number, track in sorted(self.tracks.items())]
+            facts: List[Dict[str, float]] = [{"track": number, **track.facts()}
+                                             for number, track in sorted(self.tracks.items())]
             hours = self._hours(facts)
             write_whole(out / "summary.csv", as_csv([[*facts[0]] if facts else ["track"],
                                                      *(texts(row.values()) for row in facts)]))
@@ -351,7 +354,7 @@ class RecordedTracks:
             drawing.finish(axes, xlabel=label, ylabel="tracks")
         half = 0.5 * drawing.WIDTH - 0.1
         return [drawing.picture(out / f"{file}.png", (half, 2.4), words, f"{words} of {len(facts)} tracks.",
-                                lambda axes, key=key, label=label: bars(axes, key, label))
+                                functools.partial(bars, key=key, label=label))
                 for file, words, key, label in (("heights", "Mean heights", "mean_height_m", "mean height, m"),
                                                 ("speeds", "Mean speeds", "mean_speed_m_s", "mean speed, m/s"))
                 if facts]
