@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A recording beside the simulation of its scene: walls in closed form, what is missing, and poses that are found."""
 import csv
+import json
+import os
+import pathlib
+import unittest
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+import TestRecording
 import avianlidar as al
+from avianlidar import _ros
 from avianlidar._cloud import add_array
 from avianlidar.apps.sequences._compared import Comparison, Pose, aligned
 from echotools import InFolder
 from helpertools import run
 
+DATA = pathlib.Path(os.environ["AVIANLIDAR_DATA_DIR"]) if os.environ.get("AVIANLIDAR_DATA_DIR") else None
 # A yard: half widths and height of its walls, m. All faces are seen from inside.
 EAST, NORTH, HEIGHT = 30.0, 20.0, 12.0
 PLACE = np.array([4.0, -3.0, 2.0])
@@ -121,3 +128,39 @@ class Compared(InFolder):
                                 ((al.example_scene(), self.folder / "none", "--sensor", "Airport16", "-o", "x"),
                                  "no such file or folder")):
             self.assertIn(expected, run("compare", *words)[2])
+
+
+@unittest.skipUnless(DATA, "AVIANLIDAR_DATA_DIR is not set")
+class RealFrames(InFolder):
+    """Frames of other programs. The published pose of the PandarXT-32 in the mesh of the room is from another
+    alignment."""
+
+    def test_frames_are_recordings(self):
+        for folder, count in (("lidar_ouster", 3), ("lidar_outdoor", 3), ("lidar_vlp16_mrpt", 1), ("lidar_room", 4)):
+            files = sorted((DATA / folder).glob("*.pcd"))
+            recording = al.load_clouds(files)
+            self.assertEqual(len(recording), count)
+            for cloud in recording:
+                self.assertGreater(cloud.number_of_points, 10000, folder)
+                self.assertTrue({"laser_id", "distance_m", "azimuth"} <= set(cloud) or "distance_m" in cloud, folder)
+
+    def test_a_frame_as_a_bag(self):
+        """All points and their fields, as ROS has them, come back."""
+        cloud = al.load_cloud(DATA / "lidar_room" / "xt32.pcd")
+        rows = np.zeros(cloud.number_of_points, [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "u1"),
+                                                 ("ring", "<u2")])
+        rows["x"], rows["y"], rows["z"] = cloud.points[:, 1], -cloud.points[:, 0], cloud.points[:, 2]
+        rows["intensity"], rows["ring"] = cloud["intensity"], cloud["laser_id"]
+        TestRecording.db3(self.folder / "a.db3", [("/p", _ros.CLOUD, 1, TestRecording.message(1, rows))])
+        (back,) = al.load_clouds(self.folder / "a.db3")
+        np.testing.assert_array_equal(back.points, cloud.points)
+        for name in ("intensity", "laser_id", "distance_m", "azimuth"):
+            np.testing.assert_array_equal(back[name], cloud[name])
+
+    def test_the_pose_in_the_room(self):
+        known = json.loads((DATA / "lidar_room" / "transforms_to_pandar64.json").read_text())["xt32"]
+        found = Comparison(al.Scene(DATA / "lidar_room" / "room_mesh_4sensors.ply", material="Wall"),
+                           al.load_clouds(DATA / "lidar_room" / "xt32.pcd"), al.Sensor("PandarXT32"), align=True)
+        np.testing.assert_allclose(found.pose.place, known["t"], atol=0.05)
+        self.assertAlmostEqual(found.pose.orientation()[0], -known["yaw_deg"], delta=0.2)
+        self.assertLess(found.numbers()["drop_outs"], 0.05)
