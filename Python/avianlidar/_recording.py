@@ -16,7 +16,7 @@ from . import _bags, _ros
 from . import vtkAvianLidar as _wrapped
 from ._cloud import Cloud, add_array
 from ._files import file_name, load_cloud, numbers_of, read_regular
-from ._pipeline import Error, callers_level, update
+from ._pipeline import callers_level, update
 from ._suffixes import PACKETS, READERS, TABLES
 
 SUFFIXES = (*READERS, *TABLES, ".vtp")
@@ -53,6 +53,9 @@ class Recording:
     def __init__(self, source, scans: _Scans, rate: float | None = None):
         self.source, self.rate = source, rate
         self.times, self.times_from, self.frame, self.poses, self._clouds, self.left_out, self.files = scans
+        for reason, count in self.left_out.items():
+            warnings.warn(f"{source}: {count} {'scan is' if count == 1 else 'scans are'} left out: {reason}",
+                          RuntimeWarning, stacklevel=callers_level())
 
     def __len__(self) -> int:
         return len(self.times)
@@ -353,10 +356,3 @@ def load_clouds(source, rate: float | None = None, topic: str | None = None) -> 
     if topic is not None:
         raise ValueError(f"topic is {topic!r}, expected none for {source}: only bags and nuScenes have topics")
     return Recording(source, _of_files(files, rate), rate)
-
-
-def warn_of_left_out(recording: Recording) -> None:
-    """Warns about scans that are left out."""
-    for reason, count in recording.left_out.items():
-        warnings.warn(f"{recording.source}: {count} {'scan is' if count == 1 else 'scans are'} left out: {reason}",
-                      RuntimeWarning, stacklevel=callers_level())

@@ -194,8 +194,6 @@ def _say_recording(options) -> None:
         bar("scans read", number + 1, len(recording))
     close_bar()
     tell(f"{options.file}: a recording of {len(recording)} scans")
-    for reason, count in recording.left_out.items():
-        warn(f"{options.file}: {count} left out: {reason}")
     rows = {"times from": recording.times_from, "frame": recording.frame,
             "points a scan": f"{min(counts)} to {max(counts)}, {np.mean(counts):.1f} on average"}
     if len(gaps):
@@ -299,8 +297,6 @@ def _compare_scene(options) -> None:
         raise ValueError(f"compare: {options.a} is a scene, expected --sensor, the lidar that recorded {options.b}")
     _drawing.require()
     recording = load_clouds(str(options.b), options.rate, options.topic)
-    for reason, count in recording.left_out.items():
-        warn(f"{options.b}: {count} left out: {reason}")
     if recording.moves:
         warn(f"{options.b}: the sensor moves, but all scans are compared with one simulated scan, at the first pose")
     scene = Scene(options.a, progress=_percent_of("scene"))

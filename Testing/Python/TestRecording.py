@@ -18,6 +18,7 @@ from avianlidar.vtkAvianLidar import vtkAvianLidarPointCloudReader
 from avianlidar.apps.sequences import _rosbag
 from cloudtools import pose_line, write_sequence
 from echotools import InFolder
+from helpertools import warned
 
 UTC = datetime.timezone.utc
 MOMENT = datetime.datetime(2023, 5, 17, 8, 59, 59, 250000, UTC)
@@ -318,12 +319,14 @@ class Bags(InFolder):
 
     def test_what_is_torn_or_late(self):
         mcap(self.folder / "a.mcap", self.messages, cut=400)
-        recording = al.load_clouds(self.folder / "a.mcap")
+        recording, heard = warned(lambda: al.load_clouds(self.folder / "a.mcap"))
         self.assertEqual((len(list(recording)), [*recording.left_out.values()]), (4, [1]))
+        self.assertRegex(" ".join(heard), "a.mcap: 1 scan is left out: torn at the end .*ends within a record")
         late = [self.messages[k] for k in (0, 2, 1, 2, 3)]
         mcap(self.folder / "b.mcap", late)
-        recording = al.load_clouds(self.folder / "b.mcap")
+        recording, heard = warned(lambda: al.load_clouds(self.folder / "b.mcap"))
         self.assertEqual((len(list(recording)), recording.left_out), (3, {"not later than the scan before": 2}))
+        self.assertRegex(" ".join(heard), "b.mcap: 2 scans are left out: not later than the scan before")
         unset = [("/points", _ros.CLOUD, 7, message(0, self.rows))]  # a driver without a clock
         mcap(self.folder / "c.mcap", unset)
         self.assertAlmostEqual(al.load_clouds(self.folder / "c.mcap").times[0], 7e-9, delta=1e-20)
@@ -355,7 +358,7 @@ class Bags(InFolder):
                 broken[place] = rng.integers(256)
             good.write_bytes(broken)
             try:
-                list(al.load_clouds(good))
+                warned(lambda: list(al.load_clouds(good)))
             except ValueError as error:
                 self.assertIn("d.mcap", str(error))
 

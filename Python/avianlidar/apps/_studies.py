@@ -105,8 +105,6 @@ def _track_recordings(options) -> None:
     names = [pathlib.Path(name).name.split(".")[0] for name in options.inputs]
     for number, name in enumerate(options.inputs):
         recording = load_clouds(name, options.rate, options.topic)
-        for reason, count in recording.left_out.items():
-            warn(f"{name}: {counted(count, 'scan')} left out: {reason}")
         out = options.out / checked_name(names[number], "the name of a recording") if len(names) > 1 else options.out
         found = RecordedTracks(recording, Sensor(options.sensor[0]) if options.sensor else None, options.learn,
                                dict(options.clutter_set), dict(options.tracker_set), options.origin,
