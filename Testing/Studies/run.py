@@ -41,6 +41,7 @@ PICTURES = {
     "patterns": {"prisms": "sensors-prisms", "rotors": "sensors-rotors"},
     "predicted_measured": {"least": "measured-least"},
     "ranges": {"ranges": "coverage-ranges"},
+    "recordings": {"ranges": "recordings-ranges"},
     "render_notebook": {"energy-image": "python-range-image"},
     "report_card": {"scan": "tracks-scan"},
     "room": {"xt32-ranges": "room-xt32-ranges"},
@@ -52,7 +53,7 @@ PICTURES = {
 DATA = {"ranges": ("ranges.json", "Python/avianlidar/apps/inputs")}  # numbers that the package holds, by study
 TABLES = ("advice", "attenuation", "coverage_costs", "detail", "falloff", "intervals", "media_time", "mirror_lobes",
           "more_reflections", "moved_scenes", "multiple_scattering", "others", "paper_times", "presets", "protocol",
-          "quadcopter", "recordings", "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
+          "quadcopter", "second_reflection", "sequence_costs", "tracked_gulls", "vegetation")
 LONG = ("accuracy_page", "sequence_costs")  # only when they are named
 
 

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How fast recordings are read, filtered and tracked, by one core. Leaves two tables.
+"""How fast recordings are read, filtered and tracked, by one core, and a recording beside its simulation. Leaves two
+tables and a picture.
 
     Testing/Studies/run.py recordings --data DATA     # default: AVIANLIDAR_DATA_DIR
 
 Reading: files of one frame, beside Open3D (if it is installed) and NumPy's fromfile; the least of ten runs. Following:
-40 scans made of one real frame each, with 2 cm of noise along the range; the median of the last 20 scans.
+40 scans made of one real frame each, with 2 cm of noise along the range; the median of the last 20 scans. The picture
+is that of `avianlidar compare --align` for the PandarXT-32 in the room.
 """
 import os
 import pathlib
+import shutil
 import tempfile
 import time
 
@@ -16,6 +19,7 @@ import numpy as np
 import avianlidar as al
 import tools
 from avianlidar.apps.sequences import _rosbag
+from avianlidar.apps.sequences._compared import Comparison
 from avianlidar.apps.sequences._following import Beams, Chain, Scan
 from avianlidar.apps.sequences._recorded import HALF_BEAMWIDTH, _steps
 from running import argument, study
@@ -102,3 +106,8 @@ def main(options):
     tools.leave(options.out, "recordings", ("frame", "points a scan", "ms a scan", "ms for 100,000 points",
                                             "times as fast as 10 Hz"),
                 [following(name, cloud) for name, cloud in frames.items()])
+    scene = al.Scene(data / "lidar_room" / "room_mesh_4sensors.ply", material="Wall")
+    compared = Comparison(scene, al.load_clouds(data / f"{FRAMES['PandarXT-32']}.pcd"), al.Sensor("PandarXT32"), align=True)
+    found = compared.write(options.out / "compared")
+    shutil.copyfile(options.out / "compared" / "ranges.png", options.out / "ranges.png")
+    print(compared.pose.words(), compared.change, found)
