@@ -324,6 +324,8 @@ def parser() -> Parser:
     _of_recording(add)
     add("--origin", nargs=3, type=float, metavar=("LAT", "LON", "HEIGHT"),
         help="place of a recording's origin, deg and m above the ellipsoid WGS84, for GeoJSON")
+    add("--position", nargs=3, type=float, metavar=("X", "Y", "Z"), help="position of the sensor in the coordinates of a "
+        "recording's files, m; default: as the files say")
     add("--heading", type=float, help="direction of a recording's y axis, deg clockwise from north; default 0")
     add("--truth", type=pathlib.Path, metavar="FILE", help="true birds of a recording, a table as truth.csv of a "
         "sequence; default: the labels of the scans, if they have labels")

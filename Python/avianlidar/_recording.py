@@ -25,8 +25,9 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 SENSOR, OF_FILE = "of the sensor: right, forward and up", "of the files"
 EXPECTED = ("numbered files, a folder or a pattern of them, a bag of ROS (.mcap, .db3, .bag, or its folder), a sequence of "
             "SemanticKITTI, or the folder of nuScenes")
+NANOSECONDS = 1e14  # times since 1970 above are in nanoseconds, also those that should be seconds
 # Times of points in clouds of ROS: the field, the type of the driver's numbers, and their size in us.
-_POINT_TIMES = (("t", "u", 1e-3), ("time", "f", 1e6), ("timestamp", "f", 1e6), ("timestamp", "u", 1e-3))
+_POINT_TIMES = (("t", "u", 1e-3), ("time", "f", 1e6), ("timestamp", "f", 1e6))
 
 
 class _Scans(NamedTuple):
@@ -240,11 +241,11 @@ def _of_bag(source, files: list[pathlib.Path], topic: str | None) -> _Scans:
 
 
 def _from_rows(cloud: _ros.PointCloud, file: pathlib.Path) -> Cloud:
-    """A cloud of a message. Its rows go through the reader of PCD files, whose binary layout is the same.
-    @param file name of a file that may be overwritten"""
+    """A cloud of a message. Its rows go through the reader of PCD files, whose binary layout is the same. Beams without
+    an echo are at (0, 0, 0) or not finite, and are left out. @param file name of a file that may be overwritten"""
     rows = cloud.rows
     finite = np.isfinite(rows["x"]) & np.isfinite(rows["y"]) & np.isfinite(rows["z"])
-    rows = rows[finite]
+    rows = rows[finite & ((rows["x"] != 0) | (rows["y"] != 0) | (rows["z"] != 0))]
     names = [name for name in rows.dtype.names if not set(name) & set(" \t\n")]
     renamed = {"label": "semantic_label", "instance": "instance_id"} if "instance" in names else {}  # of this project
     own = np.empty(len(rows), [(name, rows.dtype[name].newbyteorder("<")) for name in names])
@@ -261,7 +262,8 @@ def _from_rows(cloud: _ros.PointCloud, file: pathlib.Path) -> Cloud:
     found = load_cloud(file)
     for name, kind, size in _POINT_TIMES:
         if name in names and own.dtype[name].kind == kind and len(own) == found.number_of_points:
-            times = size * own[name].astype(float)
+            times = own[name].astype(float)
+            times *= 1e-3 if len(times) and times[0] > NANOSECONDS else size
             since = 1e-3 * cloud.stamp  # us
             times += since if len(times) and abs(times[0]) < 1e9 else 0.0  # else since 1970
             add_array(found.data.GetPointData(), "timestamp", times, "us")

@@ -104,6 +104,22 @@ class Recorded(InFolder):
         self.assertEqual(len(score_birds(labelled)), len(birds))
         self.assertIn("birds tracked", found)
 
+    def test_coordinates_of_a_map(self):
+        """Files that do not say where the sensor stands, and beams without an echo at the sensor."""
+        place = np.array([500000.0, 5400000.0, 200.0])
+        (self.folder / "map").mkdir()
+        for number in range(24):
+            cloud = scan(number, place)
+            points = np.vstack([cloud.points, np.tile(place, (50, 1))])
+            al.save(al.Cloud(type("points", (), {"points": points})()), self.folder / "map" / f"{number}.csv")
+        recording = al.load_clouds(self.folder / "map", rate=RATE)
+        with self.assertRaisesRegex(al.Error, r"points lie \d+ km from the origin .* expected --position X Y Z"):
+            RecordedTracks(recording)
+        found = RecordedTracks(recording, learning=10, position=place).write(self.folder / "out")
+        self.assertEqual((found["tracks"], found["points"]), (1, 24 * scan(0).number_of_points))
+        first = self.rows("tracks.csv")[0]
+        self.assertLess(math.dist([float(first[name]) for name in ("x_m", "y_m")], place[:2]), 100)
+
     def test_the_command(self):
         home, out = self.write(8), self.folder / "out"
         code, said, errors = run("track", home, "-o", out)

@@ -272,12 +272,29 @@ class Bags(InFolder):
         swapped = self.rows.astype(self.rows.dtype.newbyteorder(">"))
         empty = self.rows.copy()
         empty["x"][[3, 7]] = np.nan
+        silent = self.rows.copy()
+        for axis in "xyz":
+            silent[axis][[2, 5]] = 0  # no echo
         for data, rows in ((message(1, self.rows, height=4, row_gap=5), self.rows),
                            (message(1, swapped, big=True), self.rows), (message(1, empty), np.delete(empty, [3, 7])),
+                           (message(1, silent), np.delete(silent, [2, 5])),
                            (message(1, self.rows[:0]), self.rows[:0])):
             mcap(self.folder / "a.mcap", [("/points", _ros.CLOUD, 1, data)])
             (cloud,) = al.load_clouds(self.folder / "a.mcap")
             self.check_rows(cloud, rows)
+
+    def test_times_of_points(self):
+        """Of Velodyne (s), Ouster (ns), Hesai (s since 1970), Livox (ns since 1970, as doubles), and others."""
+        offsets, stamp = np.arange(24) * 1e-3, 1_700_000_000_500_000_000  # s; ns
+        for name, kind, values in (("time", "<f4", offsets), ("time", "<f4", offsets - 0.1), ("t", "<u4", 1e9 * offsets),
+                                   ("timestamp", "<f8", 1.7e9 + 0.5 + offsets),
+                                   ("timestamp", "<f8", 1.7e18 + 5e8 + 1e9 * offsets)):
+            rows = np.zeros(24, [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), (name, kind)])
+            rows["x"], rows[name] = 1, values
+            mcap(self.folder / "a.mcap", [("/points", _ros.CLOUD, stamp, message(stamp, rows))])
+            (cloud,) = al.load_clouds(self.folder / "a.mcap")
+            shift = -0.1 if values[0] < 0 else 0
+            np.testing.assert_allclose(cloud["timestamp"], 1e6 * (1.7e9 + 0.5 + offsets + shift), rtol=0, atol=1)
 
     def test_topics(self):
         both = self.messages + [("/other", _ros.CLOUD, 5, message(5, self.rows[:7]))]

@@ -88,7 +88,7 @@ def sequence(options) -> None:
              f"{', view.html shows the first sequence' if shown else ''}")
 
 
-_OF_RECORDINGS = ("rate", "topic", "origin", "heading", "truth")
+_OF_RECORDINGS = ("rate", "topic", "origin", "heading", "truth", "position")
 
 
 def is_recording(name: str) -> bool:
@@ -109,7 +109,7 @@ def _track_recordings(options) -> None:
         found = RecordedTracks(recording, Sensor(options.sensor[0]) if options.sensor else None, options.learn,
                                dict(options.clutter_set), dict(options.tracker_set), options.origin,
                                options.heading or 0.0, options.runways, options.scans, options.truth, options.cutoff,
-                               options.order).write(out, bar)
+                               options.order, options.position).write(out, bar)
         close_bar()
         if found["scores"]:
             table([("score", name), *map(tuple, found["scores"])])

@@ -35,6 +35,7 @@ HEAD = ("track", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
 DEGREES = ("longitude", "latitude", "height_m")
 LOOKED_AT = 3  # scans in which the steps between beams are measured
 STEPS = (0.05, 5.0)  # limits of these steps, deg
+FARTHEST = 20000.0  # m: median coordinate above which the origin is not the sensor
 SINCE_1970 = 1e9  # times above are seconds since 1970
 FASTEST = 2.0  # s: times of points further from the time of the scan are not used
 NEAREST = 30.0  # least half width of the map, m
@@ -78,9 +79,10 @@ def _steps(cloud) -> Tuple[float, float]:
     return (float(np.median(across)) if across else 0.0), (float(np.median(rise)) if len(rise) else 0.0)
 
 
-def beams_of(recording: Recording, sensor: Optional[Sensor]) -> Tuple[Beams, str]:
-    """The steps between beams, from the sensor or else from the first scans, and words on where they come from."""
-    placed = next(_scans(recording), None)
+def beams_of(recording: Recording, sensor: Optional[Sensor], given: Optional[Many[float]] = None) -> Tuple[Beams, str]:
+    """The steps between beams, from the sensor or else from the first scans, and words on where they come from. @param
+    given position of the sensor"""
+    placed = next(_scans(recording, given), None)
     position = placed[1] if placed else np.zeros(3)
     if sensor:
         return (Beams(sensor.azimuth_step, sensor.elevation_step, sensor.half_beamwidth, position),
@@ -95,14 +97,20 @@ def beams_of(recording: Recording, sensor: Optional[Sensor]) -> Tuple[Beams, str
             f"{across:.3g} by {up:.3g} deg between beams, measured in the first scans")
 
 
-def _scans(recording: Recording, fired: Optional[Callable[[np.ndarray], np.ndarray]] = None
-           ) -> Iterator[Tuple[Scan, np.ndarray]]:
-    """Each scan, and the position of the sensor. @param fired times of points by `firing_times`, if they have none"""
+def _scans(recording: Recording, given: Optional[Many[float]] = None,
+           fired: Optional[Callable[[np.ndarray], np.ndarray]] = None) -> Iterator[Tuple[Scan, np.ndarray]]:
+    """Each scan, and the position of the sensor. Points at the sensor, as of beams without an echo, are left out.
+    @param given position of the sensor in the coordinates of files @param fired times of points by `firing_times`, if
+    they have none"""
     for number, (cloud, time) in enumerate(zip(recording, recording.times.tolist())):
         points = cloud.points
         if recording.frame == OF_FILE:
-            position = np.array(cloud.fields.get("position", np.zeros(3)), float)
+            position = np.array(cloud.fields.get("position", np.zeros(3)) if given is None else given, float)
             relative, placed = points - position, points
+            if len(points) and not position.any() and np.median(np.abs(points[:, :2])) > FARTHEST:
+                raise Error(f"{recording.source}: points lie {np.median(np.abs(points[:, :2])) / 1e3:.0f} km from the "
+                            "origin of their coordinates, and the files do not say where the sensor stands: expected "
+                            "--position X Y Z")
         else:
             pose = recording.pose(number)
             relative, placed, position = points, points @ pose[:, :3].T + pose[:, 3], pose[:, 3]
@@ -115,7 +123,9 @@ def _scans(recording: Recording, fired: Optional[Callable[[np.ndarray], np.ndarr
             labels = np.asarray(cloud["semantic_label"], np.uint32)
             if "instance_id" in cloud:
                 labels = labels | np.asarray(cloud["instance_id"], np.uint32) << 16
-        yield Scan(number, time, relative, placed, known, labels), position
+        there = relative.any(axis=1)
+        yield Scan(number, time, relative[there], placed[there], None if known is None else known[there],
+                   labels[there]), position
 
 
 class RecordedTracks:
@@ -124,7 +134,8 @@ class RecordedTracks:
     def __init__(self, recording: Recording, sensor: Optional[Sensor] = None, learning: int = 20,
                  clutter: Optional[Dict[str, Any]] = None, tracker: Optional[Dict[str, Any]] = None,
                  origin: Optional[Many[float]] = None, heading: float = 0.0, runways=None,
-                 scans: Optional[int] = None, truth=None, cutoff: float = 20.0, order: float = 2.0):
+                 scans: Optional[int] = None, truth=None, cutoff: float = 20.0, order: float = 2.0,
+                 position: Optional[Many[float]] = None):
         """Checks the inputs; `write` does the work.
 
         recording         of `load_clouds`; its sensor must stand still
@@ -138,6 +149,7 @@ class RecordedTracks:
         truth             a CSV file as truth.csv of a sequence, with places in the fixed frame of the recording;
                           default: the labels of birds, if the scans have labels
         cutoff, order     as in BirdTracks, for the scores
+        position          of the sensor in the coordinates of files, m; default: as the files say
         """
         if origin is not None and not (abs(origin[0]) <= 90 and abs(origin[1]) <= 360 and abs(origin[2]) < 1e5):
             raise ValueError(f"the origin is {tuple(origin)}, expected latitude, longitude (deg) and height (m)")
@@ -154,7 +166,10 @@ class RecordedTracks:
         if recording.moves:
             warn(f"{recording.source}: the sensor moves, but the clutter filter expects a sensor that stands still: "
                  "tracks may be walls")
-        self.beams, self.beams_from = beams_of(recording, sensor)
+        if position is not None and recording.frame != OF_FILE:
+            raise ValueError(f"the position is {tuple(position)}, expected none: scans are {recording.frame}")
+        self.position = position
+        self.beams, self.beams_from = beams_of(recording, sensor, position)
         self.fired = firing_times(sensor) if sensor else None
         self.chain = Chain(self.beams, self.learning, dict(clutter or {}), dict(tracker or {}))
         self.runways = read_runways(runways, origin) if runways and origin is not None else []
@@ -175,7 +190,7 @@ class RecordedTracks:
 
     def _rows(self, progress: Callable[[str, int, int], Any]) -> Iterator[List[Any]]:
         """Rows of tracks.csv, as the scans are followed."""
-        scans = (scan for scan, _ in _scans(self.recording, self.fired))
+        scans = (scan for scan, _ in _scans(self.recording, self.position, self.fired))
         for scan, live in self.chain.follow(scan for _, scan in zip(range(self.count), scans)):
             self.points += len(scan.points)
             self.clutter += int(live.clutter.sum())
