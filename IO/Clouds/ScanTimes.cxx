@@ -39,11 +39,13 @@ std::optional<double> isoTime(const std::smatch& found)
     const ptime time(day, hours(number(4)) + minutes(number(5)) + seconds(number(6)));
     const ptime origin(boost::gregorian::date(1970, 1, 1));
     double offset = 0.0;
-    if (found[9].matched)
+    if (found[10].matched)
     {
-      offset = (found[8].str() == "-" ? -60.0 : 60.0) * (60 * number(9) + number(10));
+      const int minutesOfZone = found[11].matched ? number(11) : 0;
+      offset = (found[9].str() == "-" ? -60.0 : 60.0) * (60 * number(10) + minutesOfZone);
     }
-    const double fraction = found[7].matched ? std::stod("0." + found[7].str()) : 0.0;
+    const std::string digits = found[7].str() + found[8].str(); // one of them is empty
+    const double fraction = digits.empty() ? 0.0 : std::stod("0." + digits);
     return static_cast<double>((time - origin).total_seconds()) + fraction - offset;
   }
   catch (const std::out_of_range&) // there is no such day
@@ -55,23 +57,23 @@ std::optional<double> isoTime(const std::smatch& found)
 const std::regex& isoPattern()
 {
   static const std::regex pattern(
-    "(?:^|[^0-9])(\\d{4})[-_.]?(\\d\\d)[-_.]?(\\d\\d)[T_ -](\\d\\d)[-:_.h]?"
-    "(\\d\\d)[-:_.m]?(\\d\\d)(?:[.,](\\d{1,9}))?(?:([+-])(\\d\\d):?(\\d\\d)|Z)?"
-    "(?![0-9])");
+    "(?:^|[^0-9])(\\d{4})[-_.]?(\\d\\d)[-_.]?(\\d\\d)[T_ "
+    "-]?(\\d\\d)[-:_.h]?(\\d\\d)[-:_.m]?(\\d\\d)"
+    "(?:[.,](\\d{1,9})|[-_]?(\\d{3}|\\d{6}|\\d{9}))?(?:([+-])(\\d\\d)(?::?(\\d\\d))?|Z)?(?![0-9])");
   return pattern;
 }
 
 /// Converts digits that count units since 1970 to seconds.
-std::optional<double> sinceEpoch(const std::string& digits, const std::string& nanoseconds)
+std::optional<double> sinceEpoch(const std::string& digits, const std::string& fraction)
 {
   const std::size_t count = digits.size();
-  if (count != 10 && (count < 13 || count > 19 || (count - 10) % 3 != 0 || !nanoseconds.empty()))
+  if (count != 10 && (count < 13 || count > 19 || (count - 10) % 3 != 0 || !fraction.empty()))
   {
     return std::nullopt;
   }
   const double time = std::stod(digits.substr(0, 10)) +
     (count > 10 ? std::stod("0." + digits.substr(10)) : 0.0) +
-    (nanoseconds.empty() ? 0.0 : 1e-9 * std::stod(nanoseconds));
+    (fraction.empty() ? 0.0 : std::stod("0." + fraction));
   return time >= Earliest && time < Latest ? std::optional<double>(time) : std::nullopt;
 }
 
@@ -80,10 +82,10 @@ std::optional<double> sinceEpoch(const std::string& digits, const std::string& n
 std::optional<double> timeInName(const std::string& name)
 {
   std::optional<double> time;
-  static const std::regex digits("(\\d+)(?:[._](\\d{9})(?![0-9]))?");
+  static const std::regex digits("(\\d+)(?:(?:\\.(\\d{3}|\\d{6}|\\d{9})|_(\\d{9}))(?![0-9]))?");
   for (std::sregex_iterator it(name.begin(), name.end(), digits), end; it != end; ++it)
   {
-    const std::optional<double> found = sinceEpoch((*it)[1].str(), (*it)[2].str());
+    const std::optional<double> found = sinceEpoch((*it)[1].str(), (*it)[2].str() + (*it)[3].str());
     time = found ? found : time;
   }
   if (!time)
@@ -112,6 +114,13 @@ std::optional<Times> forAll(const std::vector<std::string>& items, const F& valu
     values.push_back(*value);
   }
   return values;
+}
+
+/// Returns whether no two times are the same. Otherwise the numbers in the names are no times, but,
+/// for example, serial numbers.
+bool differ(const Times& times)
+{
+  return std::set<double>(times.begin(), times.end()).size() == times.size();
 }
 
 /// Returns the numbers by which the names differ, if they differ by one number alone.
@@ -247,7 +256,8 @@ ScanTimes timesOfScans(const std::vector<std::string>& files, double rate)
     times = timesOfLines(listed, files.size(), counts);
     scans.origin = fs::path(listed).filename().string();
   }
-  else if (const std::optional<Times> inNames = forAll(names, timeInName))
+  else if (const std::optional<Times> inNames = forAll(names, timeInName);
+           inNames && differ(*inNames))
   {
     times = *inNames;
     scans.origin = "names of the files, s since 1970";

@@ -27,8 +27,9 @@ struct ScanTimes
 /// 2. a file times.txt or timestamps.txt beside the files or in the folder above. A line has
 ///    seconds, or a date and a time as in ISO 8601. If the names of the files have numbers below
 ///    the number of lines, these are the numbers of the lines, from 0 on;
-/// 3. times in the names: seconds, ms, us or ns since 1970, seconds and nanoseconds with a dot or
-///    `_` between, or a date and a time as in ISO 8601, also without separators;
+/// 3. times in the names, if they differ: seconds, ms, us or ns since 1970, seconds and three, six
+///    or nine decimals behind a dot, or nine behind `_`, or a date and a time as in ISO 8601, also
+///    without separators;
 /// 4. the numbers in the names, which count scans at AssumedScanRate;
 /// 5. the order of the files, at AssumedScanRate.
 /// Throws FormatError if two files have the same time, or if a file of times does not fit.

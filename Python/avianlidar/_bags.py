@@ -32,7 +32,7 @@ class Message(NamedTuple):
 
 
 class Torn(ValueError):
-    """The end of a file is missing, as after a recording that was killed."""
+    """The end of a file is missing."""
 
 
 def _decompressed(kind: str, data: bytes, size: int) -> bytes:
@@ -131,7 +131,10 @@ def _in_mcap(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
 
 
 def _in_db3(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
-    with contextlib.closing(sqlite3.connect(f"file:{urllib.parse.quote(str(path.resolve()))}?mode=ro", uri=True)) as db:
+    name = f"file:{urllib.parse.quote(str(path.resolve()))}?mode=ro"
+    if not path.with_name(f"{path.name}-wal").exists():
+        name += "&immutable=1"  # else SQLite writes files beside a bag in its mode WAL
+    with contextlib.closing(sqlite3.connect(name, uri=True)) as db:
         topics = {number: (name, kind.replace("/msg/", "/"))
                   for number, name, kind, encoding in db.execute(
                       "SELECT id, name, type, serialization_format FROM topics") if encoding == "cdr"}
@@ -165,9 +168,16 @@ def _in_bag(path: pathlib.Path, kinds: Collection[str]) -> Iterator[Message]:
         raise ValueError(f"is not a bag of ROS 1 ({error})") from None
 
 
-def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
-    """The files of a bag in a folder, in the order of the numbers at the ends of their names."""
-    files = [file for file in sorted(folder.iterdir()) if file.suffix.lower() in SUFFIXES]
+def files_of(folder: pathlib.Path, notes: list[str]) -> list[pathlib.Path]:
+    """The files of a bag in a folder, in the order of the numbers at the ends of their names. @param notes sentences on
+    parts that are missing are added"""
+    files = [file for file in sorted(folder.iterdir())
+             if file.suffix.lower() in SUFFIXES and not file.name.startswith(".")]
+    listed = folder / "metadata.yaml"
+    if files and listed.is_file():
+        parts = re.findall(r"^\s*-\s+[\"']?(\S+\.(?:mcap|db3))[\"']?\s*$", listed.read_text("utf-8", "replace"), re.M)
+        missing = [part for part in parts if not (folder / part).exists()]
+        notes += [f"{listed} names {missing[0]}, which is missing ({len(missing)} of {len(parts)} parts)"] if missing else []
     packed = [file.name for file in folder.glob("*.db3.zstd")]
     if not files and packed:
         raise ValueError(f"{folder}: {packed[0]} is compressed as a whole, expected .db3 or .mcap: decompress it "
@@ -175,9 +185,8 @@ def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
     return sorted(files, key=lambda file: (file.suffix, int((re.findall(r"\d+", file.stem) or ["0"])[-1])))
 
 
-def messages(files: list[pathlib.Path], kinds: Collection[str]) -> Iterator[Message]:
-    """The messages of some kinds in the files of a bag. `Torn` is raised behind the last message if the end is
-    missing."""
+def messages(files: list[pathlib.Path], kinds: Collection[str], notes: list[str]) -> Iterator[Message]:
+    """The messages of some kinds in the files of a bag. @param notes sentences on files whose end is missing are added"""
     for file in files:
         require_regular(file)
         read = {".mcap": _in_mcap, ".db3": _in_db3, ".bag": _in_bag}[file.suffix.lower()]
@@ -187,10 +196,10 @@ def messages(files: list[pathlib.Path], kinds: Collection[str]) -> Iterator[Mess
                 began = True
                 yield message
         except sqlite3.DatabaseError as error:
-            if began:
-                raise Torn(f"{file}: {error}") from None
-            raise ValueError(f"{file}: is not a bag of ROS 2 ({error})") from None
+            if not began:
+                raise ValueError(f"{file}: is not a bag of ROS 2, or is damaged ({error})") from None
+            notes.append(f"{file}: {error}: the scans behind are missing")
         except Torn as error:
-            raise Torn(f"{file}: {error}") from None
+            notes.append(f"{file}: {error}: its last scans may be missing")
         except (ValueError, RuntimeError, struct.error) as error:  # RuntimeError of lz4
             raise ValueError(f"{file}: {error}") from None

@@ -266,10 +266,12 @@ def parser() -> Parser:
         "default: the position in the file")
     for name in ("info", "compare", "convert"):
         _of_recording(verb[name].add_argument)
-    for name in ("info", "compare", "convert"):
+    for name in ("info", "compare", "convert", "track"):
         add = verb[name].add_argument
         add("--sensor-address", metavar="ADDRESS", help="address of the sensor in packets (.pcap), as 192.168.1.201 or "
             "192.168.1.201:2368; default: the only sensor")
+        if name == "track":
+            continue
         add("--time", type=float, metavar="S",
             help="time of the revolution in packets, seconds since the full hour; default: the first revolution")
     add = verb["sensors"].add_argument
@@ -323,7 +325,8 @@ def parser() -> Parser:
         f"{RECORDING}")
     _of_recording(add)
     add("--origin", nargs=3, type=float, metavar=("LAT", "LON", "HEIGHT"),
-        help="place of a recording's origin, deg and m above the ellipsoid WGS84, for GeoJSON")
+        help="place on the Earth of --position, else of a recording's origin, deg and m above the ellipsoid WGS84, "
+             "for GeoJSON")
     add("--position", nargs=3, type=float, metavar=("X", "Y", "Z"), help="position of the sensor in the coordinates of a "
         "recording's files, m; default: as the files say")
     add("--heading", type=float, help="direction of a recording's y axis, deg clockwise from north; default 0")

@@ -4,6 +4,7 @@ import collections
 import glob
 import json
 import pathlib
+import re
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
@@ -25,9 +26,12 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 SENSOR, OF_FILE = "of the sensor: right, forward and up", "of the files"
 EXPECTED = ("numbered files, a folder or a pattern of them, a bag of ROS (.mcap, .db3, .bag, or its folder), a sequence of "
             "SemanticKITTI, or the folder of nuScenes")
-NANOSECONDS = 1e14  # times since 1970 above are in nanoseconds, also those that should be seconds
-# Times of points in clouds of ROS: the field, the type of the driver's numbers, and their size in us.
-_POINT_TIMES = (("t", "u", 1e-3), ("time", "f", 1e6), ("timestamp", "f", 1e6))
+BEYOND = 200_000_000  # ns: how far a pose serves before the first and after the last of its times without a warning
+# Times of points in clouds of ROS, by the drivers of Ouster, Velodyne, Hesai and Livox, and Autoware.
+_POINT_TIMES = ("t", "time", "timestamp", "time_stamp", "offset_time")
+SINCE_1970 = 1e9  # larger times count from 1970
+SHORTEST = 1e6  # ns: whole numbers that differ by less are us
+LONGEST = 1e7  # us: times of points that differ by more are not times of one scan
 
 
 class _Scans(NamedTuple):
@@ -38,6 +42,7 @@ class _Scans(NamedTuple):
     poses: list[np.ndarray] | None  # 3 x 4, of each scan
     clouds: Callable[[], Iterator[Cloud]]
     left_out: dict[str, int]  # number of scans by the reason
+    notes: list[str]  # sentences on what may be missing or is assumed
     files: list[pathlib.Path]  # that vtkAvianLidarPointCloudReader reads as the same scans
 
 
@@ -53,7 +58,12 @@ class Recording:
 
     def __init__(self, source, scans: _Scans, rate: float | None = None):
         self.source, self.rate = source, rate
-        self.times, self.times_from, self.frame, self.poses, self._clouds, self.left_out, self.files = scans
+        self.times, self.times_from, self.frame, self.poses, self._clouds, self.left_out, notes, self.files = scans
+        if not len(self.times):
+            reasons = [f"{count} {reason}" for reason, count in self.left_out.items()] + notes
+            raise ValueError(f"{source}: has no scan{': ' + '; '.join(reasons) if reasons else ''}")
+        for note in notes:
+            warnings.warn(f"{source}: {note}", RuntimeWarning, stacklevel=callers_level())
         for reason, count in self.left_out.items():
             warnings.warn(f"{source}: {count} {'scan is' if count == 1 else 'scans are'} left out: {reason}",
                           RuntimeWarning, stacklevel=callers_level())
@@ -62,7 +72,18 @@ class Recording:
         return len(self.times)
 
     def __iter__(self) -> Iterator[Cloud]:
-        for time, cloud in zip(self.times.tolist(), self._clouds()):
+        """Each kind of warning about a scan is said once."""
+        said: set[str] = set()
+        clouds = self._clouds()
+        for time in self.times.tolist():
+            with warnings.catch_warnings(record=True) as heard:
+                warnings.simplefilter("always")
+                cloud = next(clouds)
+            for text in (str(one.message) for one in heard):
+                kind = re.sub(r"\S*/\S+|\d+", "", text)
+                if kind not in said:
+                    said.add(kind)
+                    warnings.warn(text, RuntimeWarning, stacklevel=callers_level())
             add_array(cloud.data.GetFieldData(), "TimeValue", np.array([time]), "s")
             yield cloud
 
@@ -103,7 +124,7 @@ def _cloud(file: pathlib.Path, **properties: Any) -> Cloud:
     return load_cloud(file, **local, **properties)
 
 
-def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
+def _of_files(files: list[pathlib.Path], rate: float | None, notes: list[str], address: dict[str, str]) -> _Scans:
     suffixes = collections.Counter(file.suffix.lower() for file in files)
     if len(suffixes) > 1:
         raise ValueError(f"{files[0].parent}: has {', '.join(f'{count} {name}' for name, count in suffixes.items())}, "
@@ -113,11 +134,13 @@ def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
         raise ValueError(f"{files[0]}: {len(files)} files of packets, expected one: each of its revolutions is a scan")
     frame, known = SENSOR if suffix in (".bin", *PACKETS) else OF_FILE, files if suffix in READERS else []
     if len(files) == 1 and suffix not in PACKETS:
-        return _Scans(np.zeros(1), "one file", frame, None, lambda: iter([_cloud(files[0])]), {}, known)
+        return _Scans(np.zeros(1), "one file", frame, None, lambda: iter([_cloud(files[0])]), {}, notes, known)
     reader = _wrapped.vtkAvianLidarPointCloudReader()
     for file in files:
         reader.AddFileName(file_name(file))
     reader.SetScanRate(rate or 0.0)
+    if address:
+        reader.SetSensorAddress(address["sensor_address"])
     reader.UpdateInformation()
     found = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
     if not found:
@@ -125,7 +148,7 @@ def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
     times = np.array(found)
     if suffix in PACKETS:
         return _Scans(times, "packets, s since the full hour", frame, None,
-                      lambda: (_cloud(files[0], time=time) for time in times.tolist()), {}, known)
+                      lambda: (_cloud(files[0], time=time, **address) for time in times.tolist()), {}, notes, known)
     names = [pathlib.Path(reader.GetScanFileName(k)) for k in range(len(times))]
     poses, home = None, files[0].parent.parent
     if suffix == ".bin" and (home / "poses.txt").exists():
@@ -133,7 +156,8 @@ def _of_files(files: list[pathlib.Path], rate: float | None) -> _Scans:
         if len(poses) != len(names):
             raise ValueError(f"{home / 'poses.txt'}: has {len(poses)} poses, expected one for each of "
                              f"{len(names)} scans")
-    return _Scans(times, reader.GetScanTimes(), frame, poses, lambda: map(_cloud, names), {}, names if known else [])
+    return _Scans(times, reader.GetScanTimes(), frame, poses, lambda: map(_cloud, names), {}, notes,
+                  names if known else [])
 
 
 class _Transforms:
@@ -143,11 +167,17 @@ class _Transforms:
         self.parents: dict[str, str] = {}
         self.known: dict[str, dict[int, tuple[Any, Any]]] = collections.defaultdict(dict)  # by child and time, ns
 
-    def add(self, data) -> None:
+    def add(self, data, static: bool) -> None:
+        """@param static whether the transforms replace earlier ones"""
         (transforms,) = _ros.unpacked(_ros.TRANSFORMS, data)
         for ((seconds, nanoseconds), parent), child, transform in transforms:
+            if not np.isfinite([*transform[0], *transform[1]]).all() or np.linalg.norm(transform[1]) < 0.5:
+                raise ValueError(f"gives {child} the place {transform[0]} and the rotation {transform[1]}, expected "
+                                 "finite numbers and a unit quaternion")
             child = child.lstrip("/")
             self.parents[child] = parent.lstrip("/")
+            if static:
+                self.known[child].clear()
             self.known[child][10**9 * seconds + nanoseconds] = transform
 
     def _step(self, child: str, stamp: int) -> np.ndarray:
@@ -165,6 +195,17 @@ class _Transforms:
         matrix[:3, :3] = turn.as_matrix()
         matrix[:3, 3] = [np.interp(at, seconds, places[:, axis]) for axis in range(3)]
         return matrix
+
+    def covers(self, frame: str, stamp: int) -> bool:
+        """Whether a time is not far outside the times of any moving frame above."""
+        seen = set()
+        while frame in self.parents and frame not in seen:
+            seen.add(frame)
+            times = self.known[frame]
+            if len(times) > 1 and not min(times) - BEYOND <= stamp <= max(times) + BEYOND:
+                return False
+            frame = self.parents[frame]
+        return True
 
     def pose(self, frame: str, stamp: int) -> np.ndarray | None:
         """The matrix (3 x 4) from a frame to the frame that has no parent; None for an unknown frame."""
@@ -186,58 +227,72 @@ def _topic_of(source, counts: "collections.Counter[str]", topic: str | None) -> 
         raise ValueError(f"{source}: has no message of {_ros.CLOUD}, expected recorded clouds; packets of a lidar must "
                          "be converted by its driver first")
     if topic is None and len(counts) > 1:
-        raise ValueError(f"{source}: has clouds in {listed}, expected the choice of one topic")
+        raise ValueError(f"{source}: has clouds in {listed}, expected the choice of one topic (--topic)")
     if topic is not None and topic not in counts:
         raise ValueError(f"{source}: has no clouds in {topic}, expected one of {listed}")
     return topic or next(iter(counts))
 
 
-def _of_bag(source, files: list[pathlib.Path], topic: str | None) -> _Scans:
+def _of_bag(source, files: list[pathlib.Path], topic: str | None, notes: list[str]) -> _Scans:
     counts: collections.Counter[str] = collections.Counter()
-    stamps: dict[str, list[tuple[int, str]]] = collections.defaultdict(list)
-    transforms, left_out = _Transforms(), {}
-    try:
-        for message in _bags.messages(files, (_ros.CLOUD, _ros.TRANSFORMS)):
-            try:
-                if message.kind == _ros.TRANSFORMS:
-                    transforms.add(message.data)
-                    continue
-                (seconds, nanoseconds), frame = _ros.unpacked("std_msgs/Header", message.data)
-            except ValueError as error:
-                raise ValueError(f"{source}: a message of {message.topic} {error}") from None
-            counts[message.topic] += 1
-            stamps[message.topic].append((10**9 * seconds + nanoseconds or message.time, frame.lstrip("/")))
-    except _bags.Torn as error:
-        left_out[f"torn at the end ({error})"] = 1
+    found: dict[str, list[tuple[int, int, str, str]]] = collections.defaultdict(list)  # stamp, time, frame, fault
+    transforms = _Transforms()
+    for message in _bags.messages(files, (_ros.CLOUD, _ros.TRANSFORMS), notes):
+        try:
+            if message.kind == _ros.TRANSFORMS:
+                transforms.add(message.data, message.topic.endswith("static"))
+                continue
+        except ValueError as error:
+            raise ValueError(f"{source}: a message of {message.topic} {error}") from None
+        counts[message.topic] += 1
+        try:
+            cloud = _ros.cloud_of(message.data)
+            found[message.topic].append((cloud.stamp, message.time, cloud.frame.lstrip("/"), ""))
+        except ValueError as error:
+            found[message.topic].append((0, message.time, "", str(error)))
+    if not counts and notes:
+        raise ValueError(f"{source}: has no whole message of {_ros.CLOUD}: {notes[0]}")
     topic = _topic_of(source, counts, topic)
-    kept, latest = [], -1
-    for number, (stamp, _) in enumerate(stamps[topic]):
-        if stamp > latest:
-            kept.append(number)
-            latest = stamp
-    if len(kept) < counts[topic]:
-        left_out["not later than the scan before"] = counts[topic] - len(kept)
-    poses = [transforms.pose(stamps[topic][number][1], stamps[topic][number][0]) for number in kept]
+    rows = found[topic]
+    left_out: collections.Counter[str] = collections.Counter()
+    has_clock = any(stamp for stamp, _, _, fault in rows if not fault)
+    kept: list[tuple[int, int]] = []  # stamps, and numbers of the messages
+    for number, (stamp, time, _, fault) in enumerate(rows):
+        if fault or has_clock and stamp <= 0 and stamp != time:
+            left_out[f"damaged: {fault}" if fault else "without a time"] += 1
+        else:
+            kept.append((stamp if has_clock else time, number))
+    kept.sort()
+    twice = {number for (before, _), (stamp, number) in zip(kept, kept[1:]) if stamp == before}
+    if twice:
+        left_out["of the same time as the scan before"] += len(twice)
+    kept = [one for one in kept if one[1] not in twice]
+    if not kept and rows[0][3]:
+        raise ValueError(f"{source}: a message of {topic} {rows[0][3]}")
+    poses = [transforms.pose(rows[number][2], stamp) for stamp, number in kept]
     known = None
     if all(pose is not None for pose in poses):
         known = [np.column_stack([pose[:, :3] @ TURNED.T, pose[:, 3]]) for pose in poses if pose is not None]
+        outside = sum(not transforms.covers(rows[number][2], stamp) for stamp, number in kept)
+        if outside:
+            notes.append(f"{outside} of {len(kept)} scans are before the first or after the last pose of /tf, and have "
+                         "the nearest pose")
 
     def clouds() -> Iterator[Cloud]:
-        wanted, number = set(kept), -1
+        """In the order of the times. Scans that come early in the bag wait."""
+        turn = {number: order for order, (_, number) in enumerate(kept)}
+        waiting: dict[int, Any] = {}
+        number, following = -1, 0
         with tempfile.TemporaryDirectory() as folder:
-            try:
-                for message in _bags.messages(files, (_ros.CLOUD,)):
-                    number += message.topic == topic
-                    if message.topic == topic and number in wanted:
-                        try:
-                            cloud = _ros.cloud_of(message.data)
-                        except ValueError as error:
-                            raise ValueError(f"{source}: scan {number} of {topic} {error}") from None
-                        yield _from_rows(cloud, pathlib.Path(folder) / "scan.pcd")
-            except _bags.Torn:  # counted above
-                pass
-    times = np.array([1e-9 * stamps[topic][number][0] for number in kept])
-    return _Scans(times, f"messages of {topic}, s", SENSOR, known, clouds, left_out, [])
+            for message in _bags.messages(files, (_ros.CLOUD,), []):
+                number += message.topic == topic
+                if message.topic == topic and number in turn:
+                    waiting[turn[number]] = message.data
+                    while following in waiting:
+                        yield _from_rows(_ros.cloud_of(waiting.pop(following)), pathlib.Path(folder) / "scan.pcd")
+                        following += 1
+    times = np.array([1e-9 * stamp for stamp, _ in kept])
+    return _Scans(times, f"messages of {topic}, s", SENSOR, known, clouds, dict(left_out), notes, [])
 
 
 def _from_rows(cloud: _ros.PointCloud, file: pathlib.Path) -> Cloud:
@@ -260,15 +315,29 @@ def _from_rows(cloud: _ros.PointCloud, file: pathlib.Path) -> Cloud:
     text = "".join(f"{key} {' '.join(map(str, values))}\n" for key, values in header.items())
     file.write_bytes(text.encode() + own.tobytes())
     found = load_cloud(file)
-    for name, kind, size in _POINT_TIMES:
-        if name in names and own.dtype[name].kind == kind and len(own) == found.number_of_points:
-            times = own[name].astype(float)
-            times *= 1e-3 if len(times) and times[0] > NANOSECONDS else size
-            since = 1e-3 * cloud.stamp  # us
-            times += since if len(times) and abs(times[0]) < 1e9 else 0.0  # else since 1970
+    if len(own) and len(own) == found.number_of_points:
+        times = _times_of(own, cloud.stamp)
+        if times is not None:
             add_array(found.data.GetPointData(), "timestamp", times, "us")
-            break
     return found
+
+
+def _times_of(rows: np.ndarray, stamp: int) -> np.ndarray | None:
+    """Times of points, us since 1970, of the fields that drivers write; None without a field whose times are sensible.
+    @param stamp time of the scan, ns"""
+    for name in _POINT_TIMES:
+        if name not in (rows.dtype.names or ()) or rows.dtype[name].shape:
+            continue
+        values = rows[name].astype(float)
+        first, span = abs(values[0]), np.ptp(values)
+        if first > SINCE_1970:  # in s, ms, us or ns since 1970
+            times = values * 10.0 ** (6 - 3 * round((np.log10(first) - 9.2) / 3.0))
+        else:  # since the scan began, floats in s and integers in ns or us
+            seconds = values * (1.0 if rows.dtype[name].kind == "f" else 1e-9 if span > SHORTEST else 1e-6)
+            times = 1e6 * seconds + 1e-3 * stamp
+        if np.isfinite(span) and np.ptp(times) < LONGEST:
+            return times
+    return None
 
 
 def _of_nuscenes(root: pathlib.Path, scene: str | None) -> _Scans:
@@ -290,13 +359,13 @@ def _of_nuscenes(root: pathlib.Path, scene: str | None) -> _Scans:
     try:
         scenes = {row["token"]: row["name"] for row in table("scene")}
         of_sample = {row["token"]: scenes[row["scene_token"]] for row in table("sample")}
-        rows = [row for row in table("sample_data")
-                if "LIDAR_TOP" in row["filename"] and (root / row["filename"]).exists()]
+        named = [row for row in table("sample_data") if "LIDAR_TOP" in row["filename"]]
+        rows = [row for row in named if (root / row["filename"]).exists()]
         rows.sort(key=lambda row: row["timestamp"])
         there = list(dict.fromkeys(of_sample[row["sample_token"]] for row in rows))
         if scene is None and len(there) > 1 or scene is not None and scene not in there or not there:
             raise ValueError(f"{root}: has the scans of {', '.join(there) or 'no scene'}, expected the choice of one "
-                             f"scene{'' if scene is None else f', got {scene}'}")
+                             f"scene (--topic){'' if scene is None else f', got {scene}'}")
         rows = [row for row in rows if scene is None or of_sample[row["sample_token"]] == scene]
         egos, sensors = ({row["token"]: matrix(row) for row in table(name)}
                          for name in ("ego_pose", "calibrated_sensor"))
@@ -304,20 +373,34 @@ def _of_nuscenes(root: pathlib.Path, scene: str | None) -> _Scans:
     except KeyError as error:
         raise ValueError(f"{home}: its tables lack {error}") from None
     files = [root / row["filename"] for row in rows]
+    absent = sum(of_sample[row["sample_token"]] in (scene, *there[:1]) for row in named) - len(rows)
+    notes = [f"the files of {absent} scans in its tables are missing"] if absent else []
     return _Scans(1e-6 * np.array([row["timestamp"] for row in rows]), "tables of nuScenes, s since 1970", SENSOR, poses,
-                  lambda: map(_cloud, files), {}, files)
+                  lambda: map(_cloud, files), {}, notes, files)
 
 
-def _in_folder(folder: pathlib.Path) -> list[pathlib.Path]:
-    """The files of scans in a folder, or in the folders in which KITTI has its scans."""
+def _in_folder(folder: pathlib.Path, notes: list[str]) -> list[pathlib.Path]:
+    """The files of scans in a folder, or in the folders in which KITTI has its scans. Hidden files are not scans. @param
+    notes a sentence on what is left out is added"""
     for inner in ("velodyne", "velodyne_points/data"):
         if (folder / inner).is_dir():
             folder = folder / inner
             break
-    return sorted(file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES and file.is_file())
+    found = [file for file in sorted(folder.iterdir())
+             if file.suffix.lower() in SUFFIXES and not file.name.startswith(".")]
+    files = [file for file in found if file.is_file()]
+    if len(files) < len(found):
+        notes.append(f"left out are {len(found) - len(files)} folders, pipes and broken links in {folder}")
+    shapes = {re.sub(r"\d+", "#", file.stem): file.name for file in files}
+    listed = any((place / name).exists() for place in (folder, folder.parent) for name in ("times.txt", "timestamps.txt"))
+    if len(shapes) > 1 and len({file.suffix.lower() for file in files}) == 1 and not listed:
+        raise ValueError(f"{folder}: has {' and '.join(list(shapes.values())[:2])}, expected names that differ by "
+                         "numbers alone: a pattern chooses one recording")
+    return files
 
 
-def load_clouds(source, rate: float | None = None, topic: str | None = None) -> Recording:
+def load_clouds(source, rate: float | None = None, topic: str | None = None, sensor_address: str | None = None
+                ) -> Recording:
     """Opens recorded scans as one source, whose scans are read one after another.
 
     source  names of files, a pattern ("scans/*.pcd"), a folder of numbered files in any format of `load_cloud`, a file
@@ -326,12 +409,15 @@ def load_clouds(source, rate: float | None = None, topic: str | None = None) -> 
     rate    scans a second, Hz, above 0 to 1e6, for numbered files; default: times in times.txt or timestamps.txt beside
             the files, or in the names of the files, else 10 (assumed, as `times_from` says)
     topic   the topic of clouds in a bag, or the scene of nuScenes; default: the only one
+    sensor_address  address of the sensor in packets, as "192.168.1.201"; default: the only sensor
 
     Clouds of bags and of .bin files are in the frame of the sensor: metres right, forward and up. Other clouds are in
     the frame of their files. `poses` leads from there to the fixed frame, if the recording has poses.
     """
-    if rate is not None and not 0.0 < rate <= 1e6:
+    if rate is not None and (not isinstance(rate, (int, float)) or not 0.0 < rate <= 1e6):
         raise ValueError(f"rate is {rate}, expected above 0 to 1e6 scans a second")
+    notes: list[str] = []
+    address = {} if sensor_address is None else {"sensor_address": sensor_address}
     if isinstance(source, (list, tuple)):
         files, path = [pathlib.Path(one) for one in source], None
     else:
@@ -342,19 +428,21 @@ def load_clouds(source, rate: float | None = None, topic: str | None = None) -> 
         if not path.exists():
             raise FileNotFoundError(f"no such file or folder: {path}")
         if path.is_dir():
-            bag = _bags.files_of(path)
+            bag = _bags.files_of(path, notes)
             if bag:
-                return Recording(source, _of_bag(path, bag, topic))
+                return Recording(source, _of_bag(path, bag, topic, notes))
             if list(path.glob("v1.0-*")):
                 return Recording(source, _of_nuscenes(path, topic))
-            files = _in_folder(path)
+            files = _in_folder(path, notes)
         else:
             files = [path]
     if files and all(file.suffix.lower() in _bags.SUFFIXES for file in files):
-        return Recording(source, _of_bag(files[0], files, topic))
+        if rate is not None:
+            raise ValueError(f"rate is {rate}, expected none for {source}: a bag has times")
+        return Recording(source, _of_bag(files[0], files, topic, notes))
     if not files or any(file.suffix.lower() not in SUFFIXES for file in files):
         wrong = next((f": {file}" for file in files if file.suffix.lower() not in SUFFIXES), "")
         raise ValueError(f"{source} is not a recording{wrong}: expected {EXPECTED}")
     if topic is not None:
         raise ValueError(f"topic is {topic!r}, expected none for {source}: only bags and nuScenes have topics")
-    return Recording(source, _of_files(files, rate), rate)
+    return Recording(source, _of_files(files, rate, notes, address), rate)

@@ -27,6 +27,7 @@ from .apps._studies import airport, bench, coverage, design, reach, report, sequ
 from .apps.inputs._air import check_received
 from .apps.inputs._read import read_plan, read_scenario
 
+OUTSIDE = 0.1  # share of recorded points outside all beams from which on the sensor is doubtful
 WIDTH = 110  # characters of a line about one sensor
 
 
@@ -180,7 +181,7 @@ def _say_cloud(file: pathlib.Path, cloud: Cloud, quiet: bool) -> None:
 
 def _say_recording(options) -> None:
     """Prints what a recording holds. All scans are read."""
-    recording = load_clouds(str(options.file), options.rate, options.topic)
+    recording = load_clouds(str(options.file), options.rate, options.topic, options.sensor_address)
     gaps = np.diff(recording.times)
     counts: list[int] = []
     ranges: dict[str, tuple[Any, Any, str]] = {}
@@ -304,6 +305,9 @@ def _compare_scene(options) -> None:
                           options.scans, bar)
     found = compared.write(options.out)
     close_bar()
+    if found["outside"] > OUTSIDE:
+        warn(f"{100 * found['outside']:.0f} % of the points lie in no beam of {options.sensor}: probably another lidar has "
+             "recorded them, or it is turned")
     tell(f"the sensor stands at {compared.pose.words()}", *filter(None, [compared.change]), compared.sentence(found),
          f"{options.out / 'compare.html'}: the page; its tables are beside it")
 
@@ -358,7 +362,9 @@ def compare(options) -> None:
 
 def _convert_recording(options) -> None:
     """Writes the scans of a recording as numbered files and times.txt."""
-    recording = load_clouds(str(options.file), options.rate, options.topic)
+    if options.out.is_dir() and any(options.out.iterdir()):
+        raise ValueError(f"{options.out}: is not empty, expected a new folder for the scans")
+    recording = load_clouds(str(options.file), options.rate, options.topic, options.sensor_address)
     with only_run(options.out, goes_on=False):
         for number, cloud in enumerate(recording):
             save(cloud, options.out / f"{number:06d}.pcd")
@@ -382,6 +388,9 @@ def convert(options) -> None:
     if not options.out.suffix:
         _convert_recording(options)
         return
+    if options.file.is_dir() or options.file.suffix.lower() in SUFFIXES:
+        raise ValueError(f"{options.out}: expected a folder for the scans of the recording {options.file}, or .mcap or .db3 "
+                         "for a sequence")
     check_suffix(options.out)
     check_target(options.out)
     cloud = _cloud(options.file, chosen)

@@ -113,6 +113,16 @@ class Compared(InFolder):
             np.testing.assert_allclose(pose.orientation(), (yaw, pitch, roll), atol=0.02)
             self.assertIn(f"moved by {np.linalg.norm(shift):.2f} m", words)
 
+    def test_far_poses_stay(self):
+        """A pose that is not found is not changed."""
+        for shift, turn in (((500, 0, 0), 0), ((0, 0, 0), 180), ((60, 60, 60), 90)):
+            start = Pose(Rotation.from_euler("Z", turn, degrees=True).as_matrix(), PLACE + shift)
+            pose, words = aligned(self.directions * ranges(PLACE, self.directions)[:, None], start, self.scene)
+            if words.startswith("Not aligned"):
+                self.assertIs(pose, start)
+            else:  # the yard looks nearly the same when it is turned by half a circle
+                self.assertLess(float(words.split(" to ")[1].split()[0]), 1.0)
+
     def test_what_is_open_stays(self):
         """A single wall does not tell where along the wall, and how high, the sensor stands."""
         wall = al.Scene(([(-500, 30, -500), (500, 30, -500), (500, 30, 500), (-500, 30, 500)], [(0, 1, 2), (0, 2, 3)]))

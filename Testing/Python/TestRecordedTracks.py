@@ -104,6 +104,16 @@ class Recorded(InFolder):
         self.assertEqual(len(score_birds(labelled)), len(birds))
         self.assertIn("birds tracked", found)
 
+    def test_empty_scans_and_pauses(self):
+        """A scan without points anywhere, and a pause of hours that is not observed."""
+        home = self.write(24)
+        for number in (3, 15):
+            al.save(al.Cloud(type("points", (), {"points": np.empty((0, 3))})()), home / f"{number}.pcd")
+        (home / "times.txt").write_text("".join(f"{k / RATE + (5000 if k > 18 else 0)}\n" for k in range(24)))
+        followed = RecordedTracks(al.load_clouds(home), learning=10)
+        self.assertEqual(followed.write(self.folder / "out")["scans"], 24)
+        self.assertAlmostEqual(followed.seconds(), 14 / RATE)
+
     def test_coordinates_of_a_map(self):
         """Files that do not say where the sensor stands, and beams without an echo at the sensor."""
         place = np.array([500000.0, 5400000.0, 200.0])
@@ -118,6 +128,15 @@ class Recorded(InFolder):
         found = RecordedTracks(recording, learning=10, position=place).write(self.folder / "out")
         self.assertEqual((found["tracks"], found["points"]), (1, 24 * scan(0).number_of_points))
         first = self.rows("tracks.csv")[0]
+        RecordedTracks(recording, learning=10, position=place, origin=(52, 13, 30), heading=90).write(self.folder / "out")
+        row = self.rows("tracks.csv")[0]
+        x, y, _ = START + [*(SPEED * float(row["time_s"])), 0]
+        self.assertAlmostEqual(float(row["latitude"]), 52 + math.degrees(-x / RADIUS), delta=2e-5)
+        self.assertAlmostEqual(float(row["longitude"]), 13 + math.degrees(y / RADIUS / math.cos(math.radians(52))),
+                               delta=3e-5)
+        self.assertTrue((self.folder / "out" / "tracks.geojson").exists())
+        RecordedTracks(recording, learning=10, position=place).write(self.folder / "out")
+        self.assertFalse((self.folder / "out" / "tracks.geojson").exists())
         self.assertLess(math.dist([float(first[name]) for name in ("x_m", "y_m")], place[:2]), 100)
 
     def test_the_command(self):

@@ -69,7 +69,9 @@ def mcap(file, messages, compression="", cut=0, checksum=None):
         content += record(6, struct.pack("<QQQI", 0, 0, len(inner), check) + text(compression.encode())
                           + struct.pack("<Q", len(small)) + small)
     content += record(15, bytes(4)) + record(2, bytes(20)) + b"\x89MCAP0\r\n"
+    pathlib.Path(file).parent.mkdir(exist_ok=True)
     pathlib.Path(file).write_bytes(content[:len(content) - cut])
+    return file
 
 
 def db3(file, messages, compress=False):
@@ -135,12 +137,19 @@ class Files(InFolder):
             "iso": [f"{one:%Y-%m-%dT%H-%M-%S}.{one.microsecond:06d}Z.pcd" for one in later],
             "short": [f"a_{one:%Y%m%d_%H%M%S}.{one.microsecond:06d}_b.pcd" for one in later],
             "zone": [f"{one.astimezone(datetime.timezone(datetime.timedelta(hours=-7))):%Y-%m-%d %H:%M:%S.%f%z}.pcd"
-                     for one in later]}
+                     for one in later],
+            "hours": [f"{one.astimezone(datetime.timezone(datetime.timedelta(hours=8))):%Y-%m-%dT%H-%M-%S.%f}+08.pcd"
+                      for one in later],
+            "dash": [f"{one:%Y-%m-%d-%H-%M-%S}-{one.microsecond:06d}.pcd" for one in later],
+            "compact": [f"{one:%Y%m%d%H%M%S}{one.microsecond // 1000:03d}.pcd" for one in later],
+            "s.ms": [f"{int(one.timestamp())}.{one.microsecond // 1000:03d}.pcd" for one in later],
+            "s.us": [f"{int(one.timestamp())}.{one.microsecond:06d}.pcd" for one in later]}
         for form, names in forms.items():
             with self.subTest(form):
                 self.check(self.write(*names, folder=form), expected, "names of the files, s since 1970")
         self.check(self.write(*(f"{int(SECONDS) + k}.pcd" for k in range(2)), folder="s"),
                    [int(SECONDS), int(SECONDS) + 1], "since 1970")
+        self.check(self.write("sn1234567890_001.pcd", "sn1234567890_003.pcd", folder="serial"), [0, 0.2], "assumed")
         self.check(self.write("0000000001.pcd", "0000000003.pcd", folder="kitti"), [0, 0.2], "assumed")
         self.check(self.write("20231345_101010.pcd", "20231346_101010.pcd", folder="no-day"), [0, 0.1], "assumed")
 
@@ -160,7 +169,9 @@ class Files(InFolder):
 
     def test_refusals(self):
         home = self.write("a.pcd", "b.las", folder="mixed")
-        for source, words in ((home, "has 1 .pcd, 1 .las, expected the files of one kind"),
+        two = self.write("left_0.pcd", "right_0.pcd", ".hidden.pcd", folder="two")
+        for source, words in ((two, "left_0.pcd and right_0.pcd, expected names that differ by numbers alone"),
+                              (home, "has 1 .pcd, 1 .las, expected the files of one kind"),
                               (self.folder / "none", "no such file or folder"),
                               (self.folder / "*.pcd", "is not a recording: expected numbered files"),
                               ([], "is not a recording"),
@@ -197,7 +208,7 @@ class Bags(InFolder):
         self.rows = np.zeros(24, self.kind)
         self.rows["x"], self.rows["y"], self.rows["z"] = points_of(24).T
         self.rows["intensity"], self.rows["ring"] = np.arange(24) * 10.0, np.arange(24) % 4
-        self.rows["t"] = np.arange(24) * 1000
+        self.rows["t"] = np.arange(24) * 1000000
         self.rows["pair"] = np.arange(48).reshape(24, 2)
         self.stamps = [10**18 + k * 10**8 + 1 for k in range(5)]
         self.messages = [("/points", _ros.CLOUD, stamp, message(stamp, self.rows)) for stamp in self.stamps]
@@ -221,7 +232,7 @@ class Bags(InFolder):
                 clouds = list(recording)
                 self.assertEqual((len(clouds), recording.left_out, recording.poses), (5, {}, None))
                 self.check_rows(clouds[4])
-                np.testing.assert_allclose(clouds[1]["timestamp"], 1e-3 * self.stamps[1] + np.arange(24), rtol=1e-15)
+                np.testing.assert_allclose(clouds[1]["timestamp"], 1e-3 * self.stamps[1] + 1000.0 * np.arange(24), rtol=1e-15)
                 self.assertEqual(clouds[1].units["timestamp"], "us")
 
     def test_bags_of_ros_1(self):
@@ -287,6 +298,7 @@ class Bags(InFolder):
         """Of Velodyne (s), Ouster (ns), Hesai (s since 1970), Livox (ns since 1970, as doubles), and others."""
         offsets, stamp = np.arange(24) * 1e-3, 1_700_000_000_500_000_000  # s; ns
         for name, kind, values in (("time", "<f4", offsets), ("time", "<f4", offsets - 0.1), ("t", "<u4", 1e9 * offsets),
+                                   ("time", "<u4", 1e6 * offsets),
                                    ("timestamp", "<f8", 1.7e9 + 0.5 + offsets),
                                    ("timestamp", "<f8", 1.7e18 + 5e8 + 1e9 * offsets)):
             rows = np.zeros(24, [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), (name, kind)])
@@ -328,6 +340,17 @@ class Bags(InFolder):
         self.assertTrue(al.load_clouds(self.folder / "a.mcap").poses)
         mcap(self.folder / "b.mcap", self.messages + tf[:1])
         self.assertFalse(al.load_clouds(self.folder / "b.mcap").moves)
+        again = [("/tf_static", _ros.TRANSFORMS, 9, transform(9 * 10**9, "base", "lidar", (5, 0, 2), (0, 0, 0, 1)))]
+        mcap(self.folder / "d.mcap", self.messages + tf[:1] + again)  # the last one holds for all scans
+        np.testing.assert_allclose(al.load_clouds(self.folder / "d.mcap").pose(0)[:, 3], (5, 0, 2))
+        early = [tf[0], *(("/tf", _ros.TRANSFORMS, k, transform(self.stamps[k], "map", "base", (k, 0, 0), (0, 0, 0, 1)))
+                          for k in (0, 1))]
+        recording, heard = warned(lambda: al.load_clouds(mcap(self.folder / "e.mcap", self.messages + early)))
+        self.assertRegex(" ".join(heard), "1 of 5 scans are before the first or after the last pose of /tf")
+        bad = [("/tf", _ros.TRANSFORMS, 0, transform(0, "map", "lidar", (0, 0, 0), (0, 0, 0, 0)))]
+        mcap(self.folder / "f.mcap", self.messages + bad)
+        with self.assertRaisesRegex(ValueError, "f.mcap: a message of /tf gives lidar .* expected finite numbers and a unit"):
+            al.load_clouds(self.folder / "f.mcap")
         loop = [("/tf", _ros.TRANSFORMS, 0, transform(0, a, b, (0, 0, 0), (0, 0, 0, 1)))
                 for a, b in (("map", "lidar"), ("lidar", "map"))]
         mcap(self.folder / "c.mcap", self.messages + loop)
@@ -337,13 +360,26 @@ class Bags(InFolder):
     def test_what_is_torn_or_late(self):
         mcap(self.folder / "a.mcap", self.messages, cut=400)
         recording, heard = warned(lambda: al.load_clouds(self.folder / "a.mcap"))
-        self.assertEqual((len(list(recording)), [*recording.left_out.values()]), (4, [1]))
-        self.assertRegex(" ".join(heard), "a.mcap: 1 scan is left out: torn at the end .*ends within a record")
+        self.assertEqual((len(list(recording)), recording.left_out), (4, {}))
+        self.assertRegex(" ".join(heard), "a.mcap: ends within a record: its last scans may be missing")
+        for number, part in enumerate((self.messages[:2], self.messages[2:4], self.messages[4:])):
+            mcap(self.folder / f"parts/bag_{number}.mcap", part, cut=400 if number == 1 else 0)
+        recording, heard = warned(lambda: al.load_clouds(self.folder / "parts"))
+        self.assertEqual(len(list(recording)), 3)  # the part behind the torn one is read
+        self.assertRegex(" ".join(heard), "bag_1.mcap: ends within a record")
+        (self.folder / "parts/metadata.yaml").write_text("  relative_file_paths:\n    - bag_0.mcap\n    - bag_7.mcap\n")
+        _, heard = warned(lambda: al.load_clouds(self.folder / "parts"))
+        self.assertRegex(" ".join(heard), "names bag_7.mcap, which is missing .1 of 2 parts")
         late = [self.messages[k] for k in (0, 2, 1, 2, 3)]
+        late.insert(2, ("/points", _ros.CLOUD, 1, message(0, self.rows)))
+        late.insert(4, ("/points", _ros.CLOUD, 5, self.messages[0][3][:300]))
         mcap(self.folder / "b.mcap", late)
         recording, heard = warned(lambda: al.load_clouds(self.folder / "b.mcap"))
-        self.assertEqual((len(list(recording)), recording.left_out), (3, {"not later than the scan before": 2}))
-        self.assertRegex(" ".join(heard), "b.mcap: 2 scans are left out: not later than the scan before")
+        self.assertEqual(len(list(recording)), 4)  # in the order of their times
+        np.testing.assert_allclose(recording.times, 1e-9 * np.array(self.stamps[:4]), rtol=1e-15)
+        self.assertEqual([*recording.left_out.items()][:1], [("without a time", 1)])
+        self.assertEqual(recording.left_out["of the same time as the scan before"], 1)
+        self.assertRegex(" ".join(heard), "b.mcap: 1 scan is left out: damaged: ends within")
         unset = [("/points", _ros.CLOUD, 7, message(0, self.rows))]  # a driver without a clock
         mcap(self.folder / "c.mcap", unset)
         self.assertAlmostEqual(al.load_clouds(self.folder / "c.mcap").times[0], 7e-9, delta=1e-20)

@@ -88,7 +88,7 @@ def sequence(options) -> None:
              f"{', view.html shows the first sequence' if shown else ''}")
 
 
-_OF_RECORDINGS = ("rate", "topic", "origin", "heading", "truth", "position")
+_OF_RECORDINGS = ("rate", "topic", "origin", "heading", "truth", "position", "sensor_address")
 
 
 def is_recording(name: str) -> bool:
@@ -104,7 +104,7 @@ def _track_recordings(options) -> None:
         raise ValueError("--weather is for scenarios, expected none for a recording")
     names = [pathlib.Path(name).name.split(".")[0] for name in options.inputs]
     for number, name in enumerate(options.inputs):
-        recording = load_clouds(name, options.rate, options.topic)
+        recording = load_clouds(name, options.rate, options.topic, options.sensor_address)
         out = options.out / checked_name(names[number], "the name of a recording") if len(names) > 1 else options.out
         found = RecordedTracks(recording, Sensor(options.sensor[0]) if options.sensor else None, options.learn,
                                dict(options.clutter_set), dict(options.tracker_set), options.origin,
@@ -113,9 +113,9 @@ def _track_recordings(options) -> None:
         close_bar()
         if found["scores"]:
             table([("score", name), *map(tuple, found["scores"])])
-        tell(f"{name}: {counted(len(recording), 'scan')}; times from: {recording.times_from}",
+        tell(f"{name}: {counted(found['scans'], 'scan')}; times from: {recording.times_from}",
              f"{out / 'tracks.html'}: {counted(found['tracks'], 'confirmed track')} in "
-             f"{in_time(found['seconds'])}; play.py is a state for ParaView")
+             f"{in_time(found['seconds'])}{'; play.py is a state for ParaView' if recording.files else ''}")
 
 
 def track(options) -> None:
@@ -128,7 +128,7 @@ def track(options) -> None:
         raise ValueError(f"{recorded[0]} is a recording, but other inputs are sequences or scenarios: expected one kind")
     for name in _OF_RECORDINGS:
         if getattr(options, name) is not None:
-            raise ValueError(f"--{name} is for recordings, expected none for sequences and scenarios")
+            raise ValueError(f"--{name.replace('_', '-')} is for recordings, expected none for sequences and scenarios")
     ranks, threads = _job(options)
     tracks = BirdTracks(options.inputs, options.runways, options.learn, options.cutoff, options.order,
                         dict(options.clutter_set), dict(options.tracker_set), options.sensor, threads,

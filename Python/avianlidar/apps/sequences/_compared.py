@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._cloud import triangles_of
 from ..._disk import only_run, write_whole
-from ..._pipeline import update
+from ..._pipeline import Error, update
 from ..._recording import OF_FILE, Recording
 from ..._scan import Scan
 from ..._scene import Scene
@@ -28,6 +28,8 @@ ROUNDS = 60  # of alignment, at most
 STILL = 1e-4  # m: a change that ends the alignment
 FAR = 3.0  # medians of distance from which on a point has no weight
 LEAST_FAR = 0.3  # m, least distance of a point without weight
+NEAR = 0.05  # share of the median range: points that are nearer to surfaces, at the median, are on them
+WIDEST = 45.0  # deg: greatest turn of an alignment
 GRAZED = 0.1  # cosine of incidence below which a surface returns little: a point near it is of another surface
 # A direction in which distances change by this share of the greatest change stays as it is: first, and near the end.
 OPEN = (0.1, 0.02)
@@ -51,7 +53,7 @@ class Pose(NamedTuple):
         return -float(turn), float(pitch), float(roll)
 
     def words(self) -> str:
-        return ("({:.2f}, {:.2f}, {:.2f}) m".format(*self.place)
+        return ("({:.2f}, {:.2f}, {:.2f}) m".format(*(round(float(one), 2) + 0.0 for one in self.place))
                 + ", yaw {:.2f}, pitch {:.2f}, roll {:.2f} deg".format(*(round(one, 2) + 0.0 for one in
                                                                          self.orientation())))
 
@@ -101,7 +103,11 @@ def aligned(points: np.ndarray, pose: Pose, scene: Scene) -> Tuple[Pose, str]:
         table = np.array(found)
         return table[:, :3], normals[table[:, 3].astype(int)]
     now, first, away, reach = pose, np.nan, np.empty(0), np.maximum(np.linalg.norm(chosen, axis=1), 1e-9)
-    closed = 0
+    closed, enough, best = 0, max(LEAST_FAR, NEAR * float(np.median(reach))), None
+
+    def turned(at: Pose) -> float:
+        """The angle from the given pose, deg."""
+        return float(np.degrees(np.arccos(np.clip((np.trace(at.turn @ pose.turn.T) - 1) / 2, -1, 1))))
     for _ in range(ROUNDS):
         places = now.of(chosen)
         on, normal = nearest(places)
@@ -118,12 +124,18 @@ def aligned(points: np.ndarray, pose: Pose, scene: Scene) -> Tuple[Pose, str]:
         now = Pose(turn @ now.turn, turn @ (now.place - middle) + middle + step[:3])
         if np.abs(step).max() < STILL:
             closed += 1
+            middle_off = float(np.median(away))
+            if middle_off <= min(first, enough) and turned(now) < WIDEST and (best is None or middle_off <= best[1]):
+                best = now, middle_off
             if closed == len(OPEN):
                 break
-    shift = float(np.linalg.norm(now.place - pose.place))
-    turned = float(np.degrees(np.arccos(np.clip((np.trace(now.turn @ pose.turn.T) - 1) / 2, -1, 1))))
-    return now, (f"Aligned: moved by {shift:.2f} m and turned by {turned:.2f} deg; the median distance of points from "
-                 f"surfaces went from {first:.2f} to {float(np.median(away)):.2f} m.")
+    if best is None:
+        return pose, (f"Not aligned, the pose is as given: no pose was found near by at which the points lie on the "
+                      f"surfaces; their median distance stays {first:.2f} m.")
+    now, middle_off = best
+    return now, (f"Aligned: moved by {float(np.linalg.norm(now.place - pose.place)):.2f} m and turned by "
+                 f"{turned(now):.2f} deg; the median distance of points from surfaces went from {first:.2f} to "
+                 f"{middle_off:.2f} m.")
 
 
 class Comparison:
@@ -145,6 +157,8 @@ class Comparison:
         """
         from scipy.spatial import cKDTree
         self.scene, self.recording = scene, recording
+        if scans is not None and scans < 1:
+            raise ValueError(f"scans is {scans}, expected at least 1")
         self.count = min(scans or len(recording), len(recording))
         first = next(iter(recording))
         self.pose, self.change = pose_of(recording, first, scene, position, heading), ""
@@ -194,6 +208,9 @@ class Comparison:
             self.recorded_bins += _bins(self.direction[there], last[there])
             self.differences.append((last - self.simulated)[np.isfinite(last) & self.seen])
             progress("scans compared", number + 1, self.count)
+        if not self.hits.any():
+            raise Error(f"{recording.source}: none of its {self.points} points lies in a beam of the sensor at "
+                        f"{self.pose.words()}, expected its lidar and its pose")
         self.simulated_bins = _bins(self.direction[self.seen], self.simulated[self.seen])
 
     def numbers(self) -> Dict[str, float]:
@@ -206,6 +223,7 @@ class Comparison:
                 "missing": float(share[~self.seen].sum() / max(share.sum(), 1e-9)),
                 "median": float(np.median(off)) if len(off) else np.nan,
                 "spread": float(np.median(np.abs(off - np.median(off)))) if len(off) else np.nan,
+                "agree": float((np.abs(off) <= SAME).sum() / self.hits.sum()),
                 "same": float((np.abs(off) <= SAME).mean()) if len(off) else np.nan,
                 "nearer": float((off < -SAME).mean()) if len(off) else np.nan,
                 "farther": float((off > SAME).mean()) if len(off) else np.nan,
@@ -255,7 +273,9 @@ class Comparison:
         return found
 
     def sentence(self, found: Dict[str, float]) -> str:
-        return short_enough(f"{100 * found['same']:.3g} % of recorded echoes lie within {SAME:g} m of the simulated "
+        if not self.seen.any():
+            return "The simulation has no echo: the scene is out of reach of the sensor at this pose."
+        return short_enough(f"{100 * found['agree']:.3g} % of recorded echoes lie within {SAME:g} m of the simulated "
                             f"ones; {100 * found['drop_outs']:.3g} % of simulated echoes are not recorded.")
 
     def _angles(self) -> Tuple[np.ndarray, np.ndarray]:
@@ -265,8 +285,8 @@ class Comparison:
 
     def _first(self, out: pathlib.Path, found: Dict[str, float]) -> First:
         shown = drawing.picture(out / "ranges.png", (drawing.WIDTH, 4.6), "Range images",
-                                "Ranges as simulated and as recorded, and recorded minus simulated (grey: only one of "
-                                "them has an echo).", self._draw, rows=3)
+                                "Ranges as simulated and as recorded, and recorded minus simulated (dark grey: only "
+                                "one of them has an echo, light grey: none).", self._draw, rows=3)
         steps = [("Look at the difference.", "Red parts are farther away in the recording, blue parts nearer: the scene "
                   "lacks or has something, or the pose is wrong."),
                  ("Improve the pose.", self.change or "--align moves the sensor until the points lie on the surfaces."),
@@ -281,7 +301,7 @@ class Comparison:
                              f"{100 * found['simulated']:.3g} %"),
                       Number(f"{_cell(found['median'])}\u00a0m", "recorded minus simulated", "median of ranges; the median "
                              f"deviation from it is {_cell(found['spread'])} m"),
-                      Number(f"{100 * found['drop_outs']:.3g}\u00a0%", "drop-outs", "of simulated echoes, which the "
+                      Number(f"{_cell(100 * found['drop_outs'])}\u00a0%", "drop-outs", "of simulated echoes, which the "
                              f"recording lacks in {counted(self.count, 'scan')}")],
                      [{"head": head, "words": words, "command": ""} for head, words in steps], [assumed])
 
@@ -300,7 +320,8 @@ class Comparison:
             known = np.isfinite(values)
             if ax is axes[2]:
                 one = used & ~known
-                ax.scatter(azimuth[one], elevation[one], s=size, c="0.75", marker="s", linewidths=0, rasterized=True)
+                ax.set_facecolor("0.9")
+                ax.scatter(azimuth[one], elevation[one], s=size, c="0.55", marker="s", linewidths=0, rasterized=True)
             dots = ax.scatter(azimuth[known], elevation[known], s=size, c=values[known], cmap=colours, vmin=limits[0],
                               vmax=limits[1], marker="s", linewidths=0, rasterized=True)
             ax.figure.colorbar(dots, ax=ax, label=label)

@@ -99,14 +99,18 @@ class Chain:
             for scan in scans:
                 self.filter.SetInputData(_cloud(scan.points, scan.time, np.zeros(3)))
                 filtered()
-                clutter = Cloud(self.filter.GetOutputDataObject(0))["is_clutter"].astype(np.uint8)
+                clutter = np.zeros(0, np.uint8)
+                if len(scan.points):
+                    clutter = Cloud(self.filter.GetOutputDataObject(0))["is_clutter"].astype(np.uint8)
                 rest = _cloud(scan.placed, scan.time, self.position)
                 add_array(rest.GetPointData(), "is_clutter", clutter)
                 if scan.times is not None:
                     add_array(rest.GetPointData(), "timestamp", scan.times)
                 self.tracker.SetInputData(rest)
                 tracked()
-                of_points = Cloud(self.tracker.GetOutputDataObject(1))["track_id"].astype(int)
+                of_points = np.zeros(0, int)
+                if len(scan.points):
+                    of_points = Cloud(self.tracker.GetOutputDataObject(1))["track_id"].astype(int)
                 yield scan, Live(_last(self.tracker.GetOutputDataObject(0)), of_points, clutter != 0)
 
 

@@ -35,6 +35,8 @@ HEAD = ("track", "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
 DEGREES = ("longitude", "latitude", "height_m")
 LOOKED_AT = 3  # scans in which the steps between beams are measured
 STEPS = (0.05, 5.0)  # limits of these steps, deg
+PAUSE = 10.0  # scans: a longer gap is a pause of the recording
+LONG_ENOUGH = 600.0  # s from which on the page gives tracks an hour
 FARTHEST = 20000.0  # m: median coordinate above which the origin is not the sensor
 SINCE_1970 = 1e9  # times above are seconds since 1970
 FASTEST = 2.0  # s: times of points further from the time of the scan are not used
@@ -107,10 +109,12 @@ def _scans(recording: Recording, given: Optional[Many[float]] = None,
         if recording.frame == OF_FILE:
             position = np.array(cloud.fields.get("position", np.zeros(3)) if given is None else given, float)
             relative, placed = points - position, points
-            if len(points) and not position.any() and np.median(np.abs(points[:, :2])) > FARTHEST:
-                raise Error(f"{recording.source}: points lie {np.median(np.abs(points[:, :2])) / 1e3:.0f} km from the "
-                            "origin of their coordinates, and the files do not say where the sensor stands: expected "
-                            "--position X Y Z")
+            away = 0.0
+            if len(points) and not position.any():
+                away = float(np.linalg.norm(np.median(points[:, :2], axis=0)))
+            if away > FARTHEST:
+                raise Error(f"{recording.source}: points lie {away / 1e3:.0f} km from the origin of their coordinates, "
+                            "and the files do not say where the sensor stands: expected --position X Y Z")
         else:
             pose = recording.pose(number)
             relative, placed, position = points, points @ pose[:, :3].T + pose[:, 3], pose[:, 3]
@@ -142,8 +146,8 @@ class RecordedTracks:
         sensor            whose steps between beams and beam width are used; default: measured in the first scans
         learning          scans from which only clutter is learned; half of a recording that has fewer
         clutter, tracker  properties of vtkAvianLidarClutterFilter and vtkAvianLidarTracker by name
-        origin            latitude, longitude (deg) and height (m) of the recording's (0, 0, 0)
-        heading           direction of the recording's y axis, deg from north, clockwise
+        origin            latitude, longitude (deg) and height (m) of the position, else of the recording's (0, 0, 0)
+        heading           direction of the recording's y axis, deg from north, clockwise; it turns about the same place
         runways           a GeoJSON file, which needs an origin
         scans             number of scans that are read; default: all
         truth             a CSV file as truth.csv of a sequence, with places in the fixed frame of the recording;
@@ -153,6 +157,8 @@ class RecordedTracks:
         """
         if origin is not None and not (abs(origin[0]) <= 90 and abs(origin[1]) <= 360 and abs(origin[2]) < 1e5):
             raise ValueError(f"the origin is {tuple(origin)}, expected latitude, longitude (deg) and height (m)")
+        if scans is not None and scans < 1:
+            raise ValueError(f"scans is {scans}, expected at least 1")
         if not math.isfinite(heading):
             raise ValueError(f"the heading is {heading}, expected degrees from north")
         if runways and origin is None:
@@ -168,7 +174,7 @@ class RecordedTracks:
                  "tracks may be walls")
         if position is not None and recording.frame != OF_FILE:
             raise ValueError(f"the position is {tuple(position)}, expected none: scans are {recording.frame}")
-        self.position = position
+        self.position, self.anchor = position, np.zeros(3) if position is None else np.array(position, float)
         self.beams, self.beams_from = beams_of(recording, sensor, position)
         self.fired = firing_times(sensor) if sensor else None
         self.chain = Chain(self.beams, self.learning, dict(clutter or {}), dict(tracker or {}))
@@ -184,8 +190,8 @@ class RecordedTracks:
         turn = math.radians(self.heading)
         east = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
         rows = rows.copy()
-        for columns in ((1, 2), (4, 5)):
-            rows[:, columns] = rows[:, columns] @ east.T
+        rows[:, 1:3] = (rows[:, 1:3] - self.anchor[:2]) @ east.T + self.anchor[:2]
+        rows[:, 4:6] = rows[:, 4:6] @ east.T
         return rows
 
     def _rows(self, progress: Callable[[str, int, int], Any]) -> Iterator[List[Any]]:
@@ -203,7 +209,7 @@ class RecordedTracks:
                     continue
                 row = self._to_north(np.array([[one["time"], *one["place"], *one["velocity"]]]))
                 track.rows.append(row[0].tolist())
-                degrees = [] if self.origin is None else to_geodetic(row[:, 1:4], self.origin)[0].tolist()
+                degrees = [] if self.origin is None else to_geodetic(row[:, 1:4] - self.anchor, self.origin)[0].tolist()
                 yield [int(one["id"]), f"{row[0, 0]:.6f}", *(f"{value:.3f}" for value in row[0, 1:]),
                        *(f"{value:.8f}" for value in degrees[:2]), *(f"{value:.2f}" for value in degrees[2:])]
             progress("scans followed", scan.number + 1, self.count)
@@ -254,15 +260,21 @@ class RecordedTracks:
                                              for number, track in sorted(self.tracks.items())]
             hours = self._hours(facts)
             write_whole(out / "summary.csv", as_csv([[*facts[0]] if facts else ["track"],
-                                                     *(texts(row.values()) for row in facts)]))
+                                                     *([row["track"], f"{row['start_s']:.6f}", *texts([*row.values()][2:])]
+                                                       for row in facts)]))
             write_whole(out / "hours.csv", as_csv([HOUR_HEAD, *map(texts, hours)]))
+            for name in ("tracks.geojson", "scores.csv"):  # of an earlier run
+                (out / name).unlink(missing_ok=True)
             if self.origin is not None:
                 write_whole(out / "tracks.geojson", as_json(self._shapes(facts)))
-            write_whole(out / "play.py", self._script().encode())
+            if self.recording.files:
+                write_whole(out / "play.py", self._script().encode())
+            else:
+                (out / "play.py").unlink(missing_ok=True)
             scores = self.scores()
             if scores:
                 write_whole(out / "scores.csv", as_csv([["score", "value"], *scores]))
-            found = {"tracks": len(facts), "seconds": self.seconds(), "points": self.points, "clutter": self.clutter, "scores": scores}
+            found = {"scans": self.count, "tracks": len(facts), "seconds": self.seconds(), "points": self.points, "clutter": self.clutter, "scores": scores}
             write_whole(out / "tracks.html", render(
                 "sequences/recorded.html.jinja", first=self._first(out, facts), pictures=self._pictures(out, facts),
                 scores=scores, cutoff=self.cutoff,
@@ -275,10 +287,11 @@ class RecordedTracks:
             return found
 
     def seconds(self) -> float:
-        """Time after learning, s, with the time that the last scan takes."""
-        times = self.recording.times[self.learning:self.count]
+        """Time after learning, s, with the time that the last scan takes and without pauses of the recording."""
         gaps = np.diff(self.recording.times[:self.count])
-        return float(times[-1] - times[0] + np.median(gaps)) if len(gaps) else 0.0
+        middle = float(np.median(gaps)) if len(gaps) else 0.0
+        seen = gaps[self.learning:]
+        return float(np.where(seen > PAUSE * middle, middle, seen).sum()) + middle
 
     def _hours(self, facts: Many[Dict[str, float]]) -> List[List[Any]]:
         """A row for each hour in which a track begins."""
@@ -299,7 +312,7 @@ class RecordedTracks:
         assert self.origin is not None
         features = []
         for one in facts:
-            degrees = to_geodetic(self.tracks[int(one["track"])].path[:, 1:4], self.origin)
+            degrees = to_geodetic(self.tracks[int(one["track"])].path[:, 1:4] - self.anchor, self.origin)
             line = [[round(lon, 8), round(lat, 8), round(up, 2)] for lon, lat, up in degrees.tolist()]
             features.append({"type": "Feature", "properties": {key: round(value, 3) for key, value in one.items()},
                              "geometry": {"type": "LineString", "coordinates": line if len(line) > 1 else line * 2}})
@@ -326,20 +339,24 @@ class RecordedTracks:
                                 "Confirmed tracks (lines, with their ends), and the points of the last scan: grey is clutter.",
                                 self._draw_map)
         steps = [("Look at single tracks.", "summary.csv has each track, tracks.csv each position."),
-                 ("Play the recording.", "In ParaView, File > Load State opens play.py."),
+                 ("Play the recording.", "In ParaView, File > Load State opens play.py." if self.recording.files else
+                  "`avianlidar convert` writes its scans as files, and `avianlidar track` of these makes a state for "
+                  "ParaView."),
                  ("Try other settings.", "--clutter-set clutter_threshold=0.02 and --tracker-set minimum_speed=5 leave "
                   "out more of what sways and stands.")]
         return First(
             f"What moves in {name}?",
-            short_enough(f"{counted(len(facts), 'thing')} moved through the beams in {in_time(self.seconds())}, "
-                         f"{len(facts) / hours:,.0f} an hour."), shown,
+            short_enough(f"{counted(len(facts), 'thing')} moved through the beams in "
+                         f"{in_time(self.seconds())}"
+                         f"{f', {len(facts) / hours:,.0f} an hour' if self.seconds() >= LONG_ENOUGH else ''}."), shown,
             [Number(f"{len(facts)}", "confirmed tracks", f"in {counted(self.count, 'scan')}, of which the first "
                     f"{self.learning} only teach what stands still"),
              Number(middle(heights, "m"), "median height", f"of tracks, {heights_are}"),
              Number(middle(speeds, "m/s"), "median speed", "of tracks, over ground")],
             [{"head": head, "words": words, "command": ""} for head, words in steps],
             ["Tracks are of all that moves: birds, people, cars, leaves and rain. "
-             f"{'The next page has scores by the truth.' if self.scored else NO_TRUTH} Times are from: "
+             f"{'The next page has scores by the truth.' if self.scored else NO_TRUTH} "
+             f"{'' if self.heading or self.recording.poses else 'North is taken as the y axis of the recording. '}Times are from: "
              f"{self.recording.times_from}. Of the sensor: {self.beams_from}."])
 
     def _extent(self) -> Tuple[float, float, float, float]:
@@ -368,7 +385,7 @@ class RecordedTracks:
             axes.hist([one[key] for one in facts], bins=20, color="#0072b2")
             drawing.finish(axes, xlabel=label, ylabel="tracks")
         half = 0.5 * drawing.WIDTH - 0.1
-        return [drawing.picture(out / f"{file}.png", (half, 2.4), words, f"{words} of {len(facts)} tracks.",
+        return [drawing.picture(out / f"{file}.png", (half, 2.4), words, f"{words} of {counted(len(facts), 'track')}.",
                                 functools.partial(bars, key=key, label=label))
                 for file, words, key, label in (("heights", "Mean heights", "mean_height_m", "mean height, m"),
                                                 ("speeds", "Mean speeds", "mean_speed_m_s", "mean speed, m/s"))
@@ -389,8 +406,6 @@ ParaView: File > Load State."""
 from paraview import simple
 
 FILES = {files!r}
-if not FILES:
-    raise SystemExit("ParaView reads no bags: `avianlidar convert RECORDING FOLDER` writes files, which FILES can name")
 if not hasattr(simple, "AvianLidarPointCloudReader"):
     simple.LoadDistributedPlugin("AvianLidarPlugin", remote=False, ns=vars(simple))
 view = simple.GetActiveViewOrCreate("RenderView")
