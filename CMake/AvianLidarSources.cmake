@@ -69,6 +69,7 @@ set(scene_sources
 
 set(private_sources
   Filters/Private/Files/JsonNode.cxx
+  Filters/Private/Files/Table.cxx
   Filters/Private/Arrays/vtkAvianLidarArrays.cxx
   Filters/Private/Arrays/vtkAvianLidarContent.cxx
   Filters/Private/Errors/vtkAvianLidarExecutive.cxx
@@ -92,7 +93,6 @@ set(private_sources
   Filters/Private/Beams/vtkAvianLidarScanShape.cxx
   Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
   Filters/Private/Movers/BirdTables.cxx
-  Filters/Private/Movers/Table.cxx
   Filters/Private/Movers/vtkAvianLidarBirdTargets.cxx
   Filters/Private/Movers/vtkAvianLidarBirds.cxx
   Filters/Private/Movers/vtkAvianLidarMovers.cxx

@@ -115,6 +115,7 @@ void vtkAvianLidarBeamSource::TakeProperties(const vtkAvianLidarBeamSource& pres
   take(this->MotionSeed, preset.MotionSeed);
   take(this->Assumed, preset.Assumed);
   take(this->Description, preset.Description);
+  take(this->PulseFileName, preset.PulseFileName);
   take(this->Table, preset.Table);
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
@@ -162,7 +163,9 @@ void vtkAvianLidarBeamSource::SetTablesOfPreset(const char* name)
   }
   for (const auto& [array, table] : vtkInternals::Tables())
   {
-    if (table != &vtkAvianLidarBeamSource::ChannelElevations)
+    const bool ofPulse = table == &vtkAvianLidarBeamSource::PulseTimes ||
+      table == &vtkAvianLidarBeamSource::PulsePowers;
+    if (table != &vtkAvianLidarBeamSource::ChannelElevations && !ofPulse)
     {
       this->*table = preset->*table;
     }
@@ -382,6 +385,11 @@ avianlidar::Sensor vtkAvianLidarBeamSource::vtkInternals::SensorOf(const Source&
   sensor.beamOutline = static_cast<avianlidar::BeamOutline>(self.BeamOutline);
   sensor.beamProfile = static_cast<avianlidar::BeamProfile>(self.BeamProfile);
   sensor.receiverModel = static_cast<avianlidar::ReceiverModel>(self.ReceiverModel);
+  sensor.pulseShape = static_cast<avianlidar::PulseShape>(self.PulseShape);
+  if (sensor.pulseShape == avianlidar::PulseShape::Samples)
+  {
+    sensor.pulseSamples = PulseOf(self);
+  }
   sensor.thresholdLaw = static_cast<avianlidar::ThresholdLaw>(self.ThresholdLaw);
   std::string error = avianlidar::checkSensor(sensor);
   if (error.rfind("frequency is", 0) == 0)
@@ -486,7 +494,8 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
       fields, Arrays::NumberOfChannels, avianlidar::numberOfChannels(PatternOf(self)));
     for (const auto& [name, table] : Tables())
     {
-      if (!(self.*table).empty())
+      const bool ofPulse = table == &Source::PulseTimes || table == &Source::PulsePowers;
+      if (!ofPulse && !(self.*table).empty())
       {
         fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(name, self.*table));
       }
@@ -520,6 +529,20 @@ void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
     Arrays::SetFieldStrings(fields, Arrays::Assumed, AssumedOf(self));
   }
   const avianlidar::Sensor sensor = SensorOf(self);
+  if (self.PulseShape != PULSE_SHAPE_RECTANGLE)
+  {
+    Arrays::SetFieldInteger(fields, Arrays::PulseShape, self.PulseShape);
+  }
+  if (!sensor.pulseSamples.empty())
+  {
+    std::vector<double> halves[2];
+    for (std::size_t i = 0; i < sensor.pulseSamples.size(); ++i)
+    {
+      halves[i % 2].push_back(sensor.pulseSamples[i]);
+    }
+    fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(Arrays::PulseTimes, halves[0]));
+    fields->AddArray(Arrays::MakeOf<vtkDoubleArray>(Arrays::PulsePowers, halves[1]));
+  }
   Arrays::SetFieldValue(fields, Arrays::LowerEnergyLimit, sensor.lowerEnergyLimit);
   Arrays::SetFieldValue(fields, Arrays::UpperEnergyLimit, sensor.upperEnergyLimit);
 }
@@ -609,8 +632,8 @@ void vtkAvianLidarBeamSource::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << indent << "Beams: " << (this->Table ? this->Table->directions.size() : 0) << "\n";
   vtkAvianLidarPrintMacro(AzimuthRange, BeamwidthMilliradians, BeamOutline, BeamProfile,
-    NumberOfRevolutions, StepsPerRevolution, MotionSeed, ReceiverModel, ThresholdLaw,
-    GetWavelength());
+    NumberOfRevolutions, StepsPerRevolution, MotionSeed, ReceiverModel, ThresholdLaw, PulseShape,
+    PulseFileName, GetWavelength());
   for (const vtkInternals::Scalar& scalar : vtkInternals::Scalars())
   {
     os << indent << NameProperties(scalar.name.name) << ": " << this->*scalar.property << "\n";

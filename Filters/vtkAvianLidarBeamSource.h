@@ -76,6 +76,13 @@ public:
     BEAM_OUTLINE_RECTANGLE = 1
   };
 
+  enum PulseShapes
+  {
+    PULSE_SHAPE_RECTANGLE = 0,
+    PULSE_SHAPE_GAUSSIAN = 1,
+    PULSE_SHAPE_SAMPLES = 2
+  };
+
   enum ReceiverModels
   {
     RECEIVER_MODEL_ENERGY_LIMITS = 0,
@@ -252,8 +259,37 @@ public:
   /// Energy Qs of a pulse, J, 1e-50 to 1e50. Default 3.6e-4.
   vtkAvianLidarPropertyMacro(PulseEnergy, double, 3.6e-4);
 
-  /// Length tau_e of the rectangular pulse, s, 0 to 1000 sampling intervals. Default 5e-9.
+  /// Length tau_e of the rectangular pulse, or full width at half maximum of the Gaussian pulse, s,
+  /// 0 to 1000 sampling intervals. Not used with PULSE_SHAPE_SAMPLES. Default 5e-9.
   vtkAvianLidarPropertyMacro(PulseWidth, double, 5e-9);
+
+  ///@{
+  /// Shape of the emitted pulse. Default PULSE_SHAPE_RECTANGLE, as in the paper. The mean time of
+  /// each shape is the delay of its path, so a shape moves no range. The samples of
+  /// PULSE_SHAPE_SAMPLES come from PulseFileName, or from `pulse_times` and `pulse_powers` of a
+  /// sensor file.
+  vtkAvianLidarPropertyMacro(PulseShape, int, PULSE_SHAPE_RECTANGLE);
+  void SetPulseShapeToRectangle() { this->SetPulseShape(PULSE_SHAPE_RECTANGLE); }
+  void SetPulseShapeToGaussian() { this->SetPulseShape(PULSE_SHAPE_GAUSSIAN); }
+  void SetPulseShapeToSamples() { this->SetPulseShape(PULSE_SHAPE_SAMPLES); }
+  ///@}
+
+  /// CSV file of the pulse for PULSE_SHAPE_SAMPLES, with the header `time_s,power`: rising times,
+  /// s, and powers, at least 0 in any unit, with straight lines between them. Default: no file.
+  vtkAvianLidarFilePathMacro(PulseFileName);
+
+  /// Full width at half maximum of the receiver's Gaussian response, s, 0 to 1000 sampling
+  /// intervals. The receiver sees the pulse convolved with the response. Default 0: the receiver
+  /// responds at once.
+  vtkAvianLidarPropertyMacro(ResponseTime, double, 0.0);
+
+  /// Samples per second of the waveforms of an echo filter, Hz: a whole number of samples, 1 to
+  /// 1000, in each SamplingInterval. Default 0: one sample. Echoes do not depend on this rate.
+  vtkAvianLidarPropertyMacro(DigitiserRate, double, 0.0);
+
+  /// Bits of a waveform's sample, 4 to 32. The digitiser reaches from -1/15 of the power that
+  /// saturates a range unit (assumed) to this power. Default 0: samples are not rounded.
+  vtkAvianLidarPropertyMacro(DigitiserBits, double, 0.0);
 
   /// Frequency nu of the light, Hz, 1 to 1e30. Default 3.313e14 (905 nm).
   vtkAvianLidarPropertyMacro(Frequency, double, 3.313e14);
@@ -403,6 +439,8 @@ protected:
   std::vector<double> PrismRefractiveIndices;
   std::vector<double> PrismRotationRates;
   std::vector<double> PrismPhases;
+  std::vector<double> PulseTimes;
+  std::vector<double> PulsePowers;
   double PrismAxisElevation = 0.0;
   double PrismAxisRotationRate = 0.0;
   double PrismLaserRotationRate = 0.0;

@@ -49,7 +49,7 @@ public:
   vtkAvianLidarPropertyMacro(BeamId, vtkIdType, 0);
 
 protected:
-  vtkAvianLidarBeamView() = default;
+  vtkAvianLidarBeamView() { this->SetNumberOfOutputPorts(3); }
   ~vtkAvianLidarBeamView() override = default;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;

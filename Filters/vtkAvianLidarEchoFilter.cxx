@@ -36,7 +36,7 @@ vtkAvianLidarEchoFilter::vtkAvianLidarEchoFilter()
   : Moved(new vtkMoved)
 {
   this->SetNumberOfInputPorts(3);
-  this->SetNumberOfOutputPorts(3);
+  this->SetNumberOfOutputPorts(4);
 }
 
 //------------------------------------------------------------------------------
@@ -66,11 +66,14 @@ int vtkAvianLidarEchoFilter::RequestData(
   in.TracedRays = in.TracedBeams = this->Moved->TouchedBeams = 0.0;
   in.Setup.settings.noise = this->Noise;
   in.Setup.settings.returnMode = static_cast<avianlidar::ReturnMode>(this->ReturnMode);
+  in.Setup.settings.waveforms = this->RecordWaveforms;
+  in.Setup.settings.waveformFloor = this->WaveformFloor;
   return vtkAvianLidarRanks::Execute(this, request, outputVector,
     [&](const vtkAvianLidarRanks& ranks)
     {
-      const std::array<vtkPolyData*, 3> outputs = { vtkPolyData::GetData(outputVector, 0),
-        vtkPolyData::GetData(outputVector, 1), vtkPolyData::GetData(outputVector, 2) };
+      const std::array<vtkPolyData*, 4> outputs = { vtkPolyData::GetData(outputVector, 0),
+        vtkPolyData::GetData(outputVector, 1), vtkPolyData::GetData(outputVector, 2),
+        vtkPolyData::GetData(outputVector, 3) };
       vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       this->Prepare(ranks, inputVector);
       this->Trace(outputs);
@@ -132,7 +135,7 @@ void vtkAvianLidarEchoFilter::FillFields(vtkFieldData* beamFields, vtkFieldData*
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
+void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 4>& outputs)
 {
   vtkInternals& in = *this->Internals;
   avianlidar::planModel(in.Setup);
@@ -141,6 +144,10 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
   const avianlidar::KeepGoing keepGoing =
     vtkAvianLidarAbort::KeepGoing(this, vtkInternals::BuildShare, 1.0);
   const auto limit = static_cast<std::size_t>(this->MaximumCacheSize) << 20;
+  if (this->RecordWaveforms && this->WaveformFloor == 0.0)
+  {
+    vtkAvianLidarEchoOutput::RequireMemoryForWholeBeams(in.Beams);
+  }
   avianlidar::ScanResult result;
   vtkAvianLidarAbort::Require(avianlidar::simulateScan(
     in.Setup, in.Beams.beams, in.Threads, in.Cache, limit, keepGoing, result, this->ReportMovers));
@@ -152,6 +159,10 @@ void vtkAvianLidarEchoFilter::Trace(const std::array<vtkPolyData*, 3>& outputs)
     : in.Surfaces->WarningOnCoincidence(result.coincident);
   vtkAvianLidarEchoOutput::FillEchoes(result, in.Beams, in.Setup.noise, outputs[0]);
   vtkAvianLidarEchoOutput::FillReport(result, in.Beams, in.Setup.noise, outputs[1]);
+  if (this->RecordWaveforms)
+  {
+    vtkAvianLidarEchoOutput::FillWaveforms(result, in.Beams, outputs[0], outputs[3]);
+  }
   if (this->ReportMovers)
   {
     const auto wanted = [&] { return keepGoing(1.0); };
@@ -168,4 +179,5 @@ double vtkAvianLidarEchoFilter::GetNumberOfTouchedBeams() const
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPrintSelfMacro(vtkAvianLidarEchoFilter, Noise, ReturnMode, ReportMovers);
+vtkAvianLidarPrintSelfMacro(
+  vtkAvianLidarEchoFilter, Noise, ReturnMode, RecordWaveforms, WaveformFloor, ReportMovers);

@@ -27,6 +27,8 @@
  *   costs.
  * - Output port 2, mover report: one vertex per mover that is present, with `effective_area`,
  *   `detection_probability` and more; empty with ReportMovers off.
+ * - Output port 3, waveforms: with RecordWaveforms on, one polyline per stretch of a beam, with a
+ * point for each sample of the digitiser.
  *
  * Field data of all outputs: the field data of the beams; names and `geodetic_origin` of the
  * surfaces; every property of this filter in snake case with the value used, but for Visibility
@@ -96,6 +98,18 @@ public:
   void SetReturnModeToRangeUnits() { this->SetReturnMode(RETURN_MODE_RANGE_UNITS); }
   ///@}
 
+  /// Whether to record the waveforms of beams: the light that the digitiser samples before the
+  /// receiver decides. The samples have `sample_time`, `signal`, `background`, `sample`,
+  /// `energy_received` and `threshold`; the stretches have `beam_id`, `timestamp` and `origin`. The
+  /// echoes get `echo_width`, `echo_rise_time`, `echo_amplitude`, `echo_integral` and
+  /// `echo_samples`. Default: off.
+  vtkAvianLidarSwitchMacro(RecordWaveforms, false);
+
+  /// Mean signal above which a stretch of a beam is recorded, as a share of the lower energy limit
+  /// in a range unit (a pure number), 0 to 1e9. Stretches around echoes are always recorded. 0
+  /// records whole beams. Default 0.1.
+  vtkAvianLidarPropertyMacro(WaveformFloor, double, 0.1);
+
   /// Whether to report movers, which takes 1 ms of one core per mover and does not change echoes.
   /// Default: on.
   vtkAvianLidarSwitchMacro(ReportMovers, true);
@@ -125,7 +139,7 @@ private:
   vtkAvianLidarEchoFilter(const vtkAvianLidarEchoFilter&) = delete;
   void operator=(const vtkAvianLidarEchoFilter&) = delete;
 
-  void Trace(const std::array<vtkPolyData*, 3>& outputs);
+  void Trace(const std::array<vtkPolyData*, 4>& outputs);
 
   struct vtkMoved;
   std::unique_ptr<vtkMoved> Moved;

@@ -5,6 +5,7 @@
 #include "BirdTables.h"
 #include "Flight.h"
 #include "GeodeticFrame.h"
+#include "Table.h"
 #include "ValueError.h"
 #include "vtkAvianLidarAbort.h"
 #include "vtkAvianLidarArrays.h"
@@ -401,7 +402,7 @@ private:
     vtkAvianLidarRequire(
       this->Self->FileName.empty() ? "FileName is empty, expected a file of tracks" : "");
     this->Flights =
-      avianlidar::readFlights(vtkAvianLidarBirds::TextOf("FileName", this->Self->FileName),
+      avianlidar::readFlights(avianlidar::textOfFile("FileName", this->Self->FileName),
         this->Self->FileName, this->Known, { origin[0], origin[1], origin[2] }, this->Self->Seed);
     double nearest = std::numeric_limits<double>::infinity();
     for (const Flight& flight : this->Flights)

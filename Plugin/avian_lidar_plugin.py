@@ -21,7 +21,8 @@ TREE = "AvianLidarCollisionTree"
 # Parts of a scan.
 SENSORS = ("vtkAvianLidarBeamSource", "vtkAvianLidarSensorReader")  # classes of many sources
 PARTS = (TREE, "AvianLidarMedium", "AvianLidarMediumInSurface", "AvianLidarTracks", "AvianLidarLandmarks")
-RESULTS = ("AvianLidarEchoFilter", "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
+ECHO_FILTER = "AvianLidarEchoFilter"
+RESULTS = (ECHO_FILTER, "AvianLidarCoverage", "AvianLidarClutterFilter", "AvianLidarTracker")
 # Filters that show a part of a result, and the filter that shows edges of surfaces.
 SOME, EDGES = ("Threshold", "Cut", "Contour"), "FeatureEdges"
 MOST_EDGED = 100_000  # triangles up to which edges take at most a second to find; at 750,000 they take minutes
@@ -33,7 +34,7 @@ WHAT_TO_SELECT = "select surfaces, or nothing for the airport that comes with th
 # Fonts with Chinese and Japanese letters, which ParaView's own font lacks.
 FONTS = ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc")
 # Views that macros put beside another view.
-REASONS, SHARES = "Reasons", "Shares of the beam"
+REASONS, SHARES, WAVEFORM = "Reasons", "Shares of the beam", "Waveform"
 # Place of the lidar if the scene does not give a position: metres above the lowest point, share of the width or depth.
 HEIGHT = 3
 DISTANCE = 0.1
@@ -115,7 +116,7 @@ def start(view=None):
 
 def side_views():
     """The views that macros have put beside another view."""
-    return [view for view in map(simple.FindView, (REASONS, SHARES)) if view is not None]
+    return [view for view in map(simple.FindView, (REASONS, SHARES, WAVEFORM)) if view is not None]
 
 
 def close_view(view):
@@ -177,6 +178,30 @@ def upstream(source):
                 used = [getattr(port, "Proxy", port) for port in inputs]  # the source of a port
                 found += [other for other in used if other is not None and other not in found]
     return found
+
+
+def scan_of(source):
+    """The echo filter that the source is or uses upstream, or None."""
+    return next((one for one in upstream(source) if one.SMProxy.GetXMLName() == ECHO_FILTER), None) if source else None
+
+
+def selected_beams():
+    """(source, beam ids) of each selection of echoes, of a beam report or of waveforms; first of the active source."""
+    active = simple.GetActiveSource()
+    for source in sorted(simple.GetSources().values(), key=lambda one: one != active):
+        for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+            selection = source.SMProxy.GetSelectionInput(port)
+            if not selection or scan_of(source) is None:
+                continue
+            extract = servermanager.filters.ExtractSelection(
+                Input=source[port], Selection=servermanager._getPyProxy(selection))
+            extract.UpdatePipeline()
+            data = servermanager.Fetch(extract)
+            for arrays in (data.GetPointData(), data.GetCellData()):
+                ids = arrays.GetArray("beam_id")
+                if ids and ids.GetNumberOfTuples():
+                    yield source, [int(ids.GetTuple1(i)) for i in range(ids.GetNumberOfTuples())]
+                    break
 
 
 def apply(source):

@@ -11,11 +11,11 @@ In ParaView: choose the macro in the menu Macros. In a script: show_beam(echoes,
 """
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import SHARES, colour_by, free_name, legend, plugin_folder, run, say, show, start, upstream
+from avian_lidar_plugin import (
+    SHARES, colour_by, free_name, legend, plugin_folder, run, say, scan_of, selected_beams, show, start)
 
 TITLE = "show beam"
-ARRAY, SHARE = "beam_id", "energy_share"
-SCAN, VIEW = "AvianLidarEchoFilter", "AvianLidarBeamView"
+SHARE, VIEW = "energy_share", "AvianLidarBeamView"
 INPUTS = ("Beams", "Surfaces", "Movers")
 WHAT_TO_SELECT = "select an echo first (Select Points On in the view, or a row of a spreadsheet)"
 AIR = ("AttenuationCoefficient", "MeteorologicalVisibility", "AirBackscatter", "RainRate", "ReflectanceModel")
@@ -25,37 +25,15 @@ NEARER, NEARER_SHARE = 0.01, 0.002
 HEIGHT = 0.75  # share of the height of the view above the table
 
 
-def scan_of(source):
-    """The echo filter that the source is or uses upstream, or None."""
-    return next((one for one in upstream(source) if one.SMProxy.GetXMLName() == SCAN), None)
-
-
-def selections():
-    """(source, port, selection) of all selections, with the active source first."""
-    active = simple.GetActiveSource()
-    for source in sorted(simple.GetSources().values(), key=lambda one: one != active):
-        for port in range(source.SMProxy.GetNumberOfOutputPorts()):
-            selection = source.SMProxy.GetSelectionInput(port)
-            if selection:
-                yield source, port, selection
-
-
 def selected_beam():
     """(source, beam_id) of the first selected echo."""
-    for source, port, selection in selections():
-        if scan_of(source) is None:
-            continue
-        extract = servermanager.filters.ExtractSelection(
-            Input=source[port], Selection=servermanager._getPyProxy(selection))
-        extract.UpdatePipeline()
-        ids = servermanager.Fetch(extract).GetPointData().GetArray(ARRAY)
-        ids = [int(ids.GetTuple1(i)) for i in range(ids.GetNumberOfTuples())] if ids else []
-        if ids:
-            if len(set(ids)) > 1:
-                several = f"echoes of {len(set(ids))} beams are selected"
-                say(TITLE, f"{several}: the view shows the beam {ids[0]}", failed=False)
-            return source, ids[0]
-    raise ValueError(WHAT_TO_SELECT)
+    source, ids = next(selected_beams(), (None, []))
+    if source is None:
+        raise ValueError(WHAT_TO_SELECT)
+    if len(set(ids)) > 1:
+        several = f"echoes of {len(set(ids))} beams are selected"
+        say(TITLE, f"{several}: the view shows the beam {ids[0]}", failed=False)
+    return source, ids[0]
 
 
 def same(one, other):

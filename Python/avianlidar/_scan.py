@@ -19,6 +19,7 @@ from ._properties import PropertyOwner, wraps
 from ._scene import Scene, time_of
 from ._sensor import Sensor
 from ._sight import warnings_of
+from ._waveforms import Waveforms
 
 
 class SceneAndSensor(PropertyOwner):
@@ -171,6 +172,15 @@ class Scan(SceneAndSensor):
         The first reading of this report switches `report_movers` on."""
         self.algorithm.ReportMoversOn()
         return Cloud(self.update().algorithm.GetOutput(2))
+
+    @property
+    def waveforms(self) -> Waveforms:
+        """The recorded light of beams before the receiver decides. The first reading switches `record_waveforms` on, after
+        which the echoes have `echo_width`, `echo_rise_time` (s), `echo_amplitude` (W), `echo_integral` (J) and
+        `echo_samples`. `waveform_floor` chooses the stretches; the sensor has `digitiser_rate` and
+        `digitiser_bits`."""
+        self.algorithm.RecordWaveformsOn()
+        return Waveforms(self.update().algorithm.GetOutput(3))
 
     def __getitem__(self, name: str) -> np.ndarray:
         """An array of the echoes by name, in the unit of `echoes.units`."""

@@ -21,8 +21,9 @@ from ._pipeline import update
 from ._sight import extent, of_scene
 from ._suffixes import OF_SENSOR, PACKETS, POINTS
 from ._terminal import bar, close_bar, table, tell, warn
+from ._waveforms import WAVEFORMS
 from ._weather import weather
-from ._writers import check_suffix, check_target
+from ._writers import check_suffix, check_target, refuse
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
 from .apps.inputs._air import check_received
 from .apps.inputs._read import read_plan, read_scenario
@@ -90,7 +91,15 @@ def _say_place(options, scan: Scan) -> None:
 
 def scan(options) -> None:
     _check_outs(options, lambda out: check_suffix(out, (".png",)))
+    file = options.waveforms
+    if file is not None:
+        if file.suffix.lower() not in WAVEFORMS:
+            raise refuse("write waveforms to", file, list(WAVEFORMS))
+        check_target(file, [*options.out, pathlib.Path(options.scene)])
+    elif options.beam is not None:
+        raise ValueError(f"--beam {options.beam} is the beam of a picture, expected --waveforms FILE.png")
     scan = _scan_of(options)
+    scan.record_waveforms = scan.record_waveforms or file is not None
     for out in options.out:
         if out.suffix.lower() == ".geojson" and not scan.scene.geodetic_origin:
             raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
@@ -105,8 +114,22 @@ def scan(options) -> None:
             save(echoes, out)
         text = f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}"
         tell(text + (f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""))
+    if file is not None:
+        _write_waveforms(scan, file, options.beam)
     if not options.quiet:
         tell(*to_act_on(echoes.fields))
+
+
+def _write_waveforms(scan: Scan, file: pathlib.Path, beam: int | None) -> None:
+    import matplotlib
+    matplotlib.use("Agg")
+    waveforms = scan.waveforms
+    if file.suffix.lower() == ".png":
+        beam = waveforms.strongest().beam_id if beam is None else beam
+    waveforms.save(file, scan.echoes if file.suffix.lower() == ".las" else None, beam)
+    of = f"beam {beam}" if beam is not None else f"{len(np.unique(waveforms.beam_ids))} beams"
+    tell(f"{file}: waveforms of {of}, {waveforms.number_of_stretches} stretches with "
+         f"{waveforms.number_of_points} samples in all")
 
 
 def advise(options) -> None:

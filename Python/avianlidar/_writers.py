@@ -109,8 +109,8 @@ def check_target(path: pathlib.Path, others: Sequence[pathlib.Path] = ()) -> Non
             raise ValueError(f"{path}: is named twice")
 
 
-def write(cloud, file, **properties: Any) -> None:
-    """Writes a Cloud; see `save`."""
+def write(cloud, file, waveforms=None, **properties: Any) -> None:
+    """Writes a Cloud; see `save`. @param waveforms lines of samples for a .las file, or None"""
     path = pathlib.Path(file)
     file_name(path)
     check_suffix(path)
@@ -128,5 +128,7 @@ def write(cloud, file, **properties: Any) -> None:
         properties = {"precision": "Automatic", **properties}
     set_properties(writer, **properties)
     writer.SetInputData(cloud.data)
+    if waveforms is not None:
+        writer.SetWaveformsData(waveforms)
     writer.SetFileName(file_name(path))
     _write(writer, str(path))

@@ -27,11 +27,11 @@ Nodes nodesOf(const ScanSetup& setup)
   const BeamFrame frame =
     makeBeamFrame(Vec3(0.0), Vec3(1.0, 0.0, 0.0), BeamWidth(setup.sensor.halfBeamwidth));
   FoundPolygons found(*setup.tree, mostTrianglesIntegrated(setup.settings));
-  if (found.find(frame) != SeenByBeam::Polygons || !PolygonRule(setup).fits(*found.polygons))
+  if (found.find(frame) != SeenByBeam::Polygons || !PolygonRule(setup, 1.0).fits(*found.polygons))
   {
     return { false, 0 };
   }
-  PolygonQuadrature quadrature(setup);
+  PolygonQuadrature quadrature(setup, 1.0);
   PolygonBounds bounds;
   PolygonNodes nodes;
   quadrature.bound(*found.polygons, bounds);

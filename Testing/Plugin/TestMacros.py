@@ -27,10 +27,10 @@ from plugin_testing import (OUTPUT_DIR, PLUGIN, SOURCE_DIR, airport, assert_same
                             load_plugin)
 
 FOLDER = os.path.dirname(PLUGIN)
-AIRPORT, BIRDS, BEAM, COVERAGE, TRACKED, FOG, CLASSES = (
+AIRPORT, BIRDS, BEAM, COVERAGE, TRACKED, FOG, CLASSES, WAVEFORM = (
     os.path.join(FOLDER, "Macros", f"avian_lidar_{name}.py") for name in (
         "airport_scan", "birds_over_the_airport", "show_beam", "coverage", "birds_tracked", "ground_fog",
-        "class_colours"))
+        "class_colours", "plot_waveform"))
 LIMITS = (2e-6, 6.25e-5)
 
 
@@ -345,6 +345,29 @@ class Macros(Case):
             setattr(scan, name, value)
         beam = macro.show_beam(scan, beam_id)
         self.assertEqual({name: getattr(beam, name) for name in air}, air)
+
+    def test_the_waveform_of_the_selected_echo(self):
+        """Without a selection, of the strongest echo. The chart follows the pulse."""
+        self.assertIn("make a scan first", run(WAVEFORM))
+        run(AIRPORT, simple.Box(XLength=90, Center=[0, 50, 0]))
+        scan = simple.GetActiveSource()
+        self.assertRegex(run(WAVEFORM, scan), r"plot waveform: beam \d+\.")
+        chart, lines = simple.FindView("Waveform"), simple.FindSource("Waveform")
+        display = servermanager.GetRepresentation(lines, chart)
+        self.assertEqual((display.XArrayName, display.UseIndexForXAxis), ("distance_m", 0))
+        self.assertEqual(list(display.SeriesVisibility), ["signal", "sample", "energy_received", "threshold"])
+        before = fetch(lines)["signal"]
+        scan.Beams.PulseWidth = 2.5e-9
+        lines.UpdatePipeline()
+        self.assertGreater(abs(fetch(lines)["signal"].max() / before.max() - 1.0), 1e-3)
+        ids = fetch(scan)["beam_id"]
+        other = int(ids[ids != lines.LowerThreshold][0])
+        simple.QuerySelect(QueryString=f"beam_id == {other}", FieldType="POINT", Source=scan)
+        self.assertIn(f"beam {other}", run(WAVEFORM, scan))
+        self.assertEqual((lines.LowerThreshold, lines.UpperThreshold), (other, other))
+        macro = load_macro(WAVEFORM)
+        with self.assertRaisesRegex(ValueError, "has no waveform"):
+            macro.plot_waveform(scan, 10**8)
 
     def test_names_in_chinese(self):
         folder = tempfile.mkdtemp(dir=OUTPUT_DIR)

@@ -47,6 +47,7 @@ PICTURES = {
     "room": {"xt32-ranges": "room-xt32-ranges"},
     "scores": {"curves-neubrandenburg": "bench-neubrandenburg"},
     "screenshots": {"head": "coverage-report"},
+    "waveforms": {"waveforms": "waveforms-gull"},
     "weather": {"weather": "weather"},
     "your_airport": {"airport": "your-airport"},
 }

@@ -9,10 +9,11 @@
 
 namespace avianlidar
 {
-PulseShares::PulseShares(double width)
-  : Width(width)
-  , Reach(static_cast<std::int64_t>(std::ceil(0.5 * width)))
+PulseShares::PulseShares(const ReceivedPulse& pulse)
+  : Pulse(pulse)
+  , Reach(static_cast<std::int64_t>(std::ceil(std::max(pulse.before(), pulse.after()))))
 {
+  const double width = pulse.width();
   // The share e of the next unit makes e (1 - e) equal to its mean over all places, w/6.
   const double part = std::min(1.0, width);
   const double end = 0.5 * part * (1.0 - std::sqrt(1.0 - 2.0 * part / 3.0)) - 0.5 * width;
@@ -21,8 +22,8 @@ PulseShares::PulseShares(double width)
 
 void PulseShares::add(double energy, double place, double* units) const
 {
-  const double begin = place - 0.5 * this->Width + static_cast<double>(this->Reach);
-  const double end = begin + this->Width;
+  const double begin = place - this->Pulse.before() + static_cast<double>(this->Reach);
+  const double end = begin + this->Pulse.width();
   if (!(end > begin))
   {
     units[this->Reach] += energy;
@@ -31,8 +32,15 @@ void PulseShares::add(double energy, double place, double* units) const
   for (auto unit = static_cast<std::int64_t>(begin); unit <= 2 * this->Reach; ++unit)
   {
     const auto from = static_cast<double>(unit);
-    units[unit] +=
-      energy * std::max(0.0, std::min(end, from + 1.0) - std::max(begin, from)) / (end - begin);
+    if (this->Pulse.isRectangle())
+    {
+      units[unit] +=
+        energy * std::max(0.0, std::min(end, from + 1.0) - std::max(begin, from)) / (end - begin);
+      continue;
+    }
+    const double after = place + static_cast<double>(this->Reach);
+    units[unit] += energy *
+      (this->Pulse.shareBefore(from + 1.0 - after) - this->Pulse.shareBefore(from - after));
   }
 }
 

@@ -27,6 +27,7 @@
 #define avianlidar_Drops_h
 
 #include "Air.h"
+#include "ReceivedPulse.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -38,8 +39,8 @@ namespace avianlidar
 class PulseShares
 {
 public:
-  /// @param width width of the pulse, tau_e/tau_s, 0 to 1000
-  explicit PulseShares(double width = 0.0);
+  /// @param pulse pulse, in units
+  explicit PulseShares(const ReceivedPulse& pulse = 0.0);
 
   /// Number of units that a pulse reaches on each side of its own unit.
   std::int64_t reach() const { return this->Reach; }
@@ -53,7 +54,7 @@ public:
   double placeOfMany() const { return this->Place; }
 
 private:
-  double Width;
+  ReceivedPulse Pulse;
   std::int64_t Reach;
   double Place;
 };

@@ -24,7 +24,7 @@ ScanAir::ScanAir(const Sensor& sensor, Air air)
   , UnitLength(sensor.rangeUnitLength())
   , SolidAngle(sensor.solidAngle())
   , Gate(unitsInsideGate(sensor.samplingInterval, sensor.rangeGate))
-  , Reach(PulseShares(sensor.pulseWidth / sensor.samplingInterval).reach())
+  , Reach(PulseShares(ReceivedPulse(sensor, sensor.samplingInterval)).reach())
   , ApertureRadius(std::sqrt(sensor.receiverAperture / Pi))
 {
   const BeamWidth width = BeamShape(sensor).width();

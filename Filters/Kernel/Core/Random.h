@@ -42,7 +42,8 @@ enum class RandomPurpose : std::uint32_t
   Drops = 17,         ///< drops, by range unit
   Leaves = 18,        ///< leaves at which parts of a beam end
   ShortPaths = 19,    ///< directions of paths from a hit to a near hit
-  Lobes = 20          ///< directions of light from a mirror of finite lobe
+  Lobes = 20,         ///< directions of light from a mirror of finite lobe
+  Waveforms = 21      ///< noise in the samples of a range unit
 };
 
 /// Two independent uniform doubles of 53 bits in the open interval (0, 1). @param seed any int

@@ -66,6 +66,7 @@ Coverage::Coverage(const ScanSetup& setup, const ScanBeams& beams, const Vec3& u
   , Beams(beams)
   , Up(up)
   , Shape(setup.sensor)
+  , Pulse(setup.sensor, setup.sensor.samplingInterval)
   , Directions(directions ? std::move(directions)
                           : std::make_shared<const BeamDirections>(beams.directions,
                               this->Shape.width().half, marginsFor(this->Shape.width().half)))
@@ -110,9 +111,8 @@ bool Coverage::isInClutter(std::uint32_t beam, double range) const
 {
   const Sensor& sensor = this->Setup.sensor;
   const double place = range / sensor.rangeUnitLength();
-  const double half = 0.5 * sensor.pulseWidth / sensor.samplingInterval;
-  const auto first = static_cast<std::int64_t>(std::floor(place - half));
-  const auto last = static_cast<std::int64_t>(std::floor(place + half));
+  const auto first = static_cast<std::int64_t>(std::floor(place - this->Pulse.before()));
+  const auto last = static_cast<std::int64_t>(std::floor(place + this->Pulse.after()));
   const auto begin = this->Clutter.begin() + this->ClutterBegins[beam];
   const auto end = this->Clutter.begin() + this->ClutterBegins[beam + 1];
   const auto next = std::lower_bound(begin, end, first);

@@ -149,6 +149,7 @@ private:
   const ScanBeams& Beams;
   const Vec3 Up;
   const BeamShape Shape;
+  const ReceivedPulse Pulse; ///< in range units
   std::shared_ptr<const BeamDirections> Directions;
   ScanAir Air;
   int Most;

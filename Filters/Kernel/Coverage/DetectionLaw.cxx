@@ -2,6 +2,7 @@
 #include "DetectionLaw.h"
 
 #include "PhotonReceiver.h"
+#include "ReceivedPulse.h"
 
 #include <algorithm>
 #include <array>
@@ -76,13 +77,28 @@ double detectedBy(const std::array<double, N>& missed)
   return 1.0 - std::accumulate(missed.begin(), missed.end(), 0.0) / static_cast<double>(N);
 }
 
-/// Share of an echo that lies before `t`, counted from its middle. @param width of the pulse
-/// @param deviation standard deviation of the target's depth, in the unit of `t`
-double shareBefore(double t, double width, double deviation)
+/// Share of an echo that lies before `t`, range units from the target. @param deviation standard
+/// deviation of the target's depth, range units
+double shareBefore(double t, const ReceivedPulse& pulse, double deviation)
 {
+  if (!pulse.isRectangle() && deviation > 0.0)
+  {
+    constexpr int depths = 8; // on each side of the middle
+    double sum = 0.0, weights = 0.0;
+    for (int k = -depths; k <= depths; ++k)
+    {
+      const double z = Deviations * k / depths;
+      const double weight = std::exp(-0.5 * z * z);
+      sum += weight * pulse.shareBefore(t - z * deviation);
+      weights += weight;
+    }
+    return sum / weights;
+  }
+  const double width = pulse.width();
   if (!(deviation > 0.0))
   {
-    return width > 0.0 ? std::clamp(t / width + 0.5, 0.0, 1.0) : (t >= 0.0 ? 1.0 : 0.0);
+    return pulse.isRectangle() && width > 0.0 ? std::clamp(t / width + 0.5, 0.0, 1.0)
+                                              : pulse.shareBefore(t);
   }
   const auto below = [](double z) { return 0.5 * std::erfc(-z / Root2); };
   if (!(width > 0.0))
@@ -103,13 +119,13 @@ struct Shares
 };
 
 /// Shares of an echo in the range units that the echo overlaps.
-/// @param place place of the echo's middle in a unit, 0 to 1 @param width width of the pulse, range
-/// units @param deviation standard deviation of the target's depth, range units
-Shares sharesOf(double place, double width, double deviation)
+/// @param place place of the target in a unit, 0 to 1 @param pulse pulse, in range units
+/// @param deviation standard deviation of the target's depth, range units
+Shares sharesOf(double place, const ReceivedPulse& pulse, double deviation)
 {
-  const double half = 0.5 * width + Deviations * deviation;
-  const double first = std::floor(place - half);
-  const double count = std::max(1.0, std::ceil(place + half) - first);
+  const double depth = Deviations * deviation;
+  const double first = std::floor(place - (pulse.before() + depth));
+  const double count = std::max(1.0, std::ceil(place + (pulse.after() + depth)) - first);
   Shares shares;
   shares.units = std::ceil(count / MostUnits);
   for (double unit = first; unit < first + count; unit += shares.units)
@@ -117,7 +133,7 @@ Shares sharesOf(double place, double width, double deviation)
     // The middle unit represents its neighbours.
     const double begin = unit + std::floor(0.5 * (shares.units - 1.0)) - place;
     shares.values.push_back(
-      shareBefore(begin + 1.0, width, deviation) - shareBefore(begin, width, deviation));
+      shareBefore(begin + 1.0, pulse, deviation) - shareBefore(begin, pulse, deviation));
   }
   return shares;
 }
@@ -157,9 +173,9 @@ DetectionLaw::DetectionLaw(
   , Headings(views.headings)
 {
   const PhotonReceiver receiver(sensor);
-  const double width = sensor.pulseWidth / sensor.samplingInterval;
+  const ReceivedPulse pulse(sensor, sensor.samplingInterval);
   const std::size_t classes = this->Deepest > 0.0 ? DepthClasses : 1;
-  this->Places = width > 0.0 || this->Deepest > 0.0 ? PlacesInHalfUnit : 1;
+  this->Places = pulse.width() > 0.0 || this->Deepest > 0.0 ? PlacesInHalfUnit : 1;
   this->Missed.reserve(classes * this->Places * Points);
   for (std::size_t depth = 0; depth < classes; ++depth)
   {
@@ -167,13 +183,18 @@ DetectionLaw::DetectionLaw(
       static_cast<double>(DepthClasses - 1);
     for (int place = 0; place < this->Places; ++place)
     {
-      // The two halves of a unit are mirror images.
-      const Shares shares = sharesOf(0.5 * (place + 0.5) / this->Places, width, deviation);
+      // The two halves of a unit are mirror images if the two halves of the pulse are.
+      const double at = 0.5 * (place + 0.5) / this->Places;
+      const Shares shares = sharesOf(at, pulse, deviation);
+      const Shares mirrored = pulse.isRectangle() ? shares : sharesOf(1.0 - at, pulse, deviation);
       for (std::size_t k = 0; k < Points; ++k)
       {
-        const double decade = FirstDecade + static_cast<double>(k) / PointsPerDecade;
-        this->Missed.push_back(static_cast<float>(
-          missedBy(sensor, receiver, this->Limit * std::pow(10.0, decade), shares)));
+        const double energy =
+          this->Limit * std::pow(10.0, FirstDecade + static_cast<double>(k) / PointsPerDecade);
+        const double missed = missedBy(sensor, receiver, energy, shares);
+        this->Missed.push_back(static_cast<float>(pulse.isRectangle()
+            ? missed
+            : 0.5 * (missed + missedBy(sensor, receiver, energy, mirrored))));
       }
     }
   }

@@ -35,7 +35,7 @@ struct ArrivingLight
 struct BeamLight
 {
   explicit BeamLight(const Sensor& sensor)
-    : units(sensor.samplingInterval, sensor.pulseWidth, sensor.rangeGate, sensor.minimumRange)
+    : units(sensor)
   {
   }
 

@@ -10,16 +10,32 @@
 
 namespace avianlidar
 {
+namespace
+{
+/// Give all contributions to the range units, which are not accumulated yet.
+void collectContributions(BeamLight& light)
+{
+  light.units.clear();
+  light.units.add(light.samples()->range.data(), light.energies.data(), light.energies.size());
+  for (const SecondaryPath& path : light.paths)
+  {
+    light.units.add({ path.length, path.energy });
+  }
+}
+}
+
 BeamLighting::BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, bool mayAlarm,
-  bool lightsAll, std::function<bool()> wanted)
+  bool lightsAll, std::function<bool()> wanted, double parts)
   : Setup(setup)
   , Scene(scene)
   , MayAlarm(mayAlarm)
   , LightsAll(lightsAll)
+  , LeastShare(
+      SurelyBelow * (setup.settings.waveforms ? std::min(1.0, setup.settings.waveformFloor) : 1.0))
   , Wanted(std::move(wanted))
   , Secondary(setup, scene)
   , Tracer(scene)
-  , Quadrature(setup)
+  , Quadrature(setup, parts)
 {
 }
 
@@ -43,6 +59,16 @@ BeamLight BeamLighting::light(const Beam& beam, const StrataPartition* strata,
   {
     this->addUp(beam, light);
   }
+  return light;
+}
+
+BeamLight BeamLighting::divided(const Beam& beam, const BeamLight& coarse, BeamLight&& memory)
+{
+  BeamLight light = std::move(memory);
+  light.clear(this->Setup.sensor.backgroundRadiance);
+  light.isPerceivable = this->addDirect(beam, light);
+  light.paths = coarse.paths;
+  collectContributions(light);
   return light;
 }
 
@@ -245,12 +271,7 @@ void BeamLighting::addUp(const Beam& beam, BeamLight& light) const
     }
     light.surfaces = beam.air.arrange(std::move(light.surfaces));
   }
-  light.units.clear();
-  light.units.add(samples->range.data(), light.energies.data(), light.energies.size());
-  for (const SecondaryPath& path : light.paths)
-  {
-    light.units.add({ path.length, path.energy });
-  }
+  collectContributions(light);
   light.units.accumulate();
 }
 
@@ -294,7 +315,7 @@ bool BeamLighting::onlySurfacesMatter(const Beam& beam) const
 bool BeamLighting::isSkipped(
   const Beam& beam, double most, double farthest, double nearest, BeamLight& light) const
 {
-  if (!(most < SurelyBelow * this->Setup.sensor.lowerEnergyLimit) ||
+  if (!(most < this->LeastShare * this->Setup.sensor.lowerEnergyLimit) ||
     !this->onlySurfacesMatter(beam) || !(nearest >= this->Setup.sensor.minimumRange) ||
     !(light.units.lastUnitOf(farthest) < static_cast<double>(light.units.gateUnits())))
   {

@@ -53,8 +53,9 @@ public:
   /// perceived
   /// @param wanted function called every 4096 steps within a beam; WorkStopped is thrown if it
   /// returns false
+  /// @param parts number of parts of a range unit, by which polygons are divided
   BeamLighting(const ScanSetup& setup, const SceneTriangles& scene, bool mayAlarm, bool lightsAll,
-    std::function<bool()> wanted);
+    std::function<bool()> wanted, double parts);
 
   /// A beam, and what it sees.
   struct Beam
@@ -71,6 +72,10 @@ public:
   /// costs of tracing, increased @param memory light whose memory is used again
   BeamLight light(const Beam& beam, const StrataPartition* strata,
     std::unique_ptr<SecondaryTrace>& known, TraceCounters& cost, BeamLight&& memory);
+
+  /// The same light of an integrated beam with the parts of this object. @param coarse result of
+  /// light() of another object, whose paths are taken. Range units are not accumulated.
+  BeamLight divided(const Beam& beam, const BeamLight& coarse, BeamLight&& memory);
 
 private:
   bool addDirect(const Beam& beam, BeamLight& light);
@@ -92,6 +97,8 @@ private:
   const SceneTriangles& Scene;
   const bool MayAlarm;
   const bool LightsAll;
+  const double
+    LeastShare; ///< energy below which light is neither perceived nor recorded, over Qlow
   const std::function<bool()> Wanted;
   SecondaryReflection Secondary;
   BeamTracer Tracer;

@@ -50,7 +50,7 @@ BeamReceiver::BeamReceiver(const Sensor& sensor, const NoisePlan& noise, std::in
   , Mode(mode)
   , Ranges(sensor, mode)
   , Wanted(std::move(wanted))
-  , Pulse(sensor.pulseWidth / sensor.samplingInterval)
+  , Pulse(ReceivedPulse(sensor, sensor.samplingInterval))
   , Sky(sensor, noise)
   , Light(air)
   , Drops(this->Pulse)
@@ -139,7 +139,6 @@ public:
   }
 
 private:
-  double lowerIn(double air) const;
   std::uint64_t drawsOf(const AirLight::Share& share, std::int64_t unit) const;
   void drawDrops(std::int64_t unit, double* units);
   double drawAir(std::int64_t unit, ReceivedUnit& received);
@@ -163,14 +162,6 @@ Received BeamReceiver::receive(
   std::uint64_t beam, const ArrivingLight& light, const BeamAir& air, const DrawnLeaves& leaves)
 {
   return Reception(*this, beam, light, air, leaves).receive();
-}
-
-/// Lower limit of a unit, J. @param air mean energy that the air returns in the unit, J
-double BeamReceiver::Reception::lowerIn(double air) const
-{
-  return this->Receiver.FollowsAir ? this->Exposed.lower *
-      this->Exposed.photons.growthInAir(this->Exposed.photons.electronsPerJoule * air)
-                                   : this->Exposed.lower;
 }
 
 void BeamReceiver::Reception::collectUnits()
@@ -304,7 +295,7 @@ void BeamReceiver::Reception::addUnit(
   light += unit.leaves;
   const double all = light + std::max(0.0, mean + beyond);
   const double off = this->Receiver.FollowsAir ? mean : 0.0;
-  const double lower = this->lowerIn(mean);
+  const double lower = this->Receiver.lowerIn(this->Exposed, mean);
   const double most = all - off +
     CommonDeviate *
       std::sqrt(this->Exposed.plan.darkVariance + this->Exposed.plan.varianceOfEnergy * all);

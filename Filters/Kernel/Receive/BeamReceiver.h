@@ -67,7 +67,6 @@ public:
   /// out.
   bool mayAlarm() const { return this->Sky.plan.active || this->Scan.fillsScene(); }
 
-private:
   /// Limits, noise and errors of ranges in a background.
   struct Exposure
   {
@@ -79,10 +78,21 @@ private:
     RangeErrors errors;
     PhotonReceiver photons;
   };
+  /// Exposure to a background. @param radiance spectral radiance, W/(m2 sr nm)
+  const Exposure& exposureTo(double radiance);
+
+  /// Lower limit of a unit, J. @param air mean energy that the air returns in the unit, J
+  double lowerIn(const Exposure& exposure, double air) const
+  {
+    return this->FollowsAir
+      ? exposure.lower * exposure.photons.growthInAir(exposure.photons.electronsPerJoule * air)
+      : exposure.lower;
+  }
+
+private:
   /// Reception of one beam.
   class Reception;
 
-  const Exposure& exposureTo(double radiance);
   void planAir();
   double varianceWith(const Exposure& exposure, const std::vector<AirLight::Share>& shares) const;
   const Sensor Instrument;

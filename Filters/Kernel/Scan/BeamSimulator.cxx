@@ -31,18 +31,29 @@ BeamSimulator::BeamSimulator(const ScanSetup& setup, const ScanAir& air, const S
   , Air(air)
   , Beams(beams)
   , Width(BeamShape(setup.sensor).width())
-  , KeepsLight(
-      options.keepsLight && (setup.noise.active || setup.movers) && !haveVolumes(setup.media))
+  , KeepsLight(options.keepsLight && (setup.noise.active || setup.movers) &&
+      !haveVolumes(setup.media) && !setup.settings.waveforms)
   , Rays(sampler, setup.settings.seed)
   , Tracing(setup, this->Scene, beams, this->Rays, options.lightsAll)
   , Hits(setup, this->Scene)
   , AirAlong(air)
   , Receiver(setup.sensor, setup.noise, setup.settings.seed, setup.settings.returnMode, air,
       setup.revolution, wanted)
-  , Lighting(setup, this->Scene, this->Receiver.mayAlarm(), options.lightsAll, std::move(wanted))
+  , Lighting(
+      setup, this->Scene, this->Receiver.mayAlarm(), options.lightsAll, wanted, partsOfUnit(setup))
   , OfRays(setup.settings.sampling, sampler.strata.numberOfRays(), &sampler.strata)
   , Echoes(setup, this->OfRays)
+  , Divided(setup.sensor)
 {
+  if (setup.settings.waveforms)
+  {
+    this->Recording = std::make_unique<BeamWaveforms>(setup, air, this->Receiver);
+    if (partsForSamples(setup) != partsOfUnit(setup))
+    {
+      this->Dividing = std::make_unique<BeamLighting>(
+        setup, this->Scene, true, true, std::move(wanted), partsForSamples(setup));
+    }
+  }
 }
 
 SeenBeam& BeamSimulator::Traced::of(std::size_t beam)
@@ -88,13 +99,13 @@ BeamSimulator::Traced BeamSimulator::trace(std::size_t begin, std::size_t end,
 }
 
 BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& kept,
-  std::vector<Echo>& echoes, BeamReport& report, BeamLight&& memory)
+  BeamResults& results, BeamReport& report, BeamLight&& memory)
 {
   report.range = std::numeric_limits<double>::quiet_NaN();
   report.direct = kept.view.direct();
   report.isCrowded = kept.view.cells() && kept.view.cells()->isCrowded;
   report.status = kept.view.meetsSurfaces() ? BeamStatus::BelowLimit : BeamStatus::NoSurface;
-  if (kept.lit && this->followKnown(beam, *kept.lit, echoes, report))
+  if (kept.lit && this->followKnown(beam, *kept.lit, results.echoes, report))
   {
     finishReport(traced.cost, kept, report);
     memory.clear(this->Setup.sensor.backgroundRadiance);
@@ -105,9 +116,11 @@ BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& ke
   const PathStarts starts =
     this->Hits.startsOf(beam, frame, this->Rays, kept.view, traced.geometry, traced.hasGeometry);
   const BeamAir air = this->AirAlong.along(frame, this->Beams.timeOf(beam));
-  BeamLight light = this->Lighting.light({ this->Beams.ids[beam], frame, kept.view, starts, air },
-    this->Rays.strata(), kept.paths, traced.cost, std::move(memory));
-  if (light.isPerceivable)
+  const BeamLighting::Beam seen{ this->Beams.ids[beam], frame, kept.view, starts, air };
+  BeamLight light =
+    this->Lighting.light(seen, this->Rays.strata(), kept.paths, traced.cost, std::move(memory));
+  const bool isWhole = this->Recording && this->Setup.settings.waveformFloor == 0.0;
+  if (light.isPerceivable || isWhole)
   {
     if (light.samples() && this->KeepsLight && !kept.lit)
     {
@@ -117,7 +130,19 @@ BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& ke
       this->Receiver.receive(this->Beams.ids[beam], light.arriving(), air, light.leaves);
     const std::vector<LightEcho> ofLight = this->Echoes.ofLight(received, light);
     const BeamEchoes::Report echo = this->Echoes.add(
-      received, ofLight, light.samples() != nullptr, light.isOutsideGate(), echoes);
+      received, ofLight, light.samples() != nullptr, light.isOutsideGate(), results.echoes);
+    if (this->Recording)
+    {
+      if (this->Recording->find(light, received, air) && this->Dividing && light.isIntegrated)
+      {
+        this->Divided = this->Dividing->divided(seen, light, std::move(this->Divided));
+        this->Recording->record(beam, light, this->Divided, received, air, results.waveforms);
+      }
+      else
+      {
+        this->Recording->record(beam, light, light, received, air, results.waveforms);
+      }
+    }
     if (kept.lit)
     {
       kept.lit->add(ofLight);

@@ -23,11 +23,13 @@
 #include "BeamLighting.h"
 #include "BeamReceiver.h"
 #include "BeamReport.h"
+#include "BeamWaveforms.h"
 #include "KeptBeam.h"
 #include "ViewTracer.h"
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace avianlidar
@@ -37,6 +39,13 @@ struct ScanOptions
 {
   bool keepsLight = false; ///< whether light is kept where noise matters or surfaces move
   bool lightsAll = false;  ///< whether light is computed that is surely not perceived
+};
+
+/// What beams give, one beam after the other.
+struct BeamResults
+{
+  std::vector<Echo> echoes;
+  Waveforms waveforms; ///< empty unless the settings request them
 };
 
 /// Each thread needs its own object. Setup, air, beams and sampler must outlive the object. The
@@ -82,10 +91,10 @@ public:
   Traced trace(std::size_t begin, std::size_t end, std::vector<KeptBeam>& kept,
     const std::function<bool(std::size_t)>& leaveOut, Traced&& memory);
 
-  /// Follow a traced beam to its echoes: add new geometry of paths to `kept`, append the echoes,
+  /// Follow a traced beam to its echoes: add new geometry of paths to `kept`, append the results,
   /// and fill the report. @param traced what was traced of the beam @param memory light
   /// whose memory is used again @return light of the beam; without samples if kept light was used
-  BeamLight follow(std::size_t beam, SeenBeam& traced, KeptBeam& kept, std::vector<Echo>& echoes,
+  BeamLight follow(std::size_t beam, SeenBeam& traced, KeptBeam& kept, BeamResults& results,
     BeamReport& report, BeamLight&& memory);
 
 private:
@@ -106,6 +115,9 @@ private:
   BeamLighting Lighting;
   StandardErrorEstimator OfRays; ///< memory of Echoes
   BeamEchoes Echoes;
+  std::unique_ptr<BeamWaveforms> Recording; ///< null without waveforms
+  std::unique_ptr<BeamLighting> Dividing;   ///< null without several samples in a range unit
+  BeamLight Divided;                        ///< memory of `Dividing`
 };
 }
 

@@ -101,7 +101,7 @@ void light(
 {
   BeamSampler sampler(setup.sensor, setup.settings.sampling, tracedRaysOf(setup.settings));
   const ScanAir air(setup.sensor, setup.air());
-  std::vector<Echo> echoes;
+  BeamResults results;
   BeamReport report;
   if (setup.movers && !setup.movers->empty())
   {
@@ -111,7 +111,7 @@ void light(
     {
       std::vector<MoverLight> sights;
       const MovedBeams::Followed followed =
-        moved.simulate(0, echoes, report, sights, BeamLight(setup.sensor));
+        moved.simulate(0, results, report, sights, BeamLight(setup.sensor));
       f(followed.light, moved.scene());
       return;
     }
@@ -119,7 +119,7 @@ void light(
   std::vector<KeptBeam> kept(1);
   BeamSimulator simulator(setup, air, one, { false, true }, sampler, wanted);
   BeamSimulator::Traced traced = simulator.trace(0, 1, kept, {}, {});
-  f(simulator.follow(0, traced.of(0), kept[0], echoes, report, BeamLight(setup.sensor)),
+  f(simulator.follow(0, traced.of(0), kept[0], results, report, BeamLight(setup.sensor)),
     simulator.scene());
 }
 

@@ -48,7 +48,9 @@ std::uint64_t lightKey(const ScanSetup& setup)
     needs.secondaryReflections ? 1.0 : 0.0, needs.secondaryBound, needs.furtherBound,
     needs.lightEnergyBound, needs.skippedEnergyBound, needs.missedDetailEnergy,
     static_cast<double>(sensor.beamProfile), static_cast<double>(sensor.beamOutline),
-    static_cast<double>(sensor.receiverModel), sensor.up.x, sensor.up.y, sensor.up.z };
+    static_cast<double>(sensor.receiverModel), static_cast<double>(sensor.pulseShape), sensor.up.x,
+    sensor.up.y, sensor.up.z };
+  numbers.insert(numbers.end(), sensor.pulseSamples.begin(), sensor.pulseSamples.end());
   for (const SensorField& field : sensorFields())
   {
     numbers.push_back(sensor.*field.member);

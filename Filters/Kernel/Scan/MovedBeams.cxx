@@ -93,8 +93,7 @@ MovedBeams::MovedBeams(const ScanSetup& setup, const ScanAir& air, const ScanBea
   , Simulator(setup, air, this->CurrentBeam, { false, sights }, sampler, std::move(wanted))
   , AirAlong(air)
   , LightOfAir(air)
-  , Units(setup.sensor.samplingInterval, setup.sensor.pulseWidth, setup.sensor.rangeGate,
-      setup.sensor.minimumRange)
+  , Units(setup.sensor)
 {
   this->CurrentBeam.ids.resize(1);
   this->CurrentBeam.origins.resize(1);
@@ -201,7 +200,7 @@ MoverLight MovedBeams::sightOf(
   return sight;
 }
 
-MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& echoes,
+MovedBeams::Followed MovedBeams::simulate(std::size_t beam, BeamResults& results,
   BeamReport& report, std::vector<MoverLight>& sights, BeamLight&& memory)
 {
   const std::vector<Touch>& touching = this->Touching[beam - this->First];
@@ -219,10 +218,15 @@ MovedBeams::Followed MovedBeams::simulate(std::size_t beam, std::vector<Echo>& e
   this->CurrentBeam.origins[0] = this->Beams.origins[beam];
   this->CurrentBeam.directions[0] = this->Beams.directions[beam];
   this->CurrentBeam.times[0] = this->Beams.timeOf(beam);
+  const std::size_t stretches = results.waveforms.stretches.size();
   std::vector<KeptBeam> kept(1);
   this->Traced = this->Simulator.trace(0, 1, kept, {}, std::move(this->Traced));
   BeamLight light =
-    this->Simulator.follow(0, this->Traced.of(0), kept[0], echoes, report, std::move(memory));
+    this->Simulator.follow(0, this->Traced.of(0), kept[0], results, report, std::move(memory));
+  for (std::size_t i = stretches; i < results.waveforms.stretches.size(); ++i)
+  {
+    results.waveforms.stretches[i].beam = beam;
+  }
   if (this->Sights)
   {
     const BeamFrame frame =

@@ -55,7 +55,7 @@ public:
   };
   /// Append the echoes of a beam with movers, append the light that the beam receives from each
   /// mover, and fill the beam's report. @param memory light whose memory is used again
-  Followed simulate(std::size_t beam, std::vector<Echo>& echoes, BeamReport& report,
+  Followed simulate(std::size_t beam, BeamResults& results, BeamReport& report,
     std::vector<MoverLight>& sights, BeamLight&& memory);
 
   /// Static triangles, and the triangles of the movers that the beam simulated last may touch.

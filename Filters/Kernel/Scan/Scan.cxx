@@ -23,9 +23,8 @@ constexpr double CellRaysPerTracedRay = 32.0;
 constexpr int MostRaysOfKeptSampler = 10000;
 
 /// Results of one block of beams.
-struct Block
+struct Block : BeamResults
 {
-  std::vector<Echo> echoes;
   std::vector<std::size_t> beamOfEcho;
   std::uint64_t raysTraced = 0;
   std::uint64_t beamsTraced = 0;
@@ -194,14 +193,14 @@ private:
       {
         ++block.beamsTouched;
         MovedBeams::Followed followed =
-          worker.moved->simulate(b, block.echoes, report, block.sights, std::move(worker.light));
+          worker.moved->simulate(b, block, report, block.sights, std::move(worker.light));
         moved = std::move(followed.view);
         worker.light = std::move(followed.light);
       }
       else
       {
-        worker.light = worker.simulator.follow(
-          b, traced.of(b), kept[b], block.echoes, report, std::move(worker.light));
+        worker.light =
+          worker.simulator.follow(b, traced.of(b), kept[b], block, report, std::move(worker.light));
       }
       block.beamOfEcho.resize(block.echoes.size(), b);
       if (!this->Setup.tree->planeOwners.empty())
@@ -259,9 +258,11 @@ private:
     std::vector<SeenPlane> planes;
     this->Result.echoes.reserve(count);
     this->Result.beamOfEcho.reserve(count);
-    for (const Block& block : this->Blocks)
+    for (Block& block : this->Blocks)
     {
       append(block.echoes, this->Result.echoes);
+      this->Result.waveforms.append(block.waveforms);
+      block.waveforms = {};
       append(block.beamOfEcho, this->Result.beamOfEcho);
       append(block.sights, this->Result.sights);
       append(block.planes, planes);

@@ -27,6 +27,7 @@ struct ScanResult
 {
   std::vector<Echo> echoes;               ///< echoes, in the order of the beams, then by range
   std::vector<std::size_t> beamOfEcho;    ///< index of the beam of each echo
+  Waveforms waveforms;                    ///< empty unless the settings request them
   std::vector<BeamReport> reports;        ///< report on each beam
   std::uint64_t raysTraced = 0;           ///< number of rays traced; 0 if all beams were kept
   std::uint64_t beamsTraced = 0;          ///< number of beams whose static surfaces were searched

@@ -171,15 +171,17 @@ std::uint64_t checksumOf(const ScanBeams& beams)
 std::uint64_t traceKey(const ScanSetup& setup)
 {
   // Other members are energies, times and limits, or affect only paths that start at hits.
-  static_assert(memberCount<Sensor>() == 34,
+  static_assert(memberCount<Sensor>() == 39,
     "do a beam's rays depend on the new member? Then it belongs to the key");
   const Sensor& sensor = setup.sensor;
   const bool cells = setup.settings.beamSamples == BeamSampleSource::Cells;
+  const ReceivedPulse pulse(sensor, sensor.samplingInterval);
   std::vector<double> numbers = { sensor.halfBeamwidth, static_cast<double>(sensor.beamProfile),
     sensor.gaussianTruncation, static_cast<double>(sensor.beamOutline), sensor.halfBeamwidthAcross,
     sensor.beamRotation, sensor.up.x, sensor.up.y, sensor.up.z,
     cells ? sensor.samplingInterval : 0.0, cells ? sensor.pulseWidth : 0.0,
-    cells ? sensor.rangeGate : 0.0 };
+    cells ? sensor.rangeGate : 0.0, cells ? partsOfStrips(setup) : 0.0,
+    cells ? pulse.before() : 0.0 };
   for (const EchoSetting& setting : echoSettings())
   {
     if (setting.effect == SettingEffect::Rays)

@@ -11,7 +11,7 @@ ViewFinder::ViewFinder(const ScanSetup& setup, const SceneTriangles& scene, Beam
   , Polygons(scene,
       BeamShape(setup.sensor).width().isRound ? mostTrianglesIntegrated(setup.settings) : 0,
       MostTrianglesOfCells)
-  , Rule(setup)
+  , Rule(setup, partsOfUnit(setup))
   , Cells(setup, scene)
 {
 }

@@ -75,10 +75,18 @@ const std::vector<SensorField>& sensorFields()
       NeededOf::None },
     { "range_noise_floor", "m", &Sensor::rangeNoiseFloor, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
     { "range_walk", "m", &Sensor::rangeWalk, 0.0, 1e9, "0 to 1e9 m", NeededOf::None },
-    { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m", NeededOf::None }
+    { "range_quantum", "m", &Sensor::rangeQuantum, 0.0, 1e9, "0, or 1e-9 to 1e9 m",
+      NeededOf::None },
+    { "response_time", "s", &Sensor::responseTime, 0.0, 1e23, "0 s to 1000 times sampling_interval",
+      NeededOf::None },
+    { "digitiser_rate", "Hz", &Sensor::digitiserRate, 0.0, 1e33,
+      "0, or 1 to 1000 times 1/sampling_interval, a whole multiple, Hz", NeededOf::None },
+    { "digitiser_bits", "1", &Sensor::digitiserBits, 0.0, 32.0, "0, or a whole number from 4 to 32",
+      NeededOf::None }
   };
-  constexpr std::size_t others = 5; // profile, outline, receiver model, threshold law, up axis
-  static_assert(memberCount<Sensor>() == 29 + others, "is the new member a row of the table?");
+  // Profile, outline, receiver model, threshold law, up axis, shape and samples of the pulse.
+  constexpr std::size_t others = 7;
+  static_assert(memberCount<Sensor>() == 32 + others, "is the new member a row of the table?");
   return all;
 }
 
@@ -134,6 +142,18 @@ std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval)
   return text.str();
 }
 
+namespace
+{
+/// True if a range unit has a whole number of samples, 1 to 1000.
+bool isDigitiserGood(const Sensor& s)
+{
+  const double samples = s.digitiserRate * s.samplingInterval;
+  const double whole = std::round(samples);
+  return s.digitiserRate == 0.0 ||
+    (whole >= 1.0 && whole <= 1000.0 && std::fabs(samples - whole) < 1e-4 * whole);
+}
+}
+
 std::string checkSensor(const Sensor& s)
 {
   for (const SensorField& field : sensorFields())
@@ -168,6 +188,14 @@ std::string checkSensor(const Sensor& s)
     choice("receiver_model", s.receiverModel, "0 (energy limits) or 1 (photons)"),
     choice("threshold_law", s.thresholdLaw, "0 (fixed) or 1 (follows the air)"),
     require(s.pulseWidth <= 1000.0 * s.samplingInterval, &Sensor::pulseWidth),
+    rangeError("pulse_shape", static_cast<int>(s.pulseShape), 0.0, 2.0,
+      "0 (rectangle), 1 (Gaussian) or 2 (samples)"),
+    s.pulseShape == PulseShape::Samples ? checkPulseSamples(s) : "",
+    require(s.responseTime <= 1000.0 * s.samplingInterval, &Sensor::responseTime),
+    require(isDigitiserGood(s), &Sensor::digitiserRate),
+    require(s.digitiserBits == 0.0 ||
+        (s.digitiserBits >= 4.0 && s.digitiserBits == std::floor(s.digitiserBits)),
+      &Sensor::digitiserBits),
     rangeError("range_gate", s.rangeGate, 0.0,
       0.5 * MaximumGateUnits * SpeedOfLight * s.samplingInterval,
       "at most 2^52 range units (c/2 sampling_interval each)"),

@@ -13,6 +13,7 @@
 #ifndef avianlidar_Sensor_h
 #define avianlidar_Sensor_h
 
+#include "ReceivedPulse.h"
 #include "Vector.h"
 
 #include <cmath>
@@ -113,6 +114,14 @@ struct Sensor
   double rangeWalk = 0.0;          ///< range walk at the lower limit, m
   double rangeQuantum = 0.0;       ///< step of the ranges, m; 0: ranges are not rounded
 
+  // Shape of the pulse, and what records it (ReceivedPulse.h, BeamWaveforms.h). The defaults change
+  // nothing.
+  PulseShape pulseShape = PulseShape::Rectangle;
+  std::vector<double> pulseSamples; ///< time, s, and power of each sample of PulseShape::Samples
+  double responseTime = 0.0;        ///< full width of the receiver's response, s, 0 to 1000 tau_s
+  double digitiserRate = 0.0;       ///< samples per second, Hz; 0: one sample per range unit
+  double digitiserBits = 0.0;       ///< bits of a sample, 4 to 32; 0: samples are not rounded
+
   /// Energy of one photon, J.
   double photonEnergy() const { return PlanckConstant * this->frequency; }
 
@@ -145,6 +154,13 @@ struct Sensor
   /// Share of the light from a range, m, that reaches the detector: (1 - exp(-(r/r_o)^2))/(1 +
   /// (r_d/r)^2), with r_o = overlapRange and r_d = defocusRange.
   double nearRangeShare(double range) const;
+
+  /// Number of the digitiser's samples in a range unit, a whole number.
+  double samplesOfUnit() const
+  {
+    return this->digitiserRate > 0.0 ? std::round(this->digitiserRate * this->samplingInterval)
+                                     : 1.0;
+  }
 
   /// Length of one range unit, m: c tau_s / 2.
   double rangeUnitLength() const { return 0.5 * SpeedOfLight * this->samplingInterval; }

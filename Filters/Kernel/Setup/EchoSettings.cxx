@@ -97,8 +97,11 @@ const std::vector<EchoSetting>& echoSettings()
     toggle<&S::noise>("Noise", "noise"), toggle<&S::fullModel>("FullModel", "full_model"),
     row<&S::returnMode>("ReturnMode", "return_mode", E::Echoes, 0.0, 4.0, "0 to 4"),
     row<&S::numberOfConnections>(
-      "NumberOfConnections", "number_of_connections", E::Echoes, 0.0, most, "at least 0") };
-  static_assert(memberCount<EchoSettings>() == 16, "is the new member a row of the table?");
+      "NumberOfConnections", "number_of_connections", E::Echoes, 0.0, most, "at least 0"),
+    toggle<&S::waveforms>("RecordWaveforms", "record_waveforms"),
+    row<&S::waveformFloor>("WaveformFloor", "waveform_floor", E::Echoes, 0.0, 1e9,
+      "0 (whole beams) to 1e9", "1", false) };
+  static_assert(memberCount<EchoSettings>() == 18, "is the new member a row of the table?");
   return all;
 }
 
@@ -125,7 +128,7 @@ std::string checkUnits(const Sensor& sensor, const EchoSettings& settings)
 {
   const double inGate = 2.0 * sensor.rangeGate / (SpeedOfLight * sensor.samplingInterval);
   const double reached =
-    pathsOfABeam(settings) * (2.0 + sensor.pulseWidth / sensor.samplingInterval);
+    pathsOfABeam(settings) * (2.0 + ReceivedPulse(sensor, sensor.samplingInterval).width());
   if (std::min(inGate, reached) > MaximumUnitsPerBeam)
   {
     const std::string expected = "so few sampling intervals, or RaysPerBeam (it is " +

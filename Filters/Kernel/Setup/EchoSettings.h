@@ -125,6 +125,8 @@ struct EchoSettings
   bool fullModel = false; ///< whether parts of the model that cannot matter are computed, too
   ReturnMode returnMode = ReturnMode::All;
   int numberOfConnections = 2; ///< number M of connections of a ray, at least 0 (connectionsOf())
+  bool waveforms = false;      ///< whether waveforms are recorded (BeamWaveforms.h)
+  double waveformFloor = 0.1;  ///< mean signal above which waveforms are recorded, over Qlow, >= 0
 };
 
 /// Effect of a setting, apart from the time of a scan.

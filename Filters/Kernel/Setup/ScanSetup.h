@@ -137,6 +137,13 @@ void planModel(ScanSetup& setup);
 /// Needs of a setup whose other members are set.
 ModelNeeds needsOf(const ScanSetup& setup);
 
+/// Number of parts of equal length of a range unit, by which surfaces are divided: 1, or more for
+/// smooth pulses. A whole number.
+double partsOfUnit(const ScanSetup& setup);
+
+/// The same for waveforms: a multiple of the number of samples in a unit.
+double partsForSamples(const ScanSetup& setup);
+
 /// Upper bound of the share of the arriving light that any surface of the scene returns.
 /// @param range lower bound of the surface's range, m
 double returnBound(const ScanSetup& setup, double range);

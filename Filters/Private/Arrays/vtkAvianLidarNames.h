@@ -58,6 +58,12 @@ constexpr Name LowerEnergyLimit{ "lower_energy_limit", "J" };
 constexpr Name UpperEnergyLimit{ "upper_energy_limit", "J" };
 /// model of the receiver: 0 energy limits, 1 photons (int)
 constexpr Name ReceiverModel{ "receiver_model", "1" };
+/// shape of the pulse: 0 rectangle, 1 Gaussian, 2 samples (int)
+constexpr Name PulseShape{ "pulse_shape", "1" };
+/// time of each sample of the pulse
+constexpr Name PulseTimes{ "pulse_times", "s" };
+/// power of each sample of the pulse, in any unit
+constexpr Name PulsePowers{ "pulse_powers", "1" };
 /// wavelength of the light
 constexpr Name Wavelength{ "wavelength", "nm" };
 /// false alarms expected in a scan of empty sky
@@ -223,6 +229,16 @@ constexpr Name LabelShare{ "label_share", "1", "energy of object_id" };
 constexpr Name IncidenceAngle{ "incidence_angle", "deg", "at the surface" };
 /// share of the energy from paths with two reflections; above 0.5 a ghost
 constexpr Name SecondaryShare{ "secondary_share", "1", "energy of 2 bounces" };
+/// full width of the echo at half its amplitude; with waveforms only
+constexpr Name EchoWidth{ "echo_width", "s", "full width at half maximum" };
+/// time of the echo from a tenth to nine tenths of its amplitude; with waveforms only
+constexpr Name EchoRiseTime{ "echo_rise_time", "s", "from 10 to 90 %" };
+/// greatest power of the echo's samples; with waveforms only
+constexpr Name EchoAmplitude{ "echo_amplitude", "W", "greatest sample" };
+/// energy of the echo's samples above a tenth of its amplitude; with waveforms only
+constexpr Name EchoIntegral{ "echo_integral", "J", "samples above 10 %" };
+/// samples above a tenth of the echo's amplitude (int); with waveforms only
+constexpr Name EchoSamples{ "echo_samples", "1", "above 10 % of the peak" };
 /// status of the beam: 0 echo, 1 no-surface, 2 below-Qlow, 3 saturated, 4 outside-gate; in a
 /// coverage, index of `status_names`
 constexpr Name Status{ "status", "" };
@@ -240,6 +256,22 @@ constexpr Name RaysTraced{ "rays_traced", "1" };
 constexpr Name Skipped{ "skipped", "" };
 /// bound of the energy by which range units of echoes differ from the full model
 constexpr Name SkippedBound{ "skipped_bound", "J" };
+
+// Waveforms (point and cell data).
+/// mean energy that a sample receives, without noise
+constexpr Name Signal{ "signal", "J" };
+/// photoelectrons of `signal`; photon receivers only
+constexpr Name SignalElectrons{ "signal_electrons", "1" };
+/// mean energy of the background in a sample, which the receiver subtracts
+constexpr Name Background{ "background", "J" };
+/// sample with drawn noise, as the digitiser stores it
+constexpr Name Sample{ "sample", "J" };
+/// energy above which the sample's range unit is perceived
+constexpr Name Threshold{ "threshold", "J" };
+/// time of a sample after the pulse
+constexpr Name SampleTime{ "sample_time", "s" };
+/// origin of the beam (3 components)
+constexpr Name Origin{ "origin", "m" };
 
 // Beam view (cell data; columns of the table).
 /// share of the beam's solid angle that the surface fills
@@ -413,7 +445,7 @@ constexpr Name LasRoundingBound{ "las_rounding_bound", "m" };
 constexpr Name CloudArrays[] = { BeamId, LaserId, Azimuth, VerticalAngle, Timestamp, ObjectId,
   MaterialId, Energy, EnergyReceived, ReturnEnergy, EnergyStdError, Photoelectrons, SignalToNoise,
   SeenRadiance, DistanceStdError, Distance, LabelShare, IncidenceAngle, SecondaryShare, Hue,
-  Longitude, Latitude, Height };
+  Longitude, Latitude, Height, EchoWidth, EchoRiseTime, EchoAmplitude, EchoIntegral, EchoSamples };
 }
 
 #endif

@@ -4,6 +4,8 @@
 #include "vtkAvianLidarBeamSourceInternals.h"
 
 #include "AvailableMemory.h"
+#include "Table.h"
+#include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarRequire.h"
 
@@ -23,6 +25,12 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
   {
     const avianlidar::SensorField& field = avianlidar::sensorField(member);
     return { { field.name, field.unit }, property, member };
+  };
+  const auto unlessZero = [&](double Source::*property, double Sensor::*member) -> Scalar
+  {
+    Scalar scalar = ofSensor(property, member);
+    scalar.onlyWith = property;
+    return scalar;
   };
   static const std::vector<Scalar> all = { { Arrays::MinimumElevation, &Source::MinimumElevation,
                                              nullptr },
@@ -67,6 +75,9 @@ const std::vector<vtkAvianLidarBeamSource::vtkInternals::Scalar>& vtkAvianLidarB
     ofSensor(&Source::RangeNoiseFloor, &Sensor::rangeNoiseFloor),
     ofSensor(&Source::RangeWalk, &Sensor::rangeWalk),
     ofSensor(&Source::RangeQuantum, &Sensor::rangeQuantum),
+    unlessZero(&Source::ResponseTime, &Sensor::responseTime),
+    unlessZero(&Source::DigitiserRate, &Sensor::digitiserRate),
+    unlessZero(&Source::DigitiserBits, &Sensor::digitiserBits),
     { Arrays::DisplayLength, &Source::DisplayLength, nullptr },
     { Arrays::SwayAmplitude, &Source::SwayAmplitude, nullptr, &Source::SwayAmplitude },
     { Arrays::SwayFrequency, &Source::SwayFrequency, nullptr, &Source::SwayAmplitude },
@@ -111,6 +122,31 @@ void vtkAvianLidarBeamSource::vtkInternals::ReadTable(
       table.times[static_cast<std::size_t>(i)] = 1e-6 * timestamps->GetComponent(i, 0);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkAvianLidarBeamSource::vtkInternals::PulseOf(const Source& self)
+{
+  std::vector<double> samples;
+  if (!self.PulseFileName.empty())
+  {
+    const auto add = [&](const avianlidar::TableLine& line, std::size_t)
+    {
+      samples.push_back(line.number(0, "time_s", -1e23, 1e23));
+      samples.push_back(line.number(1, "power", 0.0, avianlidar::MaximumEnergy));
+    };
+    avianlidar::readTable(avianlidar::textOfFile("PulseFileName", self.PulseFileName),
+      self.PulseFileName, { "time_s,power" }, add);
+    return samples;
+  }
+  vtkAvianLidarRequire(avianlidar::sizeError(
+    "PulsePowers", self.PulsePowers.size(), self.PulseTimes.size(), "PulseTimes"));
+  for (std::size_t i = 0; i < self.PulseTimes.size(); ++i)
+  {
+    samples.push_back(self.PulseTimes[i]);
+    samples.push_back(self.PulsePowers[i]);
+  }
+  return samples;
 }
 
 //------------------------------------------------------------------------------

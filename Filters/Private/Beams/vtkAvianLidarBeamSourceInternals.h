@@ -64,6 +64,7 @@ struct vtkAvianLidarBeamSource::vtkInternals
       { vtkAvianLidarArrays::NumberOfChannels, &Source::NumberOfChannels },
       { vtkAvianLidarArrays::BeamOutline, &Source::BeamOutline },
       { vtkAvianLidarArrays::BeamProfile, &Source::BeamProfile },
+      { vtkAvianLidarArrays::PulseShape, &Source::PulseShape },
       { vtkAvianLidarArrays::ThresholdLaw, &Source::ThresholdLaw },
       { vtkAvianLidarArrays::ReceiverModel, &Source::ReceiverModel }
     };
@@ -82,7 +83,9 @@ struct vtkAvianLidarBeamSource::vtkInternals
         { vtkAvianLidarArrays::PrismWedgeAngles, &Source::PrismWedgeAngles },
         { vtkAvianLidarArrays::PrismRefractiveIndices, &Source::PrismRefractiveIndices },
         { vtkAvianLidarArrays::PrismRotationRates, &Source::PrismRotationRates },
-        { vtkAvianLidarArrays::PrismPhases, &Source::PrismPhases } };
+        { vtkAvianLidarArrays::PrismPhases, &Source::PrismPhases },
+        { vtkAvianLidarArrays::PulseTimes, &Source::PulseTimes },
+        { vtkAvianLidarArrays::PulsePowers, &Source::PulsePowers } };
     return all;
   }
 
@@ -99,6 +102,9 @@ struct vtkAvianLidarBeamSource::vtkInternals
 
   // Read the user's beams. Throws std::runtime_error.
   static void ReadTable(vtkPolyData* beams, avianlidar::BeamTable& table);
+
+  // Time, s, and power of each sample of the pulse. Throws std::runtime_error if the file is bad.
+  static std::vector<double> PulseOf(const Source& self);
 
   // The sensor with the energy limits in use. Throws std::runtime_error if a value is bad.
   static avianlidar::Sensor SensorOf(const Source& self);

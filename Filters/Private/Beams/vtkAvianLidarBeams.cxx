@@ -54,16 +54,37 @@ void ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
 
 /// Read one of two choices. Without the array, `choice` is kept. @param words meaning of 0 and of 1
 template <class Choice>
-void ReadChoice(
-  vtkFieldData* fields, const Arrays::Name& name, const std::string& words, Choice& choice)
+void ReadChoice(vtkFieldData* fields, const Arrays::Name& name, const std::string& words,
+  Choice& choice, double most = 1.0)
 {
   double value = static_cast<double>(choice);
   Arrays::ReadFieldValue(fields, name, value);
-  if (value != 0.0 && value != 1.0)
+  if (value < 0.0 || value > most || value != std::floor(value))
   {
     throw std::runtime_error(std::string("field data '") + name.name + "' is neither " + words);
   }
   choice = static_cast<Choice>(static_cast<int>(value));
+}
+
+/// Read the samples of the pulse.
+void ReadPulse(vtkFieldData* fields, avianlidar::Sensor& sensor)
+{
+  vtkDataArray* arrays[2];
+  int place = 0;
+  for (const Arrays::Name& name : { Arrays::PulseTimes, Arrays::PulsePowers })
+  {
+    Arrays::RequireNumeric(fields, name, "field data");
+    arrays[place] = fields->GetArray(name.name);
+    vtkAvianLidarRequire(arrays[place] ? ""
+                                       : std::string("field data '") + name.name +
+          "' is missing, expected one number for each sample of the pulse");
+    Arrays::RequireShape(arrays[place++], "field data", 1, arrays[0]->GetNumberOfTuples());
+  }
+  for (vtkIdType i = 0; i < arrays[0]->GetNumberOfTuples(); ++i)
+  {
+    sensor.pulseSamples.push_back(arrays[0]->GetComponent(i, 0));
+    sensor.pulseSamples.push_back(arrays[1]->GetComponent(i, 0));
+  }
 }
 
 avianlidar::Sensor ReadSensor(vtkFieldData* fields)
@@ -103,6 +124,12 @@ avianlidar::Sensor ReadSensor(vtkFieldData* fields)
   if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)
   {
     readNumbers(NeededOf::Photons);
+  }
+  ReadChoice(fields, Arrays::PulseShape, "0 (rectangle) nor 1 (Gaussian) nor 2 (samples)",
+    sensor.pulseShape, 2.0);
+  if (sensor.pulseShape == avianlidar::PulseShape::Samples)
+  {
+    ReadPulse(fields, sensor);
   }
   vtkAvianLidarRequire(avianlidar::checkSensor(sensor), "field data: ");
   return sensor;
@@ -257,6 +284,8 @@ std::uint64_t HashOf(const avianlidar::Sensor& sensor, std::int32_t revolution)
   {
     values.push_back(sensor.*field.member);
   }
+  values.push_back(static_cast<double>(sensor.pulseShape));
+  values.insert(values.end(), sensor.pulseSamples.begin(), sensor.pulseSamples.end());
   return avianlidar::hashOf(values.data(), values.size() * sizeof(double), 0);
 }
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAvianLidarEchoOutput.h"
 
+#include "AvailableMemory.h"
 #include "Figures.h"
 #include "Hash.h"
 #include "PhotonReceiver.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarCells.h"
 
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
@@ -24,6 +27,8 @@
 namespace
 {
 namespace names = vtkAvianLidarArrays;
+/// Memory of a sample of a waveform in the output, bytes.
+constexpr double BytesOfSample = 14.0 * sizeof(double);
 using avianlidar::Echo;
 using avianlidar::ScanSetup;
 using avianlidar::Vec3;
@@ -338,6 +343,107 @@ void vtkAvianLidarEchoOutput::FillEchoes(const avianlidar::ScanResult& result,
   Add<vtkDoubleArray>(
     echoes, names::SecondaryShare, [&](std::size_t i) { return all[i].secondaryShare; });
   echoes->GetPointData()->SetActiveScalars(names::Energy.name);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::RequireMemoryForWholeBeams(const vtkAvianLidarBeams& beams)
+{
+  const double samples =
+    avianlidar::rangeUnitsOf(beams.sensor, static_cast<double>(beams.beams.size())) *
+    beams.sensor.samplesOfUnit();
+  avianlidar::requireMemory(
+    samples, "samples of waveforms (WaveformFloor is 0)", samples * BytesOfSample);
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarEchoOutput::FillWaveforms(avianlidar::ScanResult& result,
+  const vtkAvianLidarBeams& beams, vtkPolyData* echoes, vtkPolyData* waveforms)
+{
+  avianlidar::Waveforms& all = result.waveforms;
+  const auto& shapes = all.shapes;
+  Add<vtkDoubleArray>(echoes, names::EchoWidth, [&](std::size_t i) { return shapes[i].width; });
+  Add<vtkDoubleArray>(
+    echoes, names::EchoRiseTime, [&](std::size_t i) { return shapes[i].riseTime; });
+  Add<vtkDoubleArray>(
+    echoes, names::EchoAmplitude, [&](std::size_t i) { return shapes[i].amplitude; });
+  Add<vtkDoubleArray>(
+    echoes, names::EchoIntegral, [&](std::size_t i) { return shapes[i].integral; });
+  Add<vtkIntArray>(echoes, names::EchoSamples, [&](std::size_t i) { return shapes[i].samples; });
+
+  const double interval = beams.sensor.samplingInterval / beams.sensor.samplesOfUnit();
+  const std::size_t samples = all.signal.size();
+  const std::size_t stretches = all.stretches.size();
+  avianlidar::requireMemory(static_cast<double>(samples), "samples of waveforms",
+    static_cast<double>(samples) * BytesOfSample);
+  std::vector<std::size_t> stretchOf(samples);
+  auto times = names::Make<vtkDoubleArray>(names::SampleTime, static_cast<vtkIdType>(samples));
+  auto ranges = names::Make<vtkDoubleArray>(names::Distance, static_cast<vtkIdType>(samples));
+  auto points = names::MakePoints(static_cast<vtkIdType>(samples));
+  auto offsets = vtkSmartPointer<vtkIdTypeArray>::New();
+  auto ids = vtkSmartPointer<vtkIdTypeArray>::New();
+  names::SetTuples(offsets.Get(), static_cast<vtkIdType>(stretches) + 1);
+  names::SetTuples(ids.Get(), static_cast<vtkIdType>(samples));
+  for (std::size_t s = 0; s < stretches; ++s)
+  {
+    const avianlidar::Waveforms::Stretch& stretch = all.stretches[s];
+    offsets->SetValue(static_cast<vtkIdType>(s), static_cast<vtkIdType>(stretch.begin));
+    for (std::size_t i = stretch.begin; i < all.endOf(s); ++i)
+    {
+      const auto number =
+        static_cast<double>(stretch.first) + static_cast<double>(i - stretch.begin);
+      const double time = (number + 0.5) * interval;
+      const double range = 0.5 * avianlidar::SpeedOfLight * time;
+      const Vec3 place = PointOnBeam(beams, stretch.beam, range);
+      const auto id = static_cast<vtkIdType>(i);
+      times->SetValue(id, time);
+      ranges->SetValue(id, range);
+      points->SetPoint(id, place.x, place.y, place.z);
+      ids->SetValue(id, id);
+      stretchOf[i] = s;
+    }
+  }
+  offsets->SetValue(static_cast<vtkIdType>(stretches), static_cast<vtkIdType>(samples));
+  waveforms->SetPoints(points);
+  auto lines = vtkSmartPointer<vtkCellArray>::New();
+  lines->SetData(offsets, ids);
+  waveforms->SetLines(lines);
+  waveforms->GetPointData()->AddArray(times);
+  waveforms->GetPointData()->AddArray(ranges);
+  const auto add = [&](const names::Name& name, std::vector<double>& values)
+  {
+    waveforms->GetPointData()->AddArray(names::MakeOf<vtkDoubleArray>(name, values));
+    values = {};
+  };
+  if (beams.sensor.receiverModel == avianlidar::ReceiverModel::Photons)
+  {
+    const double perJoule = avianlidar::PhotonReceiver(beams.sensor).electronsPerJoule;
+    Add<vtkDoubleArray>(
+      waveforms, names::SignalElectrons, [&](std::size_t i) { return perJoule * all.signal[i]; });
+  }
+  add(names::Signal, all.signal);
+  Add<vtkDoubleArray>(waveforms, names::Background,
+    [&](std::size_t i) { return all.stretches[stretchOf[i]].background; });
+  add(names::Sample, all.drawn);
+  add(names::EnergyReceived, all.received);
+  add(names::Threshold, all.threshold);
+  waveforms->GetPointData()->SetActiveScalars(names::Signal.name);
+
+  const auto beamOf = [&](std::size_t s) { return all.stretches[s].beam; };
+  auto beamIds = names::Make<vtkIdTypeArray>(names::BeamId, static_cast<vtkIdType>(stretches));
+  auto fired = names::Make<vtkDoubleArray>(names::Timestamp, static_cast<vtkIdType>(stretches));
+  auto origins = names::Make<vtkDoubleArray>(names::Origin, static_cast<vtkIdType>(stretches), 3);
+  for (std::size_t s = 0; s < stretches; ++s)
+  {
+    const auto id = static_cast<vtkIdType>(s);
+    beamIds->SetValue(id, static_cast<vtkIdType>(beams.beams.ids[beamOf(s)]));
+    fired->SetValue(id, beams.timestamps[beamOf(s)]);
+    origins->SetTuple(id, &beams.beams.origins[beamOf(s)].x);
+  }
+  for (vtkDataArray* array : { static_cast<vtkDataArray*>(beamIds),
+         static_cast<vtkDataArray*>(fired), static_cast<vtkDataArray*>(origins) })
+  {
+    waveforms->GetCellData()->AddArray(array);
+  }
 }
 
 //------------------------------------------------------------------------------

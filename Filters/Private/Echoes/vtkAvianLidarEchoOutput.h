@@ -21,6 +21,14 @@ namespace vtkAvianLidarEchoOutput
 void FillEchoes(const avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
   const avianlidar::NoisePlan& noise, vtkPolyData* echoes);
 
+/// Throw avianlidar::MemoryError unless the waveforms of whole beams fit into memory.
+void RequireMemoryForWholeBeams(const vtkAvianLidarBeams& beams);
+
+/// Fill in a polyline per recorded stretch of a beam, and add the shapes of the echoes to `echoes`.
+/// Takes the waveforms out of the result. @param waveforms empty output
+void FillWaveforms(avianlidar::ScanResult& result, const vtkAvianLidarBeams& beams,
+  vtkPolyData* echoes, vtkPolyData* waveforms);
+
 /**
  * Fill in a vertex for each beam, in the order of beams: at the strongest return, or else at the
  * display length, m. Point arrays: `beam_id`, `laser_id`, `azimuth` (0.01 deg) and `vertical_angle`

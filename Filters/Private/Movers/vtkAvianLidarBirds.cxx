@@ -2,7 +2,7 @@
 #include "vtkAvianLidarBirds.h"
 
 #include "BirdTables.h"
-#include "RegularFile.h"
+#include "Table.h"
 #include "ValueError.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBuiltInTexts.h"
@@ -15,25 +15,11 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
-}
-
-//------------------------------------------------------------------------------
-std::string vtkAvianLidarBirds::TextOf(const char* property, const std::string& file)
-{
-  const std::string name = std::string(property) + " " + file;
-  vtkAvianLidarRequire(avianlidar::whyNotRegular(file), name + ": ");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  vtkAvianLidarRequire(stream ? "" : name + " cannot be read");
-  return text.str();
 }
 
 //------------------------------------------------------------------------------
@@ -49,7 +35,7 @@ std::vector<avianlidar::BirdSpecies> vtkAvianLidarBirds::OwnSpecies(const std::s
   {
     return {};
   }
-  return avianlidar::readSpecies(TextOf("SpeciesFileName", file), file);
+  return avianlidar::readSpecies(avianlidar::textOfFile("SpeciesFileName", file), file);
 }
 
 //------------------------------------------------------------------------------

@@ -18,9 +18,6 @@
 /// All functions throw std::runtime_error, which names the property.
 namespace vtkAvianLidarBirds
 {
-/// The text of a file. @param property property that holds the file name
-std::string TextOf(const char* property, const std::string& file);
-
 std::vector<avianlidar::BirdSpecies> BuiltInSpecies();
 
 /// The species of the user's table; none without a file.

@@ -15,9 +15,9 @@ namespace
 constexpr double Surely = 1.0 + 1e-5;
 }
 
-PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup)
+PolygonQuadrature::PolygonQuadrature(const ScanSetup& setup, double parts)
   : Setup(setup)
-  , Rule(setup)
+  , Rule(setup, parts)
 {
 }
 

@@ -68,7 +68,8 @@ struct PolygonBounds
 class PolygonQuadrature
 {
 public:
-  explicit PolygonQuadrature(const ScanSetup& setup);
+  /// @param parts number of parts of a range unit (partsOfUnit())
+  PolygonQuadrature(const ScanSetup& setup, double parts);
 
   /// Find the bounds of a beam that sees these polygons, and which polygons are dropped.
   void bound(const VisiblePolygons& seen, PolygonBounds& bounds);

@@ -17,7 +17,7 @@ namespace
 /// RangeUnits, where a beam reaches hundreds of units, takes twenty times as long.
 constexpr int RequestsBeforeSorting = 8;
 
-/// Energy of a pulse inside units [first, last).
+/// Energy of a rectangular pulse inside units [first, last).
 AVIANLIDAR_ALWAYS_INLINE double portionOfPulse(double energy, double begin, double width,
   double pulseFirst, double pulseLast, double first, double last)
 {
@@ -71,21 +71,37 @@ void ShareFinder::findShares(double first, double last)
     this->Sharers[this->ShareCount] = c;
     this->ShareCount += portion > 0.0;
   };
+  const auto portionOf = [&](std::size_t c)
+  {
+    if (pulses.shape.isRectangle())
+    {
+      return portionOfPulse(pulses.energies[c], pulses.begins[c], pulses.widths[c],
+        pulses.firsts[c], pulses.lasts[c], first, last);
+    }
+    const auto shareTo = [&](double unit)
+    { return pulses.shape.shareOf((unit - pulses.begins[c]) / pulses.widths[c]); };
+    const double from = pulses.firsts[c] >= first ? 0.0 : shareTo(first);
+    const double to = pulses.lasts[c] < last ? 1.0 : shareTo(last);
+    const bool meets = pulses.firsts[c] < last && pulses.lasts[c] >= first;
+    return meets ? pulses.energies[c] * (to - from) : 0.0;
+  };
   if (++this->Requests <= RequestsBeforeSorting)
   {
-    portionsOfPulses(pulses.energies.data(), pulses.begins.data(), pulses.widths.data(),
-      pulses.firsts.data(), pulses.lasts.data(), first, last, this->Portions.data(), count);
+    if (pulses.shape.isRectangle())
+    {
+      portionsOfPulses(pulses.energies.data(), pulses.begins.data(), pulses.widths.data(),
+        pulses.firsts.data(), pulses.lasts.data(), first, last, this->Portions.data(), count);
+    }
     for (std::size_t c = 0; c < count; ++c)
     {
-      add(static_cast<std::uint32_t>(c), this->Portions[c]);
+      add(static_cast<std::uint32_t>(c),
+        pulses.shape.isRectangle() ? this->Portions[c] : portionOf(c));
     }
     return;
   }
   for (const std::uint32_t c : this->contributionsNear(first, last))
   {
-    add(c,
-      portionOfPulse(pulses.energies[c], pulses.begins[c], pulses.widths[c], pulses.firsts[c],
-        pulses.lasts[c], first, last));
+    add(c, portionOf(c));
   }
 }
 
@@ -104,8 +120,8 @@ const std::vector<std::uint32_t>& ShareFinder::contributionsNear(double first, d
   }
   // No pulse overlaps more than their width + 2 units.
   const auto isBelow = [&](std::uint32_t c, double unit) { return firsts[c] < unit; };
-  const auto begin = std::lower_bound(
-    this->ByFirst.begin(), this->ByFirst.end(), first - std::ceil(pulses.width) - 2.0, isBelow);
+  const auto begin = std::lower_bound(this->ByFirst.begin(), this->ByFirst.end(),
+    first - std::ceil(pulses.shape.width()) - 2.0, isBelow);
   this->Near.assign(begin, std::lower_bound(begin, this->ByFirst.end(), last, isBelow));
   std::sort(this->Near.begin(), this->Near.end());
   return this->Near;

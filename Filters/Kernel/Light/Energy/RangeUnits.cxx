@@ -23,11 +23,11 @@ struct PulseExtent
 };
 
 /// Place `count` pulses by the lengths of their paths. @param unitPathLength length of path of a
-/// unit, m @param relativeWidth width of a pulse, units @param heads gets the share of each pulse
-/// in its first unit
+/// unit, m @param before, after extent of a pulse around its delay, units @param heads gets the
+/// part of each pulse in its first unit
 AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const double* energies,
-  double unitPathLength, double relativeWidth, double* begins, double* widths, double* firsts,
-  double* lasts, double* heads, std::size_t count)
+  double unitPathLength, double before, double after, double* begins, double* widths,
+  double* firsts, double* lasts, double* heads, std::size_t count)
 {
   double lowest = Infinity;
   double highest = -Infinity;
@@ -35,8 +35,8 @@ AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const dou
   for (std::size_t c = 0; c < count; ++c)
   {
     const double delay = lengths[c] / unitPathLength;
-    const double begin = delay - 0.5 * relativeWidth;
-    const double end = delay + 0.5 * relativeWidth;
+    const double begin = delay - before;
+    const double end = delay + after;
     // The width is taken after rounding, so that the shares still add up to 1.
     const double width = end - begin;
     const bool wide = width > 0.0;
@@ -62,11 +62,20 @@ AVIANLIDAR_MULTIVERSION PulseExtent placePulses(const double* lengths, const dou
 RangeUnitAccumulator::RangeUnitAccumulator(
   double samplingInterval, double pulseWidth, double rangeGate, double minimumRange)
   : UnitPathLength(SpeedOfLight * samplingInterval)
-  , RelativeWidth(pulseWidth / samplingInterval)
+  , Pulse(pulseWidth / samplingInterval)
   , GateUnits(unitsInsideGate(samplingInterval, rangeGate))
   , LeastLength(2.0 * minimumRange)
   , MostLength(2.0 * rangeGate)
 {
+}
+
+RangeUnitAccumulator::RangeUnitAccumulator(const Sensor& sensor, double parts)
+  : RangeUnitAccumulator(
+      sensor.samplingInterval / parts, 0.0, sensor.rangeGate, sensor.minimumRange)
+{
+  this->Pulse = ReceivedPulse(sensor, sensor.samplingInterval / parts);
+  this->GateUnits =
+    static_cast<std::int64_t>(parts) * unitsInsideGate(sensor.samplingInterval, sensor.rangeGate);
 }
 
 void RangeUnitAccumulator::clear()
@@ -116,7 +125,7 @@ void RangeUnitAccumulator::add(const double* ranges, const double* energies, std
 
 double RangeUnitAccumulator::lastUnitOf(double range) const
 {
-  return std::floor(2.0 * range / this->UnitPathLength + 0.5 * this->RelativeWidth);
+  return std::floor(2.0 * range / this->UnitPathLength + this->Pulse.after());
 }
 
 double RangeUnitAccumulator::mostAround(std::size_t number) const
@@ -131,37 +140,8 @@ double RangeUnitAccumulator::mostAround(std::size_t number) const
   return most;
 }
 
-void RangeUnitAccumulator::accumulate()
-{
-  this->Units.clear();
-  this->EnergyBeyondGate = this->LateEnergy;
-  const std::size_t count = this->Lengths.size();
-  for (std::vector<double>* v :
-    { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts, &this->Heads })
-  {
-    v->resize(count);
-  }
-  const PulseExtent extent = placePulses(this->Lengths.data(), this->Energies.data(),
-    this->UnitPathLength, this->RelativeWidth, this->Begins.data(), this->Widths.data(),
-    this->Firsts.data(), this->Lasts.data(), this->Heads.data(), count);
-  const double gate = static_cast<double>(this->GateUnits);
-  for (std::size_t c = 0; extent.highest >= gate && c < count; ++c)
-  {
-    if (this->Energies[c] > 0.0 && this->Lasts[c] >= gate)
-    {
-      const double inside =
-        this->Firsts[c] < gate ? (gate - this->Begins[c]) / this->Widths[c] : 0.0;
-      this->EnergyBeyondGate += this->Energies[c] * (1.0 - inside);
-    }
-  }
-  const double end = std::min(extent.highest + 1.0, gate);
-  for (double from = extent.lowest; from < end;)
-  {
-    from = this->addWindow(from, std::min(from + TableUnits, end));
-  }
-}
-
 /// Add what pulses put into units [from, to). @return the next unit that a pulse meets, or infinity
+template <bool IsRectangle>
 double RangeUnitAccumulator::addWindow(double from, double to)
 {
   const auto window = static_cast<std::size_t>(to - from);
@@ -172,7 +152,11 @@ double RangeUnitAccumulator::addWindow(double from, double to)
   {
     const double first = this->Firsts[c];
     const double last = this->Lasts[c];
-    const auto shareUpTo = [&](double unit) { return (unit - this->Begins[c]) / this->Widths[c]; };
+    const auto shareUpTo = [&](double unit)
+    {
+      const double part = (unit - this->Begins[c]) / this->Widths[c];
+      return IsRectangle ? part : this->Pulse.shareOf(part);
+    };
     if (!(this->Energies[c] > 0.0) || last < from)
     {
       continue;
@@ -213,5 +197,43 @@ double RangeUnitAccumulator::addWindow(double from, double to)
     this->Marks[word] = 0;
   }
   return next;
+}
+
+void RangeUnitAccumulator::accumulate()
+{
+  this->Units.clear();
+  this->EnergyBeyondGate = this->LateEnergy;
+  const std::size_t count = this->Lengths.size();
+  for (std::vector<double>* v :
+    { &this->Begins, &this->Widths, &this->Firsts, &this->Lasts, &this->Heads })
+  {
+    v->resize(count);
+  }
+  const PulseExtent extent = placePulses(this->Lengths.data(), this->Energies.data(),
+    this->UnitPathLength, this->Pulse.before(), this->Pulse.after(), this->Begins.data(),
+    this->Widths.data(), this->Firsts.data(), this->Lasts.data(), this->Heads.data(), count);
+  if (!this->Pulse.isRectangle())
+  {
+    std::transform(this->Heads.begin(), this->Heads.end(), this->Heads.begin(),
+      [this](double part) { return this->Pulse.shareOf(part); });
+  }
+  const double gate = static_cast<double>(this->GateUnits);
+  for (std::size_t c = 0; extent.highest >= gate && c < count; ++c)
+  {
+    if (this->Energies[c] > 0.0 && this->Lasts[c] >= gate)
+    {
+      const double inside = this->Firsts[c] < gate
+        ? this->Pulse.shareOf((gate - this->Begins[c]) / this->Widths[c])
+        : 0.0;
+      this->EnergyBeyondGate += this->Energies[c] * (1.0 - inside);
+    }
+  }
+  const double end = std::min(extent.highest + 1.0, gate);
+  for (double from = extent.lowest; from < end;)
+  {
+    const double to = std::min(from + TableUnits, end);
+    from = this->Pulse.isRectangle() ? this->addWindow<true>(from, to)
+                                     : this->addWindow<false>(from, to);
+  }
 }
 }

@@ -4,11 +4,11 @@
  * @brief Sums the energies of all paths of a beam in range units (range bins), without the noise.
  *
  * Light on a path of length l arrives after the time tau = l/c. The energy of the path arrives as a
- * rectangular pulse of width tau_e centred on tau. This energy is divided, exactly and in
- * proportion to the overlap, among the units m, [m tau_s, (m+1) tau_s), that the pulse overlaps. A
- * width of 0 gives a delta pulse at tau. Energy that would arrive before the pulse is sent, from
- * closer than c tau_e/4, is counted in the unit m = 0. A path shorter than twice the minimum range
- * is not recorded.
+ * pulse whose mean time is tau (ReceivedPulse.h), by default a rectangle of width tau_e. This
+ * energy is divided among the units m, [m tau_s, (m+1) tau_s), that the pulse overlaps, exactly and
+ * in proportion to what arrives in each. A width of 0 gives a delta pulse at tau. Energy that would
+ * arrive before the pulse is sent, from closer than c tau_e/4, is counted in the unit m = 0. A path
+ * shorter than twice the minimum range is not recorded.
  *
  * Only units with energy are stored. Memory grows with the numbers of contributions and of the
  * units that they meet (on average 1 + tau_e/tau_s per contribution), and not with the range. Sums
@@ -22,6 +22,8 @@
  */
 #ifndef avianlidar_RangeUnits_h
 #define avianlidar_RangeUnits_h
+
+#include "ReceivedPulse.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -59,6 +61,9 @@ public:
   /// @param minimumRange beginning of the gate, m. Contributions from outside the gate are dropped.
   RangeUnitAccumulator(
     double samplingInterval, double pulseWidth, double rangeGate, double minimumRange = 0.0);
+  /// Accumulator of a sensor's light. @param parts number of parts of equal length into which each
+  /// range unit is divided. A part then counts as a unit.
+  explicit RangeUnitAccumulator(const Sensor& sensor, double parts = 1.0);
 
   /// Remove the contributions of the previous beam.
   void clear();
@@ -68,6 +73,14 @@ public:
 
   /// Add `count` paths. @param ranges half the length of each path, m @param energies energies, J
   void add(const double* ranges, const double* energies, std::size_t count);
+
+  /// Take the contributions of another accumulator of the same sensor, in place of one's own.
+  void take(const RangeUnitAccumulator& other)
+  {
+    this->clear();
+    this->Lengths = other.Lengths;
+    this->Energies = other.Energies;
+  }
 
   /// Distribute all contributions added since clear() among the units.
   void accumulate();
@@ -84,12 +97,11 @@ public:
     const std::vector<double>& widths;
     const std::vector<double>& firsts; ///< first unit that the pulse meets
     const std::vector<double>& lasts;  ///< last unit that the pulse meets
-    double width;                      ///< width of every pulse that is not a delta pulse
+    const ReceivedPulse& shape;
   };
   Pulses pulses() const
   {
-    return { this->Energies, this->Begins, this->Widths, this->Firsts, this->Lasts,
-      this->RelativeWidth };
+    return { this->Energies, this->Begins, this->Widths, this->Firsts, this->Lasts, this->Pulse };
   }
 
   /// Lengths (m) of the contributions, after accumulate().
@@ -112,10 +124,11 @@ public:
 
 private:
   double recorded(double length, double energy);
+  template <bool IsRectangle>
   double addWindow(double from, double to);
 
   double UnitPathLength; // length of path in a unit, c tau_s, m
-  double RelativeWidth;  // width of the pulse, tau_e/tau_s
+  ReceivedPulse Pulse;   // in units
   std::int64_t GateUnits;
   double LeastLength;      // least length of a recorded path, m
   double MostLength;       // greatest length of a recorded path, m

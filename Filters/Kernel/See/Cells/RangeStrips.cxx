@@ -206,11 +206,17 @@ double sumOf(const double* values)
 }
 }
 
+double partsOfStrips(const ScanSetup& setup)
+{
+  return setup.settings.waveforms ? partsForSamples(setup) : partsOfUnit(setup);
+}
+
 RangeStrips::RangeStrips(const ScanSetup& setup)
   : Setup(setup)
-  , UnitLength(setup.sensor.rangeUnitLength())
+  , UnitLength(setup.sensor.rangeUnitLength() / partsOfStrips(setup))
   , Gate(setup.sensor.rangeGate)
-  , Offset(0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval)
+  , Offset(
+      ReceivedPulse(setup.sensor, setup.sensor.samplingInterval / partsOfStrips(setup)).before())
   , Shape(setup.sensor)
   , HasPlaces(haveVolumes(setup.media))
 {

@@ -74,6 +74,9 @@ struct SurfaceStrips
   double count;          ///< number of strips of each half
 };
 
+/// Number of parts of a range unit, each with strips of its own.
+double partsOfStrips(const ScanSetup& setup);
+
 /// Sums the rays of one beam after the other. Each thread needs its own object. The setup must
 /// outlive the object.
 class RangeStrips
@@ -112,7 +115,7 @@ private:
   void addHalves(std::size_t strip, double variance);
 
   const ScanSetup& Setup;
-  const double UnitLength; ///< length of a range unit, m
+  const double UnitLength; ///< length of a range unit, or of a part of it (partsOfStrips()), m
   const double Gate;       ///< range beyond which nothing is received, m
   const double Offset;     ///< half the length of the pulse, range units
   const BeamShape Shape;

@@ -87,21 +87,29 @@ double meanSquare(const DiscPolygon::Chord& chord, const RadialProfile& profile)
   return 0.5 / (s * s) *
     (1.0 - (b * std::exp(-s * s * b * b) - a * std::exp(-s * s * a * a)) / all);
 }
+
+/// Length of the pulse in range, m.
+double lengthOf(const Sensor& sensor)
+{
+  const ReceivedPulse pulse(sensor, sensor.samplingInterval);
+  return pulse.isRectangle() ? 0.5 * SpeedOfLight * sensor.pulseWidth
+                             : pulse.width() * sensor.rangeUnitLength();
+}
 }
 
-PolygonRule::PolygonRule(const ScanSetup& setup)
+PolygonRule::PolygonRule(const ScanSetup& setup, double parts)
   : Setup(setup)
   , Shape(setup.sensor)
-  , UnitLength(setup.sensor.rangeUnitLength())
-  , PulseLength(0.5 * SpeedOfLight * setup.sensor.pulseWidth)
+  , UnitLength(setup.sensor.rangeUnitLength() / parts)
+  , PulseLength(lengthOf(setup.sensor))
   , LastBorder(setup.sensor.rangeGate)
 {
-  const double half = 0.5 * setup.sensor.pulseWidth / setup.sensor.samplingInterval;
-  this->Offsets[0] = fraction(half);
-  this->Offsets[1] = fraction(-half);
+  const ReceivedPulse pulse(setup.sensor, setup.sensor.samplingInterval / parts);
+  this->Offsets[0] = fraction(pulse.before());
+  this->Offsets[1] = fraction(-pulse.after());
   constexpr double same = 1e-9; // difference, in units
   const double apart = std::fabs(this->Offsets[0] - this->Offsets[1]);
-  this->NumberOfOffsets = apart < same || apart > 1.0 - same ? 1 : 2;
+  this->NumberOfOffsets = apart < same || apart > 1.0 - same || !pulse.isRectangle() ? 1 : 2;
   this->Tangent2 = this->Shape.width().tangent * this->Shape.width().tangent;
   this->ShareOfArea = this->Shape.shareOfArea();
 }
@@ -644,17 +652,18 @@ bool PolygonRule::fits(const VisiblePolygons& seen, double most) const
 
 double PolygonRule::count(double height, const Extent& extent) const
 {
+  // Counted by whole range units, so that parts of units do not turn polygons into cells.
   const double nearest = 1.0 / extent.mostInverse;
   const double farthest = std::sqrt(1.0 + this->Tangent2) / extent.leastInverse;
   const double received = std::max(0.0, std::min(farthest, this->LastBorder) - nearest);
   if (!(this->curvatureOf(extent) + this->roundingOf(height, extent) <=
-        MostCurved * this->UnitLength) ||
-    !(farthest < MaximumGateUnits * this->UnitLength))
+        MostCurved * this->unitLength()) ||
+    !(farthest < MaximumGateUnits * this->unitLength()))
   {
     return std::numeric_limits<double>::infinity();
   }
   const bool rules = this->takesRules();
-  const double parts = 1.0 + this->NumberOfOffsets * received / this->UnitLength +
+  const double parts = 1.0 + this->NumberOfOffsets * received / this->unitLength() +
     std::log(farthest / nearest) / (rules ? MostStretchOfRule : MostStretch);
   if (!rules)
   {

@@ -67,9 +67,9 @@ struct PolygonNodes
 class PolygonRule
 {
 public:
-  explicit PolygonRule(const ScanSetup& setup);
+  PolygonRule(const ScanSetup& setup, double parts);
 
-  double unitLength() const { return this->UnitLength; }   ///< length of a range unit, m
+  double unitLength() const { return this->Setup.sensor.rangeUnitLength(); } ///< of a range unit, m
   double pulseLength() const { return this->PulseLength; } ///< length of the pulse in range, m
   double tangent2() const { return this->Tangent2; }       ///< tan(theta0.5)^2
 
@@ -147,7 +147,7 @@ private:
 
   const ScanSetup& Setup;
   const BeamShape Shape;    ///< shape of a round beam
-  const double UnitLength;  ///< length of a range unit, m
+  const double UnitLength;  ///< length of a range unit, or of a part of it (partsOfUnit()), m
   const double PulseLength; ///< length of the pulse in range, m
   const double LastBorder;  ///< range beyond which nothing is received, m
   double Offsets[2];        ///< ranges at which a pulse begins or ends at a border, units modulo 1

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Table.h"
 
+#include "RegularFile.h"
+
 #include <algorithm>
 #include <charconv>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -47,6 +50,24 @@ double TableLine::number(std::size_t column, const char* name, double least, dou
 void TableLine::fail(const std::string& message) const
 {
   throw std::runtime_error(this->Place + ": " + message);
+}
+
+std::string textOfFile(const char* property, const std::string& file)
+{
+  const std::string name = std::string(property) + " " + file;
+  const std::string irregular = whyNotRegular(file);
+  if (!irregular.empty())
+  {
+    throw std::runtime_error(name + ": " + irregular);
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream)
+  {
+    throw std::runtime_error(name + " cannot be read");
+  }
+  return text.str();
 }
 
 void readTable(const std::string& text, const std::string& file,
