@@ -399,7 +399,9 @@ avianlidar::Sensor vtkAvianLidarBeamSource::vtkInternals::SensorOf(const Source&
         "Wavelength", WavelengthOf(self), "the nanometres of such a frequency") +
       ")";
   }
-  vtkAvianLidarRequire(NameProperties(error));
+  const bool ofFile = error.rfind("pulse_samples", 0) == 0 && !self.PulseFileName.empty();
+  vtkAvianLidarRequire(
+    NameProperties(error), ofFile ? ("PulseFileName " + self.PulseFileName + ": ").c_str() : "");
   vtkAvianLidarRequire(
     NameProperties(avianlidar::checkPhotonLimits(self.FalseAlarmsPerScan, self.DynamicRange)));
   if (sensor.receiverModel == avianlidar::ReceiverModel::Photons)

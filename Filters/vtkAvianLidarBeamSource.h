@@ -284,11 +284,13 @@ public:
   vtkAvianLidarPropertyMacro(ResponseTime, double, 0.0);
 
   /// Samples per second of the waveforms of an echo filter, Hz: a whole number of samples, 1 to
-  /// 1000, in each SamplingInterval. Default 0: one sample. Echoes do not depend on this rate.
+  /// 100, in each SamplingInterval. Default 0: one sample. The rate acts on waveforms, and changes
+  /// echoes of beams in cells by about 0.02 % while waveforms are recorded.
   vtkAvianLidarPropertyMacro(DigitiserRate, double, 0.0);
 
-  /// Bits of a waveform's sample, 4 to 32. The digitiser reaches from -1/15 of the power that
-  /// saturates a range unit (assumed) to this power. Default 0: samples are not rounded.
+  /// Bits of a waveform's sample, 4 to 32. The highest level of the digitiser is the power that
+  /// saturates a range unit. A sixteenth of the levels lies below 0 (assumed). Default 0: samples
+  /// are not rounded.
   vtkAvianLidarPropertyMacro(DigitiserBits, double, 0.0);
 
   /// Frequency nu of the light, Hz, 1 to 1e30. Default 3.313e14 (905 nm).

@@ -5,20 +5,27 @@
 #include "GeodeticFrame.h"
 #include "LasFormat.h"
 #include "ReadCloud.h"
+#include "Sensor.h"
 #include "vtkAvianLidarAbort.h"
+#include "vtkAvianLidarArrays.h"
+#include "vtkAvianLidarCells.h"
 #include "vtkAvianLidarCloudFields.h"
-#include "vtkAvianLidarNames.h"
 #include "vtkAvianLidarPrint.h"
+#include "vtkAvianLidarRequire.h"
 
+#include "vtkCellData.h"
+#include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPointSet.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
+#include <map>
 #include <set>
 
 namespace fields = vtkAvianLidarCloudFields;
@@ -228,6 +235,139 @@ private:
   std::set<std::string> Names;
 };
 
+/// Returns the levels of the digitiser, with 0 bits unless the field data have all of its values.
+formats::LasDescriptor LevelsOf(vtkFieldData* data)
+{
+  double upper = 0.0, interval = 0.0, rate = 0.0, bits = 0.0;
+  const auto find = [data](const char* name, double& value) {
+    return names::GetFieldValue(data, { name, "" }, value);
+  };
+  find("digitiser_rate", rate);
+  formats::LasDescriptor levels;
+  if (find(names::UpperEnergyLimit.name, upper) && find("sampling_interval", interval) &&
+    find("digitiser_bits", bits) && upper > 0.0 && bits >= 4.0 && bits <= 32.0)
+  {
+    const double highest = upper / std::max(1.0, std::round(rate * interval));
+    levels.bits = static_cast<int>(bits);
+    const double below = std::exp2(levels.bits) / 16.0; // levels below 0, as in BeamWaveforms
+    levels.gain = highest / (std::exp2(levels.bits) - 1.0 - below);
+    levels.offset = -below * levels.gain;
+  }
+  return levels;
+}
+
+/// Line of input port 1.
+struct Stretch
+{
+  vtkIdType begin = 0; ///< first sample
+  vtkIdType size = 0;
+  double first = 0.0; ///< time of the first sample, s
+  double half = 0.0;  ///< half of the time between two samples, s
+  std::int64_t number = -1;
+};
+
+/// Lines by beam, time of the beam, us, and end, s.
+using Stretches = std::map<std::array<double, 3>, Stretch>;
+
+Stretches FindStretches(vtkPolyData* from)
+{
+  const auto need = [](vtkFieldData* data, const names::Name& name, vtkIdType size)
+  {
+    vtkDataArray* array = data->GetArray(name.name);
+    failIf(!array || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != size,
+      "input port 1 (waveforms): the array '", name.name, "' is missing, expected ", size,
+      " numbers");
+    return array;
+  };
+  const vtkIdType lines = from->GetNumberOfLines();
+  vtkDataArray* times = need(from->GetPointData(), names::SampleTime, from->GetNumberOfPoints());
+  vtkDataArray* beams = need(from->GetCellData(), names::BeamId, lines);
+  vtkDataArray* fired = need(from->GetCellData(), names::Timestamp, lines);
+  need(from->GetPointData(), names::Sample, from->GetNumberOfPoints());
+  vtkAvianLidarRequire(vtkAvianLidarCellsError(from->GetLines(), from->GetNumberOfPoints()),
+    "input port 1 (waveforms): ");
+  Stretches all;
+  double half = 0.0;
+  for (vtkIdType line = 0; line < lines; ++line)
+  {
+    Stretch one;
+    const vtkIdType* ids = nullptr;
+    from->GetLines()->GetCellAtId(line, one.size, ids);
+    constexpr vtkIdType most = 1 << 28; // packets below 4 GiB, also with padding
+    const vtkIdType last = one.size - 1;
+    failIf(one.size < 1 || one.size > most || ids[last] != ids[0] + last,
+      "input port 1 (waveforms): line ", line, " does not have 1 to ", most, " consecutive points");
+    one.begin = ids[0];
+    one.first = fields::ValueOf(times, ids[0], 0.0);
+    const double end = fields::ValueOf(times, ids[last], 0.0);
+    one.half = last > 0 ? 0.5 * (end - one.first) / static_cast<double>(last) : 0.0;
+    half = half > 0.0 ? half : one.half;
+    failIf(last > 0 && !(half > 0.0 && half < 1e-3 && std::abs(one.half - half) < 1e-13),
+      "input port 1 (waveforms): line ", line, " has samples every ", 2.0 * one.half,
+      " s, expected the same positive time for all lines");
+    all[{ fields::ValueOf(beams, line, 0.0), fields::ValueOf(fired, line, 0.0), end + one.half }] =
+      one;
+  }
+  return all;
+}
+
+/// Returns the waveforms of the points. @param place function from a point of the input, with its
+/// number, to the system of the file
+formats::LasWaveforms WaveformsOf(vtkPointSet* input, vtkPolyData* from,
+  const std::function<Point(const Point&, std::int64_t)>& place,
+  const avianlidar::KeepGoing& keepGoing)
+{
+  Stretches all = FindStretches(from);
+  vtkDataArray* beams = fields::Need(input, names::BeamId.name);
+  vtkDataArray* fired = fields::Need(input, names::Timestamp.name);
+  vtkDataArray* ranges = fields::Need(input, names::Distance.name);
+  const auto timeOf = [ranges](std::int64_t i)
+  { return 2.0 / avianlidar::SpeedOfLight * fields::ValueOf(ranges, i, 0.0); };
+  formats::LasWaveforms waveforms;
+  waveforms.levels = LevelsOf(from->GetFieldData());
+  std::vector<Stretch> used;
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    const double beam = fields::ValueOf(beams, i, 0.0), time = fields::ValueOf(fired, i, 0.0);
+    const auto found = all.lower_bound({ beam, time, timeOf(i) });
+    const bool isThere = found != all.end() && found->first[0] == beam && found->first[1] == time &&
+      found->second.first - found->second.half <= timeOf(i);
+    if (isThere && found->second.number < 0)
+    {
+      Stretch& one = found->second;
+      one.number = static_cast<std::int64_t>(used.size());
+      used.push_back(one);
+      waveforms.stretches.emplace_back(one.begin, static_cast<std::uint32_t>(one.size));
+      waveforms.levels.spacing = std::max(
+        waveforms.levels.spacing, static_cast<std::uint32_t>(std::lround(2e12 * one.half)));
+    }
+    waveforms.ofPoint.push_back(isThere ? found->second.number : -1);
+    formats::goOn(keepGoing, i, input->GetNumberOfPoints(), 0.0, 0.0);
+  }
+  vtkDataArray* samples = from->GetPointData()->GetArray(names::Sample.name);
+  waveforms.sample = [samples](std::int64_t i) { return samples->GetComponent(i, 0); };
+  waveforms.line = [=](std::int64_t i, std::int64_t stretch) -> std::array<float, 4>
+  {
+    constexpr double apart = 1e-8; // time between two places on the line, s
+    const Stretch& one = used[stretch];
+    Point at, ahead, begin, end;
+    input->GetPoint(i, at.data());
+    from->GetPoint(one.begin, begin.data());
+    from->GetPoint(one.begin + one.size - 1, end.data());
+    const double span = 2.0 * one.half * static_cast<double>(one.size - 1); // s
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      ahead[axis] = at[axis] + (span > 0.0 ? apart / span * (end[axis] - begin[axis]) : 0.0);
+    }
+    at = place(at, i);
+    ahead = place(ahead, i);
+    const auto slope = [&](int axis)
+    { return static_cast<float>(1e-12 / apart * (ahead[axis] - at[axis])); };
+    return { static_cast<float>(1e12 * (timeOf(i) - one.first)), slope(0), slope(1), slope(2) };
+  };
+  return waveforms;
+}
+
 /// Chooses the frame of the written points. Sets origin and zone of `geodesy` and the output's WKT.
 Frame PlaceFile(vtkPointSet* input, int system, int zone,
   const std::function<void(std::string)>& warn, GeodeticFrame& geodesy, formats::LasOutput& output)
@@ -264,6 +404,20 @@ Frame PlaceFile(vtkPointSet* input, int system, int zone,
 vtkStandardNewMacro(vtkAvianLidarLASWriter);
 
 //------------------------------------------------------------------------------
+vtkAvianLidarLASWriter::vtkAvianLidarLASWriter()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarLASWriter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
 {
   this->RoundingBound = 0.0;
@@ -289,15 +443,38 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
   const Frame target =
     PlaceFile(input, this->CoordinateSystem, this->UTMZone, warn, geodesy, output);
   output.degrees = formats::hasDegrees(output.crs);
+  const auto place = [&](const Point& point, std::int64_t i)
+  { return target == Frame::ENU ? point : fields::Carry(geodesy, Frame::ENU, target, point, i); };
   output.position = [&](std::int64_t i)
   {
     Point point;
     input->GetPoint(i, point.data());
-    return target == Frame::ENU ? point : fields::Carry(geodesy, Frame::ENU, target, point, i);
+    return place(point, i);
   };
-
   const auto keepGoing = vtkAvianLidarAbort::KeepGoing(this);
+  auto* waveforms = vtkPolyData::SafeDownCast(this->GetInputDataObject(1, 0));
+  if (waveforms && waveforms->GetNumberOfLines() > 0)
+  {
+    failIf(output.compressed, "LAZ cannot hold waveforms (input port 1): write LAS");
+    output.waveforms = WaveformsOf(input, waveforms, place, keepGoing);
+    output.waveforms->legacy = this->LegacyFormat;
+    const auto& of = output.waveforms->ofPoint;
+    const auto missing = std::count(of.begin(), of.end(), -1);
+    if (missing > 0)
+    {
+      warn(" has " + std::to_string(missing) + " of " + std::to_string(of.size()) +
+        " points without a waveform.");
+    }
+  }
+
   avianlidar::OutputFile file(this->FileName);
+  std::optional<avianlidar::OutputFile> packets;
+  if (output.waveforms && this->ExternalWaveforms)
+  {
+    packets.emplace(std::filesystem::path(file.name()).replace_extension(".wdp").string());
+    failIf(packets->isSameAs(file),
+      "FileName is the name of the waveforms beside it, expected another ending, such as .las");
+  }
   const formats::LasMeasure measure = formats::measureLas(output, keepGoing);
   const double bound =
     std::max({ measure.axes[0].bound(), measure.axes[1].bound(), measure.axes[2].bound() });
@@ -311,11 +488,11 @@ void vtkAvianLidarLASWriter::WriteCloud(vtkPointSet* input)
     warn(" is without the field data " + fields::Quoted(left) +
       ": they do not fit into the 65535 bytes of a text area.");
   }
-  formats::writeLas(file, output, measure, keepGoing);
-  file.commit();
+  formats::writeLas(file, packets ? &*packets : nullptr, output, measure, keepGoing);
+  packets ? avianlidar::OutputFile::commitBoth(*packets, file) : file.commit();
   this->RoundingBound = bound;
 }
 
 //------------------------------------------------------------------------------
-vtkAvianLidarPrintSelfMacro(
-  vtkAvianLidarLASWriter, CoordinateSystem, UTMZone, SourceId, WriteAllArrays, RoundingBound);
+vtkAvianLidarPrintSelfMacro(vtkAvianLidarLASWriter, CoordinateSystem, UTMZone, SourceId,
+  WriteAllArrays, LegacyFormat, ExternalWaveforms, RoundingBound);

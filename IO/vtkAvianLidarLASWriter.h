@@ -2,7 +2,7 @@
 /**
  * @class vtkAvianLidarLASWriter
  * @brief Writes echoes as LAS 1.4, or as LAZ if FileName ends with .laz, with a coordinate
- * reference system and all arrays.
+ * reference system, all arrays and waveforms.
  *
  * Input port 0 is a vtkPointSet. Points have the record format 6, or 7 with the point array `rgb`.
  * The fields of LAS hold `intensity`, `return_number`, `number_of_returns`, `timestamp`,
@@ -17,8 +17,17 @@
  * Coordinates are 32-bit integers with the finest scale, at least 1e-6 m, that the extent of the
  * points allows. Field data become one line of JSON.
  *
- * The writer gives the errors of vtkAvianLidarCloudWriter, and an error for LAZ in a build without
- * LASzip or for a `crs_wkt` that is not WKT.
+ * Input port 1 (optional) is vtkPolyData with waveforms, as from vtkAvianLidarEchoFilter: lines of
+ * equally spaced samples, with the point arrays `sample_time` and `sample` and the cell arrays
+ * `beam_id` and `timestamp`. Points then have format 9, or 10 with `rgb`. The waveform of a point
+ * has the same `beam_id` and `timestamp`, and contains the time of `distance_m`. A warning counts
+ * points without a waveform. Waveforms without a point are not written. Samples are the codes of
+ * the digitiser (field data `digitiser_bits`), or 32 bits from the least to the greatest sample, J.
+ * Each waveform is a line in the file's system, tangential to the beam at the point. If the
+ * waveforms have more than 255 lengths, short waveforms are padded with 0 J.
+ *
+ * The writer gives the errors of vtkAvianLidarCloudWriter, and an error for LAZ with waveforms or
+ * in a build without LASzip, or for a `crs_wkt` that is not WKT.
  *
  * @code
  * writer->SetInputConnection(echoes->GetOutputPort());
@@ -77,13 +86,29 @@ public:
   /// `distance_m` and `laser_id`. Default: on.
   vtkAvianLidarSwitchMacro(WriteAllArrays, true);
 
+  ///@{
+  /// Input port 1, waveforms (optional). Without lines, the file is the same as without this input.
+  void SetWaveformsConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetWaveformsData(vtkDataObject* waveforms) { this->SetInputData(1, waveforms); }
+  ///@}
+
+  /// Whether points with waveforms have the record format 4, or 5 with colours, for programs that
+  /// do not read the formats 9 and 10. These formats hold 7 returns, classes up to 31 (above: 1)
+  /// and whole degrees of the scan angle from -90 to 90. Default: off.
+  vtkAvianLidarSwitchMacro(LegacyFormat, false);
+
+  /// Whether waveforms are written to a file of the same name with the ending .wdp. Default: off,
+  /// waveforms are in the LAS file.
+  vtkAvianLidarSwitchMacro(ExternalWaveforms, false);
+
   /// Largest rounding error of a coordinate in the last file, m, or 0 before the first file.
   vtkGetMacro(RoundingBound, double);
 
 protected:
-  vtkAvianLidarLASWriter() = default;
+  vtkAvianLidarLASWriter();
   ~vtkAvianLidarLASWriter() override = default;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteCloud(vtkPointSet* input) override;
 
   double RoundingBound = 0.0;

@@ -14,8 +14,12 @@
 #include "vtkAvianLidarRequire.h"
 #include "vtkAvianLidarText.h"
 
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -60,13 +64,18 @@ bool MoveToOrigin(Cloud& cloud, int zone)
   GeodeticFrame geodesy;
   geodesy.setOrigin(o[0], o[1], o[2]);
   geodesy.setZone(geocentric ? 31 : zone);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
+  const auto move = [&](Cloud& one)
   {
-    double* at = cloud.points.data() + 3 * i;
-    const formats::Point moved =
-      fields::Carry(geodesy, from, Frame::ENU, { at[0], at[1], at[2] }, static_cast<vtkIdType>(i));
-    std::copy(moved.begin(), moved.end(), at);
-  }
+    for (std::size_t i = 0; i < one.size(); ++i)
+    {
+      double* at = one.points.data() + 3 * i;
+      const formats::Point moved = fields::Carry(
+        geodesy, from, Frame::ENU, { at[0], at[1], at[2] }, static_cast<vtkIdType>(i));
+      std::copy(moved.begin(), moved.end(), at);
+    }
+  };
+  move(cloud);
+  std::for_each(cloud.waveforms.begin(), cloud.waveforms.end(), move);
   return true;
 }
 
@@ -89,6 +98,40 @@ void Place(Cloud& cloud, bool wantLocal, vtkFieldData* data)
     names::SetFieldInteger(data, names::UTMZone, zone);
   }
 }
+
+/// Fills in the waveforms of a cloud, with arrays of the points to which they belong.
+void FillWaveforms(Cloud& cloud, vtkPolyData* points, vtkPolyData* output)
+{
+  fields::ToPolyData(cloud.waveforms.front(), output);
+  vtkNew<vtkCellArray> lines;
+  vtkIdType sample = 0;
+  for (const std::size_t end : cloud.lineEnds)
+  {
+    lines->InsertNextCell(static_cast<int>(end - static_cast<std::size_t>(sample)));
+    for (; sample < static_cast<vtkIdType>(end); ++sample)
+    {
+      lines->InsertCellPoint(sample);
+    }
+  }
+  output->SetVerts(nullptr);
+  output->SetLines(lines);
+  for (const names::Name& name : { names::BeamId, names::Timestamp })
+  {
+    if (vtkDataArray* from = points->GetPointData()->GetArray(name.name))
+    {
+      auto array = vtkSmartPointer<vtkDataArray>::Take(from->NewInstance());
+      array->SetName(name.name);
+      names::SetUnit(array, name.unit);
+      for (const std::size_t point : cloud.linePoints)
+      {
+        array->InsertNextTuple(static_cast<vtkIdType>(point), from);
+      }
+      output->GetCellData()->AddArray(array);
+    }
+  }
+  output->GetFieldData()->ShallowCopy(points->GetFieldData());
+  output->GetPointData()->SetActiveScalars(names::Sample.name);
+}
 }
 
 struct vtkAvianLidarPointCloudReader::vtkInternals
@@ -107,6 +150,7 @@ vtkAvianLidarPointCloudReader::vtkAvianLidarPointCloudReader()
   : Internals(new vtkInternals)
 {
   this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(2);
 }
 
 //------------------------------------------------------------------------------
@@ -239,20 +283,26 @@ int vtkAvianLidarPointCloudReader::RequestInformation(
   {
     internals.Times.push_back(turn.time);
   }
-  fields::SetTimes(internals.Times, outputVector->GetInformationObject(0));
+  for (int port = 0; port < 2; ++port)
+  {
+    fields::SetTimes(internals.Times, outputVector->GetInformationObject(port));
+  }
   return 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkAvianLidarPointCloudReader::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
     {
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      vtkPolyData* output = vtkPolyData::GetData(info);
+      const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+      vtkInformation* info = outputVector->GetInformationObject(port);
+      vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+      vtkPolyData* waveforms = vtkPolyData::GetData(outputVector, 1);
       output->Initialize();
+      waveforms->Initialize();
       const vtkInternals& internals = *this->Internals;
       avianlidar::failIf(internals.Files.empty(), "FileName is not set, expected the name of a ",
         formats::knownEndings(), " file");
@@ -272,7 +322,10 @@ int vtkAvianLidarPointCloudReader::RequestData(
             times.empty() || isSeries ? nullptr : &internals.Packets, step);
           if (!times.empty())
           {
-            output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[step]);
+            for (vtkPolyData* one : { output, waveforms })
+            {
+              one->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[step]);
+            }
           }
           std::string all;
           for (const std::string& warning : cloud.warnings)
@@ -293,6 +346,10 @@ int vtkAvianLidarPointCloudReader::RequestData(
           const bool simulated = output->GetPointData()->HasArray(names::Energy.name) != 0;
           output->GetPointData()->SetActiveScalars(
             simulated ? names::Energy.name : names::Intensity.name);
+          if (!cloud.waveforms.empty())
+          {
+            FillWaveforms(cloud, output, waveforms);
+          }
         });
     });
 }

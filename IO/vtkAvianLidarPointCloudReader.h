@@ -6,7 +6,14 @@
  * The file extension gives the format. Documentation/reference/formats.md lists the formats and the
  * parts of each format that the reader reads, refuses or leaves out with a warning.
  *
- * The reader does not have an input. Output port 0 is vtkPolyData in double precision, with a
+ * The reader does not have an input. Output port 1 has the waveforms of a LAS file, else it is
+ * empty: a line for each waveform packet to which points refer, with a point for each sample. The
+ * point arrays are `sample`, in the unit of the file or in V, and `sample_time`, s. If the points
+ * have `distance_m`, times count from the pulse, and the samples also have `distance_m`. Otherwise
+ * times count from the first sample. The cell arrays `beam_id` and `timestamp` are those of a
+ * point. A warning gives the reason if waveforms cannot be read.
+ *
+ * Output port 0 is vtkPolyData in double precision, with a
  * vertex for each point. The arrays `intensity` (0 to 255), `laser_id`, `distance_m`, `azimuth`,
  * `vertical_angle`, `timestamp`, `return_number`, `number_of_returns`, `rgb`, `semantic_label` and
  * `instance_id` are the same for all formats. Other arrays keep the names and types that they have

@@ -83,8 +83,11 @@ struct Cloud
   std::vector<Note> notes;
   /// Position of the sensor, m, in the frame of the points. No value if the format lacks it.
   std::optional<std::array<double, 3>> sensor;
-  std::string crs;                   ///< coordinate reference system, WKT; empty if unknown
-  std::vector<std::string> warnings; ///< sentences on parts left out and on assumptions
+  std::string crs;                     ///< coordinate reference system, WKT; empty if unknown
+  std::vector<Cloud> waveforms;        ///< samples of all waveforms as one cloud, or empty
+  std::vector<std::size_t> lineEnds;   ///< of waveforms: one past the last sample of each line
+  std::vector<std::size_t> linePoints; ///< of waveforms: a point to which each line belongs
+  std::vector<std::string> warnings;   ///< sentences on parts left out and on assumptions
 
   std::size_t size() const { return this->points.size() / 3; }
 };

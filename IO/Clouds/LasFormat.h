@@ -4,10 +4,15 @@
  * @brief Reads and writes LAS, the ASPRS exchange format of point clouds.
  *
  * Source: "LAS Specification 1.4 - R15", American Society for Photogrammetry and Remote Sensing
- * (2019). The code writes version 1.4, point data record format 6, or 7 with colours. It reads
- * versions 1.0 to 1.4, formats 0 to 10, with extra bytes, and leaves out waveforms (formats 4, 5, 9
- * and 10) and withheld points. LAZ files have compressed point records and no waveforms
- * (LazFormat.h).
+ * (2019). The code writes version 1.4, point data record format 6, or 7 with colours; with
+ * waveforms 9 or 10, or the legacy formats 4 or 5. It reads versions 1.0 to 1.4, formats 0 to 10,
+ * with extra bytes and uncompressed waveforms, and leaves out withheld points. LAZ files have
+ * compressed point records and no waveforms (LazFormat.h).
+ *
+ * **Waveforms.** Packets of samples are an extended record of the file, or a file of the same name
+ * with the ending .wdp. Sample k of a point at X lies at X + (k s - L) d, where s is the time
+ * between two samples, L the time from the first sample to the point, and d, the change of a place
+ * on the line with time, points away from the sensor.
  *
  * **Rounding.** Coordinates are 32-bit integers: c = offset + scale * n. chooseAxis() takes the
  * finest scale of 10^-6, 10^-5, ... m that the extent of the cloud allows (from 10^-9 for degrees).
@@ -22,6 +27,7 @@
 #include "OutputFile.h"
 
 #include <limits>
+#include <utility>
 
 namespace avianlidar::formats
 {
@@ -35,6 +41,14 @@ constexpr double LasScanAngleStep = 0.006;     // unit of a stored scan angle, d
 constexpr double LasIntensityStep = 1.0 / 257; // unit of a stored intensity: 65535 is intensity 255
 constexpr int LasWithheld = 4;                 // flag of a deleted point
 constexpr std::size_t LasLongestName = 31;     // greatest length of a name, bytes
+constexpr std::size_t LasEvlrHeaderSize = 60;
+constexpr std::size_t LasPacketSize = 29;       // waveform packet of a point record, bytes
+constexpr std::size_t LasDescriptorSize = 26;   // contents of a waveform packet descriptor, bytes
+constexpr std::size_t LasMostDescriptors = 255; // records 100 to 354
+constexpr int LasDescriptorRecord = 99;         // record of the descriptor 0, which does not exist
+constexpr int LasPacketsRecord = 65535;         // extended record of all packets
+constexpr int LasPacketsInside = 2;             // bit of the global encoding
+constexpr int LasPacketsBeside = 4;             // bit of the global encoding
 constexpr std::size_t LasMostExtraFields = LasLongestVlr / LasExtraBytesSize;
 
 // Names of arrays for fields of LAS that only files of other sensors fill in.
@@ -118,6 +132,29 @@ enum LasCoreIndex
   LasCoreSize
 };
 
+/// Contents of a waveform packet descriptor.
+struct LasDescriptor
+{
+  int bits = 0; ///< bits of a sample; 0 if the descriptor is missing
+  int compression = 0;
+  std::uint32_t samples = 0;
+  std::uint32_t spacing = 0; ///< time between two samples, ps
+  double gain = 1.0;         ///< value of a step of the stored number
+  double offset = 0.0;       ///< value of the stored number 0
+};
+
+/// Waveforms to be written.
+struct LasWaveforms
+{
+  std::vector<std::pair<std::int64_t, std::uint32_t>> stretches; ///< first and number of samples
+  std::function<double(std::int64_t)> sample;                    ///< value of a sample, J
+  std::vector<std::int64_t> ofPoint;                             ///< stretch of a point, or -1
+  /// Function that gives L, ps, and d, m/ps, of a point on a stretch.
+  std::function<std::array<float, 4>(std::int64_t point, std::int64_t stretch)> line;
+  LasDescriptor levels; ///< levels of the digitiser; 0 bits without levels
+  bool legacy = false;  ///< whether points have format 4 or 5
+};
+
 /// Contents of a file to be written.
 struct LasOutput
 {
@@ -134,6 +171,7 @@ struct LasOutput
   bool degrees = false;    ///< whether x and y are in degrees
   std::string description; ///< text of the text area, at most LasLongestVlr bytes
   std::vector<Field> extra;
+  std::optional<LasWaveforms> waveforms;
 };
 
 /// Result of a pass over the points.
@@ -141,23 +179,29 @@ struct LasMeasure
 {
   std::array<LasAxis, 3> axes;
   std::array<std::uint64_t, LasMostReturns> returns{}; ///< number of points of each return number
+  LasDescriptor levels;                                ///< levels of all packets
+  std::vector<std::uint32_t> lengths;                  ///< number of samples of each descriptor
+  /// Offset of each packet from their header, bytes, and index in `lengths`.
+  std::vector<std::pair<std::uint64_t, std::uint8_t>> packets;
+  std::uint64_t packetsEnd = LasEvlrHeaderSize; ///< offset of the end of the packets, bytes
 };
 
-/// Makes the first pass, which finds scale, offset and bounds of each axis. Throws FormatError if a
-/// coordinate is not finite or too large.
+/// Makes the first pass, which finds scale, offset and bounds of each axis, and levels and places
+/// of the packets. Throws FormatError if a coordinate is not finite or too large, or if a sample is
+/// not finite.
 LasMeasure measureLas(const LasOutput& output, const KeepGoing& keepGoing);
 
-/// Makes the second pass, which writes the file. Points are requested one after the other and not
-/// kept.
-void writeLas(
-  OutputFile& file, const LasOutput& output, const LasMeasure& measure, const KeepGoing& keepGoing);
+/// Makes the second pass, which writes the file. Points and samples are requested one after the
+/// other and not kept. @param packets file of the waveform packets, or null for packets inside
+void writeLas(OutputFile& file, OutputFile* packets, const LasOutput& output,
+  const LasMeasure& measure, const KeepGoing& keepGoing);
 
 /// Returns a name of at most LasLongestName bytes: whole UTF-8 characters of `name`, then `ending`.
 std::string cutName(const std::string& name, const std::string& ending = {});
 
 /// Reads a cloud. Throws FormatError if the file is not a LAS file, has another version or format,
-/// or is cut short.
-Cloud readLas(ByteSource& source, const KeepGoing& keepGoing);
+/// or is cut short. @param packets file of the waveform packets beside the file, or null
+Cloud readLas(ByteSource& source, ByteSource* packets, const KeepGoing& keepGoing);
 }
 
 #endif

@@ -3,9 +3,12 @@
 #include "FieldTable.h"
 #include "LasFormat.h"
 #include "LazFormat.h"
+#include "Sensor.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 
 namespace avianlidar::formats
 {
@@ -14,7 +17,6 @@ namespace
 using Bytes = std::vector<unsigned char>;
 
 constexpr std::size_t ShortestHeader = 227;
-constexpr std::size_t EvlrHeaderSize = 60;
 constexpr std::uint64_t LongestText = 1 << 24;
 constexpr int WktFlag = 16; // bit of the global encoding
 
@@ -44,7 +46,9 @@ struct Header
   std::array<LasAxis, 3> axes;
   LasLayout layout;
   bool compressed = false;
-  std::uint64_t room = 0; ///< space for uncompressed points in the file, bytes
+  int encoding = 0;            ///< bits of the global encoding
+  std::uint64_t packetsAt = 0; ///< offset of the header of all waveform packets; 0 if unknown
+  std::uint64_t room = 0;      ///< space for uncompressed points in the file, bytes
 };
 
 std::string textOf(const unsigned char* bytes, std::size_t length)
@@ -61,6 +65,7 @@ Header readHeader(ByteSource& source)
     "this is not a LAS file: it does not begin with LASF and a header");
   Header header;
   header.minor = h[25];
+  header.encoding = h[6];
   header.hasWkt = (h[6] & WktFlag) != 0;
   failIf(h[24] != 1 || header.minor > 4, "its version is ", std::to_string(h[24]), ".",
     std::to_string(h[25]), ", expected 1.0 to 1.4");
@@ -70,6 +75,10 @@ Header readHeader(ByteSource& source)
   header.compressed = (h[104] & 0xC0) != 0;
   header.layout = layoutOf(h[104] & 0x3F, load<std::uint16_t>(h.data() + 105));
   header.points = load<std::uint32_t>(h.data() + 107);
+  if (header.minor >= 3 && std::min(h.size(), header.size) >= ShortestHeader + 8)
+  {
+    header.packetsAt = load<std::uint64_t>(h.data() + ShortestHeader);
+  }
   if (header.minor >= 4 && h.size() == LasHeaderSize && header.size >= LasHeaderSize)
   {
     header.evlrsAt = load<std::uint64_t>(h.data() + 235);
@@ -177,10 +186,12 @@ struct Records
   std::vector<ExtraField> fields;
   Bytes laz;
   Bytes keys, doubles, texts; ///< GeoTIFF keys and their parameters
+  std::array<LasDescriptor, LasMostDescriptors + 1> descriptors;
+  std::string sampleUnit = "V";
 };
 
-void takeRecord(const std::string& user, int record, const Bytes& content, const LasLayout& layout,
-  Cloud& cloud, Records& records)
+void takeRecord(const std::string& user, int record, const std::string& words, const Bytes& content,
+  const LasLayout& layout, Cloud& cloud, Records& records)
 {
   if (user == "LASF_Projection" && record == 2112)
   {
@@ -198,6 +209,16 @@ void takeRecord(const std::string& user, int record, const Bytes& content, const
   {
     records.laz = content;
   }
+  else if (user == "LASF_Spec" && record > LasDescriptorRecord &&
+    record <= LasDescriptorRecord + static_cast<int>(LasMostDescriptors) &&
+    content.size() >= LasDescriptorSize)
+  {
+    const unsigned char* at = content.data();
+    records.descriptors[record - LasDescriptorRecord] = { at[0], at[1], load<std::uint32_t>(at + 2),
+      load<std::uint32_t>(at + 6), load<double>(at + 10), load<double>(at + 18) };
+    const std::string unit = unitOf(words);
+    records.sampleUnit = unit.empty() ? records.sampleUnit : unit;
+  }
   else if (user == "LASF_Spec" && record == 3)
   {
     cloud.notes.push_back({ "description", "", {}, { textOf(content.data(), content.size()) } });
@@ -213,15 +234,22 @@ Records readRecords(ByteSource& source, const Header& header, Cloud& cloud)
   {
     const bool isLong = i >= header.vlrs;
     at = i == header.vlrs ? header.evlrsAt : at;
-    const std::size_t size = isLong ? EvlrHeaderSize : LasVlrHeaderSize;
+    const std::size_t size = isLong ? LasEvlrHeaderSize : LasVlrHeaderSize;
     const Bytes h = source.bytes(at, size);
     const std::uint64_t length =
       isLong ? load<std::uint64_t>(h.data() + 20) : load<std::uint16_t>(h.data() + 20);
+    const int record = load<std::uint16_t>(h.data() + 18);
+    const bool isPackets = isLong && record == LasPacketsRecord;
+    if (isPackets && !source.holds(at + size, length))
+    {
+      break; // Waveforms warns of packets beyond the end of the file
+    }
     failIf(length > source.size() && isLong,
       "an extended variable-length record is longer than the file");
-    // Long records, such as waveforms, are not needed.
-    takeRecord(textOf(h.data() + 2, 16), load<std::uint16_t>(h.data() + 18),
-      source.bytes(at + size, length <= LongestText ? length : 0), header.layout, cloud, records);
+    // Long records are not needed here.
+    takeRecord(textOf(h.data() + 2, 16), record, textOf(h.data() + (isLong ? 28 : 22), 32),
+      source.bytes(at + size, length <= LongestText && !isPackets ? length : 0), header.layout,
+      cloud, records);
     at += size + length;
   }
   return records;
@@ -247,6 +275,136 @@ void findSystem(const Header& header, const Records& records, Cloud& cloud)
       "its coordinates are not in metres but in " + unit + ", and are not converted");
   }
 }
+
+/// Waveforms of points, each waveform once.
+class Waveforms
+{
+public:
+  Waveforms(ByteSource& file, ByteSource* beside, const Header& header, const Records& records)
+    : Contents(records)
+  {
+    const int bits = header.encoding & (LasPacketsInside | LasPacketsBeside);
+    const bool isInside = bits == 0 ? header.packetsAt > 0 : bits != LasPacketsBeside;
+    this->Source = isInside ? &file : beside;
+    this->Begin = isInside ? header.packetsAt : 0;
+  }
+
+  /// Takes the packet of a point, or counts the point if the packet cannot be read.
+  void take(std::size_t point, const unsigned char* at)
+  {
+    if (at[0] == 0)
+    {
+      return;
+    }
+    const LasDescriptor& kind = this->Contents.descriptors[at[0]];
+    const auto offset = load<std::uint64_t>(at + 1);
+    const std::uint64_t length = std::uint64_t{ kind.samples } * kind.bits / 8;
+    const std::array<float, 4> line = { load<float>(at + 13), load<float>(at + 17),
+      load<float>(at + 21), load<float>(at + 25) };
+    const Reason problem = !this->Source
+      ? Reason("the file with the ending .wdp is missing or cannot be opened", -1)
+      : kind.bits == 0 ? Reason("there is no waveform packet descriptor ", at[0])
+      : kind.compression != 0
+      ? Reason("they are compressed, expected type 0 but found type ", kind.compression)
+      : kind.bits % 8 != 0 || kind.bits > 32
+      ? Reason("expected samples of 8, 16, 24 or 32 bits but found ", kind.bits)
+      : load<std::uint32_t>(at + 9) < length
+      ? Reason("their packets are shorter than their samples", -1)
+      : this->Begin > this->Source->size() || offset > this->Source->size() - this->Begin ||
+        !this->Source->holds(this->Begin + offset, length)
+      ? Reason("their packets lie beyond the end of the file", -1)
+      : !std::isfinite(line[0] + line[1] + line[2] + line[3])
+      ? Reason("their lines are not finite", -1)
+      : Reason();
+    if (!problem.first.empty())
+    {
+      ++this->Problems[problem];
+      return;
+    }
+    this->All.try_emplace(this->All.end(), { offset, at[0] }, point, line);
+  }
+
+  /// Adds the waveforms to a cloud. Times are those after the pulse if `distance_m` is known, else
+  /// after the first sample.
+  void addTo(Cloud& cloud, const KeepGoing& keepGoing) const
+  {
+    for (const auto& [reason, count] : this->Problems)
+    {
+      cloud.warnings.push_back(joined("the waveforms of ", count, " points are left out: ",
+        reason.first, reason.second < 0 ? "" : std::to_string(reason.second)));
+    }
+    if (this->All.empty())
+    {
+      return;
+    }
+    double size = 0.0;
+    for (const auto& [key, line] : this->All)
+    {
+      size += this->Contents.descriptors[key.second].samples;
+    }
+    try
+    {
+      constexpr double bytesOfSample = 110.0; // in Cloud and in VTK's arrays
+      requireMemory(size, "samples of waveforms", size * bytesOfSample);
+    }
+    catch (const MemoryError& error)
+    {
+      cloud.warnings.push_back("its waveforms are left out: " + std::string(error.what()));
+      return;
+    }
+    const auto found = std::find_if(cloud.columns.begin(), cloud.columns.end(),
+      [](const Column& column) { return column.name == "distance_m" && column.unit == "m"; });
+    const auto* ranges =
+      found == cloud.columns.end() ? nullptr : std::get_if<std::vector<double>>(&found->values);
+    Cloud waves;
+    std::vector<double> times, distances, samples;
+    for (const auto& [key, one] : this->All)
+    {
+      const auto& [point, line] = one;
+      const LasDescriptor& kind = this->Contents.descriptors[key.second];
+      const std::size_t width = kind.bits / 8;
+      const unsigned char* at = this->Source->at(this->Begin + key.first, kind.samples * width);
+      const double pulse = ranges ? 2e12 / SpeedOfLight * (*ranges)[point] - line[0] : 0.0; // ps
+      for (std::uint32_t k = 0; k < kind.samples; ++k, at += width)
+      {
+        const double time = static_cast<double>(k) * kind.spacing;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          waves.points.push_back(
+            cloud.points[3 * point + axis] + (time - line[0]) * line[axis + 1]);
+        }
+        std::uint32_t raw = 0;
+        for (std::size_t b = width; b-- > 0;)
+        {
+          raw = raw << 8 | at[b];
+        }
+        samples.push_back(kind.offset + kind.gain * raw);
+        times.push_back(1e-12 * (pulse + time));
+        distances.push_back(0.5 * SpeedOfLight * times.back());
+      }
+      cloud.lineEnds.push_back(samples.size());
+      cloud.linePoints.push_back(point);
+      goOn(keepGoing, 1.0);
+    }
+    waves.columns.push_back({ "sample_time", "s", 1, std::move(times) });
+    if (ranges)
+    {
+      waves.columns.push_back({ "distance_m", "m", 1, std::move(distances) });
+    }
+    waves.columns.push_back({ "sample", this->Contents.sampleUnit, 1, std::move(samples) });
+    cloud.waveforms.push_back(std::move(waves));
+  }
+
+private:
+  using Reason = std::pair<std::string_view, int>; // words, and the number after them or -1
+
+  const Records& Contents;
+  ByteSource* Source;  ///< file of the packets, or null
+  std::uint64_t Begin; ///< offset of the header of all packets, bytes
+  /// A point and its line for each packet, by offset and descriptor.
+  std::map<std::pair<std::uint64_t, int>, std::pair<std::size_t, std::array<float, 4>>> All;
+  std::map<Reason, std::size_t> Problems; ///< number of points
+};
 
 /// Returns the flags of a point record: 1 synthetic, 2 key-point, 4 withheld, 8 overlap (formats 6
 /// to 10).
@@ -409,20 +567,17 @@ LasLayout layoutOf(int format, std::size_t length)
   return layout;
 }
 
-Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
+Cloud readLas(ByteSource& source, ByteSource* packets, const KeepGoing& keepGoing)
 {
   const Header header = readHeader(source);
   Cloud cloud;
   const Records records = readRecords(source, header, cloud);
   findSystem(header, records, cloud);
-  if (header.layout.waveforms)
-  {
-    failIf(header.compressed, "its points have waveforms (point data record format ",
-      header.layout.format, "), which are read from LAS, not from LAZ");
-    cloud.warnings.emplace_back("its waveforms are left out");
-  }
+  const bool hasWaveforms = header.layout.waveforms;
+  failIf(hasWaveforms && header.compressed, "its points have waveforms (point data record format ",
+    header.layout.format, "), which are read from LAS, not from LAZ");
   const std::uint64_t length = header.layout.length;
-  if (header.room >= (header.points + 1) * length && header.evlrs == 0 && !header.layout.waveforms)
+  if (header.room >= (header.points + 1) * length && header.evlrs == 0 && !hasWaveforms)
   {
     cloud.warnings.push_back("its header says that it has " +
       (header.points > 0 ? std::to_string(header.points) : std::string("no")) + " points, though " +
@@ -436,12 +591,17 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
   requireMemoryFor(header.points, length);
   Columns columns(header, records.fields, cloud);
   std::vector<std::uint64_t> withheld;
+  Waveforms waveforms(source, packets, header, records);
   const auto take = [&](std::uint64_t i, const unsigned char* bytes)
   {
     columns.take(i, bytes);
     if ((flagsOf(bytes, header.layout.extended) & LasWithheld) != 0)
     {
       withheld.push_back(i);
+    }
+    else if (hasWaveforms)
+    {
+      waveforms.take(i - withheld.size(), bytes + header.layout.core - LasPacketSize);
     }
     goOn(keepGoing, i, header.points);
   };
@@ -473,6 +633,7 @@ Cloud readLas(ByteSource& source, const KeepGoing& keepGoing)
       (one ? " point that is" : " points that are") +
       " flagged as withheld, which means deleted, " + (one ? "is" : "are") + " left out");
   }
+  waveforms.addTo(cloud, keepGoing);
   return cloud;
 }
 }

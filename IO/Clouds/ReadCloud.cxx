@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <set>
 
@@ -187,6 +188,24 @@ Cloud withoutLabels(ByteSource& file, ByteSource*, const KeepGoing& keepGoing)
 {
   return Read(file, keepGoing);
 }
+
+/// Returns the file of the waveform packets of a LAS file: the same name with .wdp or .WDP. Returns
+/// an empty text if this file cannot be opened.
+std::string packetFileOf(const std::string& fileName)
+{
+  for (const char* ending : { ".wdp", ".WDP" })
+  {
+    const fs::path beside = fs::path(fileName).replace_extension(ending);
+    std::error_code ignored;
+    if (endingOf(fileName) == ".las" && fs::is_regular_file(beside, ignored) &&
+      std::ifstream(beside))
+    {
+      return beside.string();
+    }
+  }
+  return std::string();
+}
+
 }
 
 std::string endingOf(const std::string& fileName)
@@ -198,8 +217,7 @@ const std::vector<CloudFormat>& cloudFormats()
 {
   static const std::vector<CloudFormat> all = {
     { { ".las", ".laz" },
-      [](ByteSource& file) { return std::memcmp(file.at(0, 4), "LASF", 4) == 0; },
-      withoutLabels<readLas> },
+      [](ByteSource& file) { return std::memcmp(file.at(0, 4), "LASF", 4) == 0; }, readLas },
     { { ".pcd" }, [](ByteSource& file) { return !readPcdHeader(file).fields.empty(); },
       withoutLabels<readPcd> },
     { { ".ply" }, [](ByteSource& file) { return !readPlyHeader(file).hasFaces; },
@@ -256,11 +274,11 @@ Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing, const P
   FileSource source(fileName);
   const CloudFormat* const format = formatOf(fileName);
   failIf(!format, "its name does not end with ", knownEndings());
-  const std::string labels = format->hasLabels ? labelFileOf(fileName) : std::string();
+  const std::string second = format->hasLabels ? labelFileOf(fileName) : packetFileOf(fileName);
   std::optional<FileSource> beside;
-  if (!labels.empty())
+  if (!second.empty())
   {
-    beside.emplace(labels);
+    beside.emplace(second);
   }
   Cloud cloud = packets ? readTurn(source, *packets, turn, keepGoing)
                         : format->read(source, beside ? &*beside : nullptr, keepGoing);

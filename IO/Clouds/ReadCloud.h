@@ -21,7 +21,8 @@ struct CloudFormat
 {
   std::vector<std::string> endings; ///< file extensions, in lower case, with the dot
   bool (*fits)(ByteSource& file);   ///< check of the first bytes; an exception counts as false
-  Cloud (*read)(ByteSource& file, ByteSource* labels, const KeepGoing& keepGoing);
+  /// @param beside file of labels or of waveform packets, or null
+  Cloud (*read)(ByteSource& file, ByteSource* beside, const KeepGoing& keepGoing);
   bool hasLabels = false; ///< whether a file of labels is possible (labelFileOf())
   bool hasTurns = false;  ///< whether files have packets (read() gives the first revolution)
 };
@@ -42,7 +43,8 @@ const CloudFormat* formatOf(const std::string& fileName);
 /// its target counts after the link. Returns an empty text if the file of labels does not exist.
 std::string labelFileOf(const std::string& fileName);
 
-/// Reads a file and its labels or, if `packets` is not null, the revolution `turn`.
+/// Reads a file and its labels or waveform packets or, if `packets` is not null, the revolution
+/// `turn`.
 Cloud readCloud(const std::string& fileName, const KeepGoing& keepGoing,
   const PacketIndex* packets = nullptr, std::size_t turn = 0);
 

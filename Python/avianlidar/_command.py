@@ -223,9 +223,9 @@ def parser() -> Parser:
         add("--up-axis", choices=("y", "z"), help="axis of a mesh that points up; default: that of the file's format")
         if name == "scan":
             _out(verb[name], f"file: {WRITTEN}; .png gives a picture of the range image; {MANY}", action="append")
-            add("--waveforms", type=pathlib.Path, metavar="FILE", help="file: the light of the beams before the receiver "
+            add("--waveforms", type=pathlib.Path, metavar="FILE", action="append", default=[], help="file: the light of the beams before the receiver "
                 "decides: .csv (a row for each sample), .vtp (lines), .las (echoes with waveform packets) or .png (a "
-                "picture of one beam); see digitiser_rate and waveform_floor")
+                f"picture of one beam); see digitiser_rate and waveform_floor; {MANY}")
             add("--beam", type=int, metavar="ID", help="beam of the picture of --waveforms; default: the beam with the "
                 "strongest signal")
             add("--quiet", action="store_true",

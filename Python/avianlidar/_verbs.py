@@ -91,21 +91,22 @@ def _say_place(options, scan: Scan) -> None:
 
 def scan(options) -> None:
     _check_outs(options, lambda out: check_suffix(out, (".png",)))
-    file = options.waveforms
-    if file is not None:
+    for number, file in enumerate(options.waveforms):
         if file.suffix.lower() not in WAVEFORMS:
             raise refuse("write waveforms to", file, list(WAVEFORMS))
-        check_target(file, [*options.out, pathlib.Path(options.scene)])
-    elif options.beam is not None:
+        check_target(file, [*options.out, *options.waveforms[:number], pathlib.Path(options.scene)])
+    if options.beam is not None and not any(file.suffix.lower() == ".png" for file in options.waveforms):
         raise ValueError(f"--beam {options.beam} is the beam of a picture, expected --waveforms FILE.png")
     scan = _scan_of(options)
-    scan.record_waveforms = scan.record_waveforms or file is not None
+    scan.record_waveforms = scan.record_waveforms or bool(options.waveforms)
     for out in options.out:
         if out.suffix.lower() == ".geojson" and not scan.scene.geodetic_origin:
             raise ValueError(f"{out}: GeoJSON needs longitude and latitude, and the scene has no origin on the Earth")
     if not options.quiet:
         _say_place(options, scan)
     echoes = scan.echoes.annotated()
+    if options.beam is not None:
+        scan.waveforms.check(options.beam)
     for out in options.out:
         if out.suffix.lower() == ".png":
             with replacing(out) as name:
@@ -114,7 +115,7 @@ def scan(options) -> None:
             save(echoes, out)
         text = f"{out}: {echoes.number_of_points} echoes of {scan.report.number_of_points} beams{_alarms(echoes)}"
         tell(text + (f", labels in {out.with_suffix('.label').name}" if out.suffix.lower() == ".bin" else ""))
-    if file is not None:
+    for file in options.waveforms:
         _write_waveforms(scan, file, options.beam)
     if not options.quiet:
         tell(*to_act_on(echoes.fields))
@@ -126,10 +127,12 @@ def _write_waveforms(scan: Scan, file: pathlib.Path, beam: int | None) -> None:
     waveforms = scan.waveforms
     if file.suffix.lower() == ".png":
         beam = waveforms.strongest().beam_id if beam is None else beam
-    waveforms.save(file, scan.echoes if file.suffix.lower() == ".las" else None, beam)
-    of = f"beam {beam}" if beam is not None else f"{len(np.unique(waveforms.beam_ids))} beams"
-    tell(f"{file}: waveforms of {of}, {waveforms.number_of_stretches} stretches with "
-         f"{waveforms.number_of_points} samples in all")
+        waveforms.save(file, beam_id=beam)
+        tell(f"{file}: the waveform of beam {beam}, one of {len(np.unique(waveforms.beam_ids))}")
+        return
+    waveforms.save(file, scan.echoes if file.suffix.lower() == ".las" else None)
+    tell(f"{file}: waveforms of {len(np.unique(waveforms.beam_ids))} beams, {waveforms.number_of_stretches} stretches "
+         f"with {waveforms.number_of_points} samples in all")
 
 
 def advise(options) -> None:

@@ -13,7 +13,7 @@ from ._cloud import Cloud, as_numpy
 from ._disk import replacing
 from ._writers import as_csv, refuse, write
 
-WAVEFORMS = (".csv", ".vtp", ".png")  # suffixes of files
+WAVEFORMS = (".csv", ".vtp", ".las", ".png")  # suffixes of files
 LINES: dict[str, tuple[str, dict[str, Any]]] = {
     "signal": ("mean signal", {"color": "C1"}), "sample": ("drawn sample", {"color": "C0", "ls": "", "marker": "."})}
 
@@ -108,10 +108,16 @@ class Waveforms(Cloud):
         """The stretches of a beam, nearest first. Beams without light above the floor have none."""
         return [self.stretch(int(number)) for number in np.flatnonzero(self.beam_ids == beam_id)]
 
+    def check(self, beam_id: int) -> None:
+        """Raises ValueError for a beam of which nothing is recorded."""
+        if beam_id not in self.beam_ids:
+            raise ValueError(f"beam {beam_id} has no waveform above waveform_floor, expected a beam such as "
+                             f"{self.strongest().beam_id}, the strongest")
+
     def strongest(self) -> Waveform:
         """The stretch with the largest mean signal."""
         if not self.number_of_stretches:
-            raise ValueError("no waveform is recorded: set record_waveforms=True, and see waveform_floor")
+            raise ValueError("no waveform is recorded: no beam has light above waveform_floor, or record_waveforms is off")
         most = int(np.argmax(self["signal"]))
         return self.stretch(int(np.searchsorted(self._bounds(), most, side="right")) - 1)
 
@@ -121,10 +127,8 @@ class Waveforms(Cloud):
         that one height means one power. Default: the beam with the strongest signal. Returns the axes."""
         import matplotlib.pyplot as plt
         beam_id = self.strongest().beam_id if beam_id is None else beam_id
+        self.check(beam_id)
         stretches = self.of(beam_id)
-        if not stretches:
-            raise ValueError(f"beam {beam_id} has no waveform above the floor, expected one of the "
-                             f"{len(np.unique(self.beam_ids))} beams in `beam_ids`")
         if axes is None:
             _, axes = plt.subplots(figsize=(9, 4), constrained_layout=True)
         for number, one in enumerate(stretches):

@@ -128,7 +128,8 @@ struct ScanSeries
   {
     const double lower = this->setup.sensor.lowerEnergyLimit;
     const EchoSettings& s = this->setup.settings;
-    const bool each = s.lightEnergyThreshold != LightEnergyThreshold::ShareOfLimit; // path by itself
+    const bool each =
+      s.lightEnergyThreshold != LightEnergyThreshold::ShareOfLimit; // path by itself
     const double share = each ? Infinity : 1.001 * s.lightEnergyFraction;
     for (std::size_t i = 0; i < fresh.reports.size(); ++i)
     {

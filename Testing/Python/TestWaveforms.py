@@ -4,7 +4,10 @@ and the law of detection."""
 import contextlib
 import csv
 import io
+import os
 import pathlib
+import re
+import runpy
 import tempfile
 import unittest
 import warnings
@@ -271,8 +274,8 @@ class Noise(unittest.TestCase):
         plain = scan_of([plate(100.0)], {"digitiser_rate": 1e9}, noise=False, waveform_floor=0.0)
         rounded = scan_of([plate(100.0)], {"digitiser_rate": 1e9, "digitiser_bits": 10}, noise=False, waveform_floor=0.0)
         highest = PLAIN["upper_energy_limit"] / 5.0
-        step = highest * (16.0 / 15.0) / 1023.0
-        codes = (rounded.waveforms["sample"] + highest / 15.0) / step
+        step = highest / (1023.0 - 64.0)  # 0 is a level, and 64 of the 1,024 lie below
+        codes = rounded.waveforms["sample"] / step
         np.testing.assert_allclose(codes, codes.round(), atol=1e-6)
         difference = np.abs(rounded.waveforms["sample"] - plain.waveforms["sample"]).max()
         self.assertLessEqual(difference, 0.5001 * step)
@@ -330,14 +333,14 @@ class Recording(unittest.TestCase):
 
     def test_bad_values_are_named(self):
         for sensor, words in (({"digitiser_rate": 1.1e8}, "digitiser_rate|DigitiserRate"),
-                              ({"digitiser_rate": 1e12}, "DigitiserRate"), ({"digitiser_bits": 3}, "DigitiserBits"),
+                              ({"digitiser_rate": 3e10}, "DigitiserRate"), ({"digitiser_bits": 3}, "DigitiserBits"),
                               ({"digitiser_bits": 8.5}, "DigitiserBits"), ({"response_time": -1e-9}, "ResponseTime"),
                               ({"response_time": 1.0}, "ResponseTime"),
                               ({"pulse_shape": "Samples"}, "number of samples is 0"),
                               ({"pulse_shape": "Samples", "pulse_file_name": "none.csv"}, "none.csv")):
             with self.subTest(sensor=sensor), self.assertRaisesRegex(Exception, words):
                 scan_of([plate(100.0)], sensor).update()
-        for text, words in (("time_s,power\n0,1\n0,1\n", "after the sample before"), ("time_s,power\n0,0\n1e-9,0\n", "above 0"),
+        for text, words in (("time_s,power\n0,1\n0,1\n", "after that of the sample before"), ("time_s,power\n0,0\n1e-9,0\n", "more than 0"),
                             ("time,power\n0,0\n", "time_s,power"), ("time_s,power\n0,1\n1,1\n", "1000 times"),
                             ("time_s,power\n0,-1\n1e-9,1\n", "power")):
             with tempfile.TemporaryDirectory() as folder:
@@ -347,7 +350,7 @@ class Recording(unittest.TestCase):
                     scan_of([plate(100.0)], {"pulse_shape": "Samples", "pulse_file_name": str(file)}).update()
         with self.assertRaisesRegex(Exception, "waveform_floor|WaveformFloor"):
             scan_of([plate(100.0)], waveform_floor=-1.0).update()
-        huge = al.Scan(al.example_scene(), al.Sensor("Airport16", digitiser_rate=2e11), record_waveforms=True,
+        huge = al.Scan(al.example_scene(), al.Sensor("Airport16", digitiser_rate=2e10), record_waveforms=True,
                        waveform_floor=0.0)
         with self.assertRaisesRegex(Exception, "samples of waveforms"):
             huge.update()
@@ -375,9 +378,21 @@ class Recording(unittest.TestCase):
             self.assertEqual(code, 0)
             self.assertRegex(text.getvalue(), r"w\.csv: waveforms of \d+ beams, \d+ stretches with \d+ samples")
             self.assertIn("echo_width", (folder / "e.csv").read_text().splitlines()[0])
-            for bad in (["--waveforms", str(folder / "w.xyz")], ["--beam", "3"]):
+            for bad in (["--waveforms", str(folder / "w.xyz")], ["--beam", "3"],
+                        ["--waveforms", str(folder / "w.csv"), "--beam", "3"],
+                        ["--waveforms", str(folder / "w.png"), "--beam", "99999999"]):
                 with contextlib.redirect_stderr(io.StringIO()):
                     self.assertEqual(main(["scan", str(scene), "--out", str(folder / "e.csv"), *bad]), 2)
+
+    def test_the_gull_before_the_hangar(self):
+        """Range units separate pulses of 3 ns, and not those of 5 ns."""
+        file = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"], "Examples", "waveforms", "gull_before_hangar.py")
+        text = io.StringIO()
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(text):
+            runpy.run_path(str(file))["main"](pathlib.Path(folder))
+        five, three, _ = (part.split() for part in re.split("beam", text.getvalue())[1:])
+        self.assertEqual([five.count("gull"), five.count("hangar")], [0, 1])
+        self.assertEqual([three.count("gull"), three.count("hangar")], [1, 1])
 
     def write_ply(self, file):
         from vtkmodules.vtkIOPLY import vtkPLYWriter

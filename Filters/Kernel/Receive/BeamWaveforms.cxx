@@ -14,8 +14,8 @@ namespace
 {
 /// Largest number of noise photons of a unit that are drawn one by one.
 constexpr double MostPhotons = 1000.0;
-/// Lowest number of a digitiser over its highest, with the sign changed.
-constexpr double ShareBelowZero = 1.0 / 15.0;
+/// Share of a digitiser's levels that lie below 0.
+constexpr double ShareBelowZero = 1.0 / 16.0;
 
 double unitsOfMargin(const Sensor& sensor)
 {
@@ -269,7 +269,7 @@ void BeamWaveforms::divideNoise(
   const auto uniform = [&](std::int64_t number)
   {
     return uniformPair(key.seed, key.beam, static_cast<std::uint64_t>(number),
-      RandomPurpose::Waveforms, key.revolution)[0];
+      RandomPurpose::Waveforms, key.revolution);
   };
   double* const white = &this->White[place];
   const double photons = plan.photonEnergy > 0.0 ? std::round(noise / plan.photonEnergy) : 0.0;
@@ -283,7 +283,7 @@ void BeamWaveforms::divideNoise(
     const auto streams = static_cast<std::int64_t>(MostPhotons);
     for (std::int64_t i = 0; i < static_cast<std::int64_t>(photons); ++i)
     {
-      const double at = uniform(unit * streams + i) * static_cast<double>(this->PerUnit);
+      const double at = uniform(unit * streams + i)[1] * static_cast<double>(this->PerUnit);
       white[static_cast<std::size_t>(at)] += plan.photonEnergy;
     }
     return;
@@ -298,7 +298,7 @@ void BeamWaveforms::divideNoise(
   { return dark + plan.varianceOfEnergy * std::max(0.0, this->Signal[place + k]); };
   for (std::size_t k = 0; k < perUnit; ++k)
   {
-    const double u = uniform(unit * this->PerUnit + static_cast<std::int64_t>(k));
+    const double u = uniform(unit * this->PerUnit + static_cast<std::int64_t>(k))[0];
     white[k] = plan.active ? std::sqrt(varianceOf(k)) * normalDeviate(u, 1.0 - u) : 0.0;
     sum += white[k];
     variances += varianceOf(k);
@@ -333,11 +333,10 @@ double BeamWaveforms::rounded(double sample, double upper) const
   {
     return sample;
   }
-  const double highest = upper / static_cast<double>(this->PerUnit);
-  const double lowest = -ShareBelowZero * highest;
-  const double most = std::exp2(bits) - 1.0;
-  const double step = (highest - lowest) / most;
-  return lowest + step * std::clamp(std::round((sample - lowest) / step), 0.0, most);
+  const double below = ShareBelowZero * std::exp2(bits); // number of levels below 0
+  const double above = std::exp2(bits) - 1.0 - below;
+  const double step = upper / static_cast<double>(this->PerUnit) / above;
+  return step * std::clamp(std::round(sample / step), -below, above);
 }
 
 /// @param firstStretch first stretch of the beam

@@ -17,8 +17,8 @@
  * Recorded are stretches around range units whose mean signal exceeds the floor, and around
  * returns. Each stretch has a margin of one pulse. A floor of 0 records whole beams.
  *
- * The digitiser rounds drawn samples. Its highest number is the power that saturates a range unit,
- * its lowest is -1/15 of the highest (**assumed**).
+ * The digitiser rounds drawn samples to its levels, of which 0 is one. The highest level is the
+ * power that saturates a range unit. A sixteenth of the levels lies below 0 (**assumed**).
  *
  * Source: S. O. Rice, "Mathematical Analysis of Random Noise", Bell Syst. Tech. J. 24, 1945, has
  * the false alarms of such noise.
@@ -58,6 +58,9 @@ struct EchoShape
 /// Waveforms of many beams, one stretch after the other.
 struct Waveforms
 {
+  /// Memory of a sample here and in the arrays of VTK, bytes.
+  static constexpr double BytesOfSample = 18.0 * sizeof(double);
+
   struct Stretch
   {
     std::size_t beam;   ///< index of the beam in the scan

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scan.h"
 
+#include "AvailableMemory.h"
+
 #include <algorithm>
 #include <atomic>
 #include <functional>
@@ -213,6 +215,8 @@ private:
       this->keep(kept[b]);
     }
     sortSeenPlanes(block.planes);
+    const auto samples = static_cast<double>(this->Samples += block.waveforms.signal.size());
+    requireMemory(samples, "samples of waveforms", samples * Waveforms::BytesOfSample);
   }
 
   /// Keep a beam only as far as memory allows.
@@ -287,7 +291,8 @@ private:
   ScanProgress Progress;
   std::vector<Block> Blocks;
   std::vector<std::unique_ptr<Worker>> Workers;
-  std::atomic<std::size_t> BytesHeld; ///< memory of kept beams, bytes
+  std::atomic<std::size_t> Samples{ 0 }; ///< samples of the waveforms so far
+  std::atomic<std::size_t> BytesHeld;    ///< memory of kept beams, bytes
 };
 }
 

@@ -162,7 +162,8 @@ std::string checkPulseSamples(const Sensor& sensor)
     const std::string sample = "pulse_samples, sample " + std::to_string(i) + ": the ";
     if (!std::isfinite(time) || (i > 0 && !(time > samples[2 * i - 2])))
     {
-      return valueError((sample + "time").c_str(), time, "s after the sample before");
+      return valueError(
+        (sample + "time").c_str(), time, "a time, s, after that of the sample before");
     }
     if (!(power >= 0.0 && power <= MaximumEnergy))
     {
@@ -170,10 +171,14 @@ std::string checkPulseSamples(const Sensor& sensor)
     }
     hasEnergy = hasEnergy || power > 0.0;
   }
-  if (count < 2 || samples.size() % 2 != 0 || !hasEnergy)
+  if (count < 2 || samples.size() % 2 != 0)
   {
     return valueError("pulse_samples, number of samples", static_cast<double>(count),
-      "2 or more, each with a time (s) and a power, one power above 0");
+      "2 or more, each with a time (s) and a power");
+  }
+  if (!hasEnergy)
+  {
+    return valueError("pulse_samples, greatest power", 0.0, "more than 0");
   }
   const double length = samples[2 * count - 2] - samples[0];
   return rangeError("pulse_samples, time from the first to the last sample", length, 0.0,

@@ -80,7 +80,7 @@ const std::vector<SensorField>& sensorFields()
     { "response_time", "s", &Sensor::responseTime, 0.0, 1e23, "0 s to 1000 times sampling_interval",
       NeededOf::None },
     { "digitiser_rate", "Hz", &Sensor::digitiserRate, 0.0, 1e33,
-      "0, or 1 to 1000 times 1/sampling_interval, a whole multiple, Hz", NeededOf::None },
+      "0, or 1 to 100 times 1/sampling_interval, a whole multiple, Hz", NeededOf::None },
     { "digitiser_bits", "1", &Sensor::digitiserBits, 0.0, 32.0, "0, or a whole number from 4 to 32",
       NeededOf::None }
   };
@@ -144,13 +144,13 @@ std::string warningOnAmbiguity(const Sensor& sensor, double pulseInterval)
 
 namespace
 {
-/// True if a range unit has a whole number of samples, 1 to 1000.
+/// True if a range unit has a whole number of samples, 1 to 100.
 bool isDigitiserGood(const Sensor& s)
 {
   const double samples = s.digitiserRate * s.samplingInterval;
   const double whole = std::round(samples);
   return s.digitiserRate == 0.0 ||
-    (whole >= 1.0 && whole <= 1000.0 && std::fabs(samples - whole) < 1e-4 * whole);
+    (whole >= 1.0 && whole <= 100.0 && std::fabs(samples - whole) < 1e-4 * whole);
 }
 }
 

@@ -27,8 +27,6 @@
 namespace
 {
 namespace names = vtkAvianLidarArrays;
-/// Memory of a sample of a waveform in the output, bytes.
-constexpr double BytesOfSample = 14.0 * sizeof(double);
 using avianlidar::Echo;
 using avianlidar::ScanSetup;
 using avianlidar::Vec3;
@@ -351,8 +349,8 @@ void vtkAvianLidarEchoOutput::RequireMemoryForWholeBeams(const vtkAvianLidarBeam
   const double samples =
     avianlidar::rangeUnitsOf(beams.sensor, static_cast<double>(beams.beams.size())) *
     beams.sensor.samplesOfUnit();
-  avianlidar::requireMemory(
-    samples, "samples of waveforms (WaveformFloor is 0)", samples * BytesOfSample);
+  avianlidar::requireMemory(samples, "samples of waveforms (WaveformFloor is 0)",
+    samples * avianlidar::Waveforms::BytesOfSample);
 }
 
 //------------------------------------------------------------------------------
@@ -373,8 +371,6 @@ void vtkAvianLidarEchoOutput::FillWaveforms(avianlidar::ScanResult& result,
   const double interval = beams.sensor.samplingInterval / beams.sensor.samplesOfUnit();
   const std::size_t samples = all.signal.size();
   const std::size_t stretches = all.stretches.size();
-  avianlidar::requireMemory(static_cast<double>(samples), "samples of waveforms",
-    static_cast<double>(samples) * BytesOfSample);
   std::vector<std::size_t> stretchOf(samples);
   auto times = names::Make<vtkDoubleArray>(names::SampleTime, static_cast<vtkIdType>(samples));
   auto ranges = names::Make<vtkDoubleArray>(names::Distance, static_cast<vtkIdType>(samples));

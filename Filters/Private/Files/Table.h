@@ -41,8 +41,8 @@ private:
   std::vector<std::string> Cells;
 };
 
-/// Text of a file. Throws std::runtime_error naming the property and the file. @param property name of
-/// the property that holds the file's name
+/// Text of a file. Throws std::runtime_error naming the property and the file. @param property name
+/// of the property that holds the file's name
 std::string textOfFile(const char* property, const std::string& file);
 
 /// Function that receives a line and the index of the table's header among the allowed headers.
