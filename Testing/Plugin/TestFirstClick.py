@@ -28,10 +28,11 @@ MACROS = {"airport_scan": AIRPORT | {"Airport 16", "Landmarks", "Scan"},
           "coverage": AIRPORT | {"Search 905", "Coverage map", "Coverage at 30 m", "Probable", "Every other scan"},
           "ground_fog": AIRPORT | {"Search 905", "Ground fog", "Airport in fog", "Scan in fog", "Landmarks"}}
 # Buttons of the toolbar, and those that need no selection.
-ALWAYS = ("airport_scan", "birds_over_the_airport", "coverage")
-BUTTONS = (*ALWAYS, "energy_colours", "status_colours", "filter")
-# What Output Messages say after the first click on a macro that needs a selection.
-WORDS = {"show_beam": "select an echo first"}
+SCANS = ("airport_scan", "birds_over_the_airport", "coverage")
+ALWAYS = (*SCANS, "plot_waveform")
+BUTTONS = (*SCANS, "energy_colours", "status_colours", "plot_waveform", "filter")
+# What Output Messages say after the first click on a macro that needs a selection or a scan.
+WORDS = {"show_beam": "select an echo first", "plot_waveform": "make a scan first"}
 
 
 def click(widget, arguments=""):
@@ -70,7 +71,7 @@ class FirstClick(unittest.TestCase):
         """Each button of the toolbar, whatever the click before has made. Buttons that do not fit the selection are
         disabled."""
         events = enabled()
-        for name in (*ALWAYS, "airport_scan"):
+        for name in (*SCANS, "airport_scan"):
             events.append(click(button(name)))
             events += enabled("energy_colours", "status_colours")
             events += [click(button("energy_colours")), click(button("status_colours"))]
