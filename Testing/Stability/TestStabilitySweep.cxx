@@ -53,8 +53,10 @@ const std::vector<Number>& numbers()
       { "direction", [](World& w) -> double& { return w.direction.y; } } };
     for (const SensorField& field : sensorFields())
     {
-      // Below 1e-170 the share that is detected takes energies to infinity: left out.
-      if (field.member != &Sensor::receiverEfficiency)
+      // Below 1e-170 the share that is detected takes energies to infinity: left out. So are
+      // numbers that must be whole (TestWaveforms.py).
+      if (field.member != &Sensor::receiverEfficiency && field.member != &Sensor::digitiserRate &&
+        field.member != &Sensor::digitiserBits)
       {
         list.push_back(
           { field.name, [m = field.member](World& w) -> double& { return w.sensor.*m; } });
