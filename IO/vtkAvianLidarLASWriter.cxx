@@ -238,20 +238,26 @@ private:
 /// Returns the levels of the digitiser, with 0 bits unless the field data have all of its values.
 formats::LasDescriptor LevelsOf(vtkFieldData* data)
 {
-  double upper = 0.0, interval = 0.0, rate = 0.0, bits = 0.0;
-  const auto find = [data](const char* name, double& value) {
-    return names::GetFieldValue(data, { name, "" }, value);
-  };
-  find("digitiser_rate", rate);
-  formats::LasDescriptor levels;
-  if (find(names::UpperEnergyLimit.name, upper) && find("sampling_interval", interval) &&
-    find("digitiser_bits", bits) && upper > 0.0 && bits >= 4.0 && bits <= 32.0)
+  using avianlidar::Sensor;
+  Sensor sensor;
+  sensor.digitiserBits = 0.0;
+  for (double Sensor::*member : { &Sensor::upperEnergyLimit, &Sensor::samplingInterval,
+         &Sensor::digitiserRate, &Sensor::digitiserBits })
   {
-    const double highest = upper / std::max(1.0, std::round(rate * interval));
-    levels.bits = static_cast<int>(bits);
-    const double below = std::exp2(levels.bits) / 16.0; // levels below 0, as in BeamWaveforms
-    levels.gain = highest / (std::exp2(levels.bits) - 1.0 - below);
-    levels.offset = -below * levels.gain;
+    const avianlidar::SensorField& field = avianlidar::sensorField(member);
+    const bool isThere = names::GetFieldValue(data, { field.name, field.unit }, sensor.*member);
+    if (!isThere && member != &Sensor::digitiserRate)
+    {
+      return {};
+    }
+  }
+  formats::LasDescriptor levels;
+  if (sensor.upperEnergyLimit > 0.0 && sensor.digitiserBits >= 4.0 && sensor.digitiserBits <= 32.0)
+  {
+    const avianlidar::DigitiserLevels own = sensor.levelsOfDigitiser(sensor.upperEnergyLimit);
+    levels.bits = static_cast<int>(sensor.digitiserBits);
+    levels.gain = own.step;
+    levels.offset = -own.below * own.step;
   }
   return levels;
 }

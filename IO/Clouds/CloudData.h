@@ -85,8 +85,8 @@ struct Cloud
   std::optional<std::array<double, 3>> sensor;
   std::string crs;                     ///< coordinate reference system, WKT; empty if unknown
   std::vector<Cloud> waveforms;        ///< samples of all waveforms as one cloud, or empty
-  std::vector<std::size_t> lineEnds;   ///< of waveforms: one past the last sample of each line
-  std::vector<std::size_t> linePoints; ///< of waveforms: a point to which each line belongs
+  std::vector<std::size_t> lineEnds;   ///< one past the last sample of each waveform
+  std::vector<std::size_t> linePoints; ///< a point that each waveform belongs to
   std::vector<std::string> warnings;   ///< sentences on parts left out and on assumptions
 
   std::size_t size() const { return this->points.size() / 3; }

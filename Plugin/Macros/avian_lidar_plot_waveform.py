@@ -11,7 +11,7 @@ In ParaView: choose the macro in the menu Macros, or its button. In a script: pl
 """
 
 from paraview import servermanager, simple  # first: lets Python find avian_lidar_plugin
-from avian_lidar_plugin import ECHO_FILTER, WAVEFORM, of_kind, plugin_folder, run, say, scan_of, selected_beams
+from avian_lidar_plugin import ECHO_FILTER, WAVEFORM, of_kind, plugin_folder, run, scan_of, selected_beams
 
 TITLE = "plot waveform"
 PORT, ARRAY = 3, "beam_id"
@@ -70,7 +70,6 @@ def plot_waveform(source=None, beam_id=None):
     least, most = found.GetArray("threshold").GetRange()[0], found.GetArray("energy_received").GetRange()[1]
     chart.LeftAxisUseCustomRange, chart.LeftAxisLogScale = 1, 1
     chart.LeftAxisRangeMinimum, chart.LeftAxisRangeMaximum = 0.05 * least, 3 * max(least, most)
-    say(TITLE, f"beam {beam}", failed=False)
     return chart
 
 

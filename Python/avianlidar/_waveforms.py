@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ._cloud import Cloud, as_numpy
 from ._disk import replacing
-from ._writers import as_csv, refuse, write
+from ._writers import refuse, write, write_csv
 
 WAVEFORMS = (".csv", ".vtp", ".las", ".png")  # suffixes of files
 LINES: dict[str, tuple[str, dict[str, Any]]] = {
@@ -147,27 +147,12 @@ class Waveforms(Cloud):
         axes.legend(loc="upper right")
         return axes
 
-    def table(self) -> tuple[list[str], list[Any]]:
-        """Names and columns of a table with a row for each sample: `beam_id`, `timestamp`, then the arrays."""
-        counts = np.diff(self._bounds())
-        cells = self.data.GetCellData()
-        columns: list[Any] = []
-        names = ["beam_id", "timestamp [us]"]
-        for name in ("beam_id", "timestamp"):
-            values = vtk_to_numpy(cells.GetArray(name)) if len(counts) else np.zeros(0)
-            columns.append(np.repeat(values, counts))
-        names += [f"{axis} [m]" for axis in "xyz"]
-        columns += list(self.points.T)
-        names += [name if name == "distance_m" else f"{name} [{self.units[name]}]" for name in self]
-        columns += [self[name] for name in self]
-        return names, columns
-
     def save(self, file, echoes=None, beam_id: int | None = None, **properties: Any) -> None:  # type: ignore[override]
         """Writes the waveforms to a file, by its suffix. @param echoes echoes of the scan, for .las @param beam_id the
         beam of a picture
 
-        .csv  a row for each sample (`table`)        .las  the echoes, with waveform packets (LAS 1.4); `properties` are
-        .vtp  the lines, for VTK and ParaView              those of vtkAvianLidarLASWriter, for example external_waveforms
+        .csv  a row for each sample                  .las  the echoes, with waveform packets (LAS 1.4), and
+        .vtp  the lines, for VTK and ParaView              properties of vtkAvianLidarLASWriter, such as external_waveforms
         .png  `plot`
         """
         path = pathlib.Path(file)
@@ -184,15 +169,11 @@ class Waveforms(Cloud):
             return
         with replacing(path) as name:
             if suffix == ".csv":
-                self._write_csv(name)
+                cells, counts = self.data.GetCellData(), np.diff(self._bounds())
+                write_csv(self, name, [(array, unit, np.repeat(vtk_to_numpy(cells.GetArray(array)), counts))
+                                       for array, unit in (("beam_id", ""), ("timestamp", "us")) if len(counts)])
             else:
                 import matplotlib.pyplot as plt
                 figure = self.plot(beam_id).figure
                 figure.savefig(name, format="png", dpi=150)
                 plt.close(figure)
-
-    def _write_csv(self, file: str) -> None:
-        names, columns = self.table()
-        with open(file, "wb") as out:
-            out.write(as_csv([names], "\r\n"))
-            np.savetxt(out, np.rec.fromarrays(columns), fmt=["%d", *["%.15g"] * (len(columns) - 1)], delimiter=",")

@@ -73,10 +73,10 @@ def as_csv(rows: Iterable[Sequence[Any]], end: str = "\n") -> bytes:
     return text.getvalue().encode()
 
 
-def _write_csv(cloud, name: str) -> None:
+def write_csv(cloud, name: str, first: Sequence[Tuple[str, str, np.ndarray]] = ()) -> None:
     """Writes one row per point. Names and units are joined as in vtkAvianLidarUnitNames, and quoted according to
-    RFC 4180."""
-    columns = list(columns_of(cloud))
+    RFC 4180. @param first columns before those of the cloud: name, unit and numbers"""
+    columns = [*first, *columns_of(cloud)]
     names = [_wrapped.vtkAvianLidarUnitNames.NameWithUnit(key, unit) for key, unit, _ in columns]
     table = np.rec.fromarrays([values for _, __, values in columns])
     formats = ["%.15g" if values.dtype.kind == "f" else "%d" for _, __, values in columns]
@@ -84,7 +84,7 @@ def _write_csv(cloud, name: str) -> None:
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
 
 
-OWN = {".vtp": _write_vtp, ".csv": _write_csv}
+OWN = {".vtp": _write_vtp, ".csv": write_csv}
 
 
 def check_suffix(file, more: Sequence[str] = ()) -> None:

@@ -98,6 +98,10 @@ class FirstClick(unittest.TestCase):
         state, messages = play(PARAVIEW, events, [SENSOR])
         self.assertEqual((messages, names(state)), ([], {os.path.basename(SENSOR)}))
 
+    def test_the_waveform_after_a_scan(self):
+        state, messages = play(PARAVIEW, [click(button("airport_scan")), click(button("plot_waveform"))])
+        self.assertEqual((messages, names(state)), ([], MACROS["airport_scan"] | {"Waveform"}))
+
     def test_the_macro_of_the_dialog(self):
         """As a script, with the values that Finish on the dialog's first page gives."""
         state, messages = play(PARAVIEW, [], [f"--script={PLUGIN_DIR}/Macros/avian_lidar_wizard.py"])

@@ -16,6 +16,7 @@ import numpy as np
 from scipy import stats
 
 import avianlidar as al
+from avianlidar._cloud import add_array
 from avianlidar._command import main
 
 C = 299792458.0
@@ -34,14 +35,14 @@ def plate(range_, x=(-9.0, 9.0), slope=0.0):
                     (a, range_ + slope * a, z)], [(0, 1, 2), (0, 2, 3)])
 
 
-def scan_of(parts, sensor=None, preset="Airport16", **settings):
+def scan_of(parts, sensor=None, preset="Airport16", material="Wall", **settings):
     from vtkmodules.vtkFiltersCore import vtkAppendPolyData
     scene = vtkAppendPolyData()
     for part in parts:
         scene.AddInputData(part)
     scene.Update()
     lidar = al.Sensor(preset, **{**NORTH, **(PLAIN if preset == "Airport16" else {}), **(sensor or {})})
-    return al.Scan(al.Scene(scene.GetOutput(), material="Wall"), lidar,
+    return al.Scan(al.Scene(scene.GetOutput(), material=material), lidar,
                    **{**QUIET, "record_waveforms": True, **settings})
 
 
@@ -323,6 +324,38 @@ class Recording(unittest.TestCase):
         near = [one for beam in np.unique(found[0].beam_ids) for one in found[0].of(beam)
                 if (abs(one["distance_m"][one["signal"].argmax()] - 60) < 1) and abs(one.origin[2] - 3) < 1]
         self.assertTrue(near)
+
+    def test_near_stretches_in_fog_are_parts_of_the_whole_beam(self):
+        """Also before and behind a dark plate, whose neighbourhood is looked up for the noise of two stretches."""
+        plates = [plate(100.0, (-9.0, -0.03)), plate(109.9, (-0.03, 0.03)), plate(116.0, (0.03, 9.0))]
+        for part, kd in zip(plates, (0.2, 1e-12, 0.2)):
+            for name, value in (("kd", kd), ("ks", 0.0), ("kp", 1.0)):
+                add_array(part.GetCellData(), name, np.full(2, value))
+        found = []
+        for floor in (1e3, 0.0):
+            scan = scan_of(plates, {"digitiser_rate": 1e9, "response_time": 10e-9, "range_gate": 200.0,
+                           "half_beamwidth": 1e-3, "half_beamwidth_across": 0.0}, "Search905", None, noise=True,
+                           waveform_floor=floor, visibility=2000.0, air_backscatter=True)
+            waves = scan.waveforms
+            found.append({name: dict(zip(waves["sample_time"].round(12), waves[name]))
+                          for name in ("signal", "sample", "energy_received", "threshold")})
+            if floor:
+                ends = [waves.stretch(number)["distance_m"][[0, -1]] for number in range(waves.number_of_stretches)]
+        self.assertTrue(any(108.0 < begin < 109.8 for begin, _ in ends), ends)
+        for name, values in found[0].items():
+            for time, value in values.items():
+                self.assertLess(abs(value - found[1][name][time]), 1e-9 * abs(value) + 1e-25, (name, time))
+
+    def test_writers_keep_shapes_of_echoes(self):
+        scan = scan_of([plate(100.0)], {"digitiser_rate": 1e9})
+        echoes = scan.waveforms and scan.echoes
+        with tempfile.TemporaryDirectory() as folder:
+            for suffix in (".las", ".pcd", ".ply", ".vtp"):
+                echoes.save(pathlib.Path(folder) / ("echoes" + suffix))
+                read = al.load_cloud(pathlib.Path(folder) / ("echoes" + suffix))
+                for name in ("echo_width", "echo_rise_time", "echo_amplitude", "echo_integral", "echo_samples"):
+                    np.testing.assert_array_equal(read[name], echoes[name], suffix)
+                    self.assertEqual(read.units[name], echoes.units[name])
 
     def test_a_later_scan_without_waveforms_has_none(self):
         scan = scan_of([plate(100.0)])

@@ -14,8 +14,6 @@ namespace
 {
 /// Largest number of noise photons of a unit that are drawn one by one.
 constexpr double MostPhotons = 1000.0;
-/// Share of a digitiser's levels that lie below 0.
-constexpr double ShareBelowZero = 1.0 / 16.0;
 
 double unitsOfMargin(const Sensor& sensor)
 {
@@ -101,13 +99,13 @@ bool BeamWaveforms::find(const BeamLight& light, const Received& received, const
 {
   const double floor =
     this->Setup.settings.waveformFloor * this->Receiver.exposureTo(light.radiance).lower;
+  this->Air.begin(air, light.surfaces);
   this->Found.clear();
   if (!(floor > 0.0))
   {
     this->Found.emplace_back(this->FirstUnit, this->GateUnits);
     return true;
   }
-  this->Air.begin(air, light.surfaces);
   const auto inAir = [&](std::int64_t unit) { return this->Air.nextLooked(unit, this->AirUnits); };
   for (std::int64_t unit = inAir(this->FirstUnit); unit < this->GateUnits; unit = inAir(unit + 1))
   {
@@ -116,7 +114,6 @@ bool BeamWaveforms::find(const BeamLight& light, const Received& received, const
       this->Found.emplace_back(unit, unit + 1);
     }
   }
-  this->Air.begin(air, light.surfaces);
   for (const RangeUnit& unit : light.units.units())
   {
     if (unit.energy + this->airIn(unit.index) > floor)
@@ -147,7 +144,7 @@ bool BeamWaveforms::find(const BeamLight& light, const Received& received, const
 }
 
 void BeamWaveforms::record(std::size_t beam, const BeamLight& light, const BeamLight& divided,
-  const Received& received, const BeamAir& air, Waveforms& waveforms)
+  const Received& received, Waveforms& waveforms)
 {
   const BeamReceiver::Exposure& exposed = this->Receiver.exposureTo(light.radiance);
   this->Fine.clear();
@@ -156,7 +153,6 @@ void BeamWaveforms::record(std::size_t beam, const BeamLight& light, const BeamL
     this->Fine.take(divided.units);
     this->Fine.accumulate();
   }
-  this->Air.begin(air, light.surfaces);
   this->Noise.begin(exposed.plan, received.key);
   const std::size_t first = waveforms.stretches.size();
   const double background = exposed.plan.gaussian
@@ -328,15 +324,12 @@ double BeamWaveforms::smoothed(std::size_t sample) const
 /// A drawn sample as the digitiser stores it, J. @param upper upper limit of a range unit, J
 double BeamWaveforms::rounded(double sample, double upper) const
 {
-  const double bits = this->Setup.sensor.digitiserBits;
-  if (!(bits > 0.0))
+  if (!(this->Setup.sensor.digitiserBits > 0.0))
   {
     return sample;
   }
-  const double below = ShareBelowZero * std::exp2(bits); // number of levels below 0
-  const double above = std::exp2(bits) - 1.0 - below;
-  const double step = upper / static_cast<double>(this->PerUnit) / above;
-  return step * std::clamp(std::round(sample / step), -below, above);
+  const DigitiserLevels levels = this->Setup.sensor.levelsOfDigitiser(upper);
+  return levels.step * std::clamp(std::round(sample / levels.step), -levels.below, levels.above);
 }
 
 /// @param firstStretch first stretch of the beam

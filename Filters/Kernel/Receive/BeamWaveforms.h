@@ -17,8 +17,7 @@
  * Recorded are stretches around range units whose mean signal exceeds the floor, and around
  * returns. Each stretch has a margin of one pulse. A floor of 0 records whole beams.
  *
- * The digitiser rounds drawn samples to its levels, of which 0 is one. The highest level is the
- * power that saturates a range unit. A sixteenth of the levels lies below 0 (**assumed**).
+ * The digitiser rounds drawn samples to its levels (Sensor::levelsOfDigitiser()).
  *
  * Source: S. O. Rice, "Mathematical Analysis of Random Noise", Bell Syst. Tech. J. 24, 1945, has
  * the false alarms of such noise.
@@ -73,7 +72,7 @@ struct Waveforms
   std::vector<double> drawn;     ///< drawn sample, J
   std::vector<double> received;  ///< energy with noise in the sample's range unit, J
   std::vector<double> threshold; ///< lower limit of the sample's range unit, J
-  std::vector<EchoShape> shapes; ///< of each echo
+  std::vector<EchoShape> shapes; ///< shapes of the echoes, one for each echo
 
   /// One past the last sample of a stretch.
   std::size_t endOf(std::size_t stretch) const
@@ -99,7 +98,7 @@ public:
   /// divided the same light in parts of range units: how it divides the energy of a unit among
   /// samples counts
   void record(std::size_t beam, const BeamLight& light, const BeamLight& divided,
-    const Received& received, const BeamAir& air, Waveforms& waveforms);
+    const Received& received, Waveforms& waveforms);
 
 private:
   /// Units [first, second).

@@ -133,15 +133,14 @@ BeamLight BeamSimulator::follow(std::size_t beam, SeenBeam& traced, KeptBeam& ke
       received, ofLight, light.samples() != nullptr, light.isOutsideGate(), results.echoes);
     if (this->Recording)
     {
-      if (this->Recording->find(light, received, air) && this->Dividing && light.isIntegrated)
+      const bool isDivided =
+        this->Recording->find(light, received, air) && this->Dividing && light.isIntegrated;
+      if (isDivided)
       {
         this->Divided = this->Dividing->divided(seen, light, std::move(this->Divided));
-        this->Recording->record(beam, light, this->Divided, received, air, results.waveforms);
       }
-      else
-      {
-        this->Recording->record(beam, light, light, received, air, results.waveforms);
-      }
+      this->Recording->record(
+        beam, light, isDivided ? this->Divided : light, received, results.waveforms);
     }
     if (kept.lit)
     {

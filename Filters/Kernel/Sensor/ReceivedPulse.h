@@ -13,8 +13,8 @@
  * calibration of a novel small-footprint full-waveform digitising airborne laser scanner", ISPRS J.
  * 60, 2006, has the system waveform: pulse convolved with response.
  * Differs: the paper's receiver responds at once.
- * Valid: a response below 1/1000 of the pulse's length counts as 0. What shareBefore() gives for a
- * Gaussian differs from the error function by the cut share.
+ * Valid: a response below 1/1000 of the pulse's length counts as 0. shareBefore() of a Gaussian
+ * differs from the error function by the share that is cut off.
  * Test: TestReceivedPulse.cxx.
  */
 #ifndef avianlidar_ReceivedPulse_h

@@ -67,6 +67,14 @@ constexpr double MaximumRangeGate = 1e30;            // range gate, m, as for co
 /// Largest number of range units inside the gate; exact in double precision.
 constexpr double MaximumGateUnits = 4503599627370496.0; // 2^52
 
+/// Levels of a digitiser. 0 J is a level, and a sixteenth of all levels lies below 0 J (assumed).
+struct DigitiserLevels
+{
+  double step;  ///< step between two levels, J
+  double below; ///< number of levels below 0 J
+  double above; ///< number of levels above 0 J
+};
+
 /// The instrument. The defaults describe the paper's airport lidar (Sec. 5.3).
 struct Sensor
 {
@@ -160,6 +168,15 @@ struct Sensor
   {
     return this->digitiserRate > 0.0 ? std::round(this->digitiserRate * this->samplingInterval)
                                      : 1.0;
+  }
+
+  /// Levels of the digitiser, whose highest level is the power that saturates a range unit. Needs
+  /// `digitiserBits`. @param upper upper limit of a range unit, J
+  DigitiserLevels levelsOfDigitiser(double upper) const
+  {
+    const double all = std::exp2(this->digitiserBits);
+    const double above = all - 1.0 - all / 16.0;
+    return { upper / this->samplesOfUnit() / above, all / 16.0, above };
   }
 
   /// Length of one range unit, m: c tau_s / 2.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What waveforms cost on six scenes: time of a scan with waveforms over that of one without, and memory; and the picture
-of a gull before a hangar.
+"""What waveforms cost on six scenes: time of a scan with waveforms, divided by the time without, and memory. Also makes
+the picture of a gull before a hangar.
 
     AVIANLIDAR_SCENES_DIR=build/paraview/Testing/Scenes Testing/Studies/run.py waveforms
 

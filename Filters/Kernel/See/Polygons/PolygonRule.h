@@ -69,7 +69,7 @@ class PolygonRule
 public:
   PolygonRule(const ScanSetup& setup, double parts);
 
-  double unitLength() const { return this->Setup.sensor.rangeUnitLength(); } ///< of a range unit, m
+  double unitLength() const { return this->Setup.sensor.rangeUnitLength(); } ///< range unit, m
   double pulseLength() const { return this->PulseLength; } ///< length of the pulse in range, m
   double tangent2() const { return this->Tangent2; }       ///< tan(theta0.5)^2
 
