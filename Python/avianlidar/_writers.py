@@ -6,7 +6,7 @@ import csv
 import io
 import os
 import pathlib
-from typing import Any, Dict, Iterable, Iterator, List, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Sequence, Tuple
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -84,7 +84,7 @@ def write_csv(cloud, name: str, first: Sequence[Tuple[str, str, np.ndarray]] = (
     np.savetxt(name, table, fmt=formats, delimiter=",", header=header, comments="", encoding="utf-8")
 
 
-OWN = {".vtp": _write_vtp, ".csv": write_csv}
+OWN: Dict[str, Callable[..., None]] = {".vtp": _write_vtp, ".csv": write_csv}
 
 
 def check_suffix(file, more: Sequence[str] = ()) -> None:
