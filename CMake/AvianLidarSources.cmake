@@ -91,6 +91,7 @@ set(private_sources
   Filters/Private/Beams/vtkAvianLidarRevolutions.cxx
   Filters/Private/Beams/vtkAvianLidarScanArrays.cxx
   Filters/Private/Beams/vtkAvianLidarScanShape.cxx
+  Filters/Private/Beams/vtkAvianLidarTrajectory.cxx
   Filters/Private/Beams/vtkAvianLidarSensorFile.cxx
   Filters/Private/Movers/BirdTables.cxx
   Filters/Private/Movers/vtkAvianLidarBirdTargets.cxx

@@ -14,6 +14,7 @@
 #include "vtkAvianLidarScanArrays.h"
 #include "vtkAvianLidarScanShape.h"
 #include "vtkAvianLidarText.h"
+#include "vtkAvianLidarTrajectory.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -28,6 +29,7 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -90,8 +92,16 @@ vtkStandardNewMacro(vtkAvianLidarBeamSource);
 //------------------------------------------------------------------------------
 vtkAvianLidarBeamSource::vtkAvianLidarBeamSource()
 {
-  this->SetNumberOfInputPorts(0);
+  this->SetNumberOfInputPorts(1);
   this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Set(INPUT_IS_OPTIONAL(), 1);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -485,11 +495,36 @@ void vtkAvianLidarBeamSource::vtkInternals::RequireProperties(const Source& self
 }
 
 //------------------------------------------------------------------------------
-void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
-  const Source& self, int revolution, vtkFieldData* fields)
+avianlidar::Poses vtkAvianLidarBeamSource::vtkInternals::TrajectoryOf(
+  const Source& self, vtkInformationVector* input, int revolution)
 {
-  Arrays::SetFieldVector(fields, Arrays::Position, self.Position, 3);
-  Arrays::SetFieldVector(fields, Arrays::Orientation, self.Orientation, 3);
+  if (input->GetNumberOfInformationObjects() == 0)
+  {
+    return {};
+  }
+  avianlidar::Poses poses = vtkAvianLidarTrajectory::Read(vtkPolyData::GetData(input));
+  const double begin = revolution / self.RotationRate;
+  const double end = begin + avianlidar::durationOf(PatternOf(self));
+  if (begin < poses.front().time || end > poses.back().time)
+  {
+    std::ostringstream text;
+    text << "Input port 0 (trajectory), its poses are from " << poses.front().time << " to "
+         << poses.back().time << " s, but the beams of revolution " << revolution << " are from "
+         << begin << " to " << end << " s: expected poses at all these times";
+    vtkAvianLidarRequire(text.str());
+  }
+  return poses;
+}
+
+//------------------------------------------------------------------------------
+void vtkAvianLidarBeamSource::vtkInternals::AddSensor(
+  const Source& self, int revolution, const avianlidar::Pose& pose, vtkFieldData* fields)
+{
+  double position[3];
+  double orientation[3];
+  vtkAvianLidarTrajectory::Place(pose, self.Position, self.Orientation, position, orientation);
+  Arrays::SetFieldVector(fields, Arrays::Position, position, 3);
+  Arrays::SetFieldVector(fields, Arrays::Orientation, orientation, 3);
   if (!self.Table)
   {
     Arrays::SetFieldInteger(
@@ -564,8 +599,21 @@ int vtkAvianLidarBeamSource::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
+int vtkAvianLidarBeamSource::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  if (vtkInformation* trajectory = inputVector[0]->GetInformationObject(0))
+  {
+    trajectory->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0); // each piece of the scan needs all poses
+    trajectory->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    trajectory->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 int vtkAvianLidarBeamSource::RequestData(
-  vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkAvianLidarGuarded(this, outputVector,
     [&]()
@@ -575,6 +623,7 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
+      avianlidar::Poses poses;
       vtkAvianLidarWithin("Beam source: ",
         [&]()
         {
@@ -589,14 +638,21 @@ int vtkAvianLidarBeamSource::RequestData(
                 "client, too, which then sets both properties)"));
           }
           vtkInternals::FindMoment(*this, asked, part, revolution);
+          poses = vtkInternals::TrajectoryOf(*this, inputVector[0], revolution);
         });
       vtkPolyData* beams = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
       vtkAvianLidarScanArrays::FillBeams(vtkInternals::PatternOf(*this),
         vtkInternals::PointingOf(*this), part, revolution, this->Position, beams);
+      avianlidar::Pose pose; // at the start of the revolution
+      if (!poses.empty())
+      {
+        vtkAvianLidarTrajectory::Carry(poses, this->Position, this->Orientation, beams);
+        avianlidar::poseAt(poses, revolution / this->RotationRate, pose);
+      }
       vtkAvianLidarScanArrays::FillRays(beams, this->DisplayLength, rays);
-      vtkInternals::AddSensor(*this, revolution, beams->GetFieldData());
-      vtkInternals::AddSensor(*this, revolution, rays->GetFieldData());
+      vtkInternals::AddSensor(*this, revolution, pose, beams->GetFieldData());
+      vtkInternals::AddSensor(*this, revolution, pose, rays->GetFieldData());
       const avianlidar::Sensor sensor = vtkInternals::SensorOf(*this);
       std::string warning;
       for (const std::string& one : { avianlidar::warningOnElectrons(sensor),

@@ -4,15 +4,24 @@
  * @brief Makes the beams of a scanning lidar, with the lidar's pulse and receiver as field data.
  *
  * A new source has the preset Airport16, the lidar of the paper's Table 2 ("Research on Ground
- * Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153). The source has no input.
+ * Object Echo Simulation of Avian Lidar", Photonics 2024, 11(2), 153).
  *
+ * - Input port 0, vtkPolyData, optional: trajectory of the platform on which the sensor moves. Each
+ *   point is a pose: its position, m, with the point arrays `time` (s, rising) and, optionally,
+ *   `pose_orientation` (unit quaternion w, x, y, z, from the platform's frame, x right, y forward,
+ *   z up, to the scene's; default: not turned). Position (the lever arm) and Orientation of the
+ *   sensor are then in the platform's frame. Positions between two poses are linear in time,
+ *   orientations are interpolated by slerp. A revolution with beams before the first or after the
+ *   last pose is an error.
  * - Output port 0, vtkPolyData: one vertex per beam at Position, column by column and channel by
  *   channel within a column, with the point arrays `beam_id`, `direction`, `laser_id`, `azimuth`,
- *   `vertical_angle` and `timestamp`. With sway or jitter, `direction` is the true direction of a
- *   beam. The arrays `reported_direction`, `azimuth` and `vertical_angle` are the values that the
- *   sensor reports.
+ *   `vertical_angle` and `timestamp`, and with a trajectory `sensor_position` and
+ *   `sensor_orientation`. With sway or jitter, `direction` is the true direction of a beam. The
+ *   arrays `reported_direction`, `azimuth` and `vertical_angle` are the values that the sensor
+ *   reports.
  * - Output port 1, vtkPolyData: the same beams as lines of the length DisplayLength, for display.
  * - Field data of both outputs: every property in snake case in its own unit, and `wavelength`.
+ *   With a trajectory, `position` and `orientation` are those at the start of the revolution.
  *   Settings that the sensor does not use are left out. With a photon receiver, the energy limits
  *   are computed from the receiver's properties.
  *
@@ -154,7 +163,19 @@ public:
   /// beams. Bad beams change nothing and give an error that names the array.
   bool SetBeams(vtkPolyData* beams);
 
-  /// Position of the sensor in scene coordinates, m, at most 1e30. Default (0, 0, 0).
+  ///@{
+  /// Set the trajectory, input port 0; null for a sensor that stands. @param port not used; for
+  /// ParaView
+  void SetTrajectoryConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(0, output); }
+  void SetTrajectoryConnection(int port, vtkAlgorithmOutput* output)
+  {
+    static_cast<void>(port);
+    this->SetTrajectoryConnection(output);
+  }
+  ///@}
+
+  /// Position of the sensor in scene coordinates or, with a trajectory, in the platform's frame,
+  /// m, at most 1e30. Default (0, 0, 0).
   vtkAvianLidarVectorMacro(Position, 3, 0.0, 0.0, 0.0);
 
   /// Yaw (from north), pitch (up) and roll (right), deg, applied in the order roll, pitch, yaw.
@@ -426,7 +447,9 @@ protected:
   vtkAvianLidarBeamSource();
   ~vtkAvianLidarBeamSource() override = default;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   /// Read a sensor file. With `keepPlace`, position, orientation, revolutions, steps and seed are

@@ -26,13 +26,15 @@ from ._plot import hue_colors, plot_map, plot_range_image
 from ._recording import Recording, load_clouds
 from ._scan import Scan
 from ._scene import Scene, example_scene, load_scene, materials, mesh, mover
-from ._sensor import Sensor
+from ._sensor import Sensor, trajectory
 from ._version import __version__
 from .apps.coverage._design_page import Designs
 from .apps.sequences._flights import read_tracks
 from .apps.sequences._sequence import Sequence
 from .apps.sequences._tracks import BirdTracks
+from .apps.sequences._trajectory import read_trajectory
 
 __all__ = ["Advice", "BirdTracks", "Cloud", "Coverage", "Designs", "Error", "Recording", "Scan", "Scene", "Sensor",
            "Sequence", "example_scene", "hue_colors", "load_cloud", "load_clouds", "load_scene", "materials", "mesh",
-           "mover", "places_of", "plot_map", "plot_range_image", "read_tracks", "save", "vtkAvianLidar"]
+           "mover", "places_of", "plot_map", "plot_range_image", "read_tracks", "read_trajectory", "save", "trajectory",
+           "vtkAvianLidar"]

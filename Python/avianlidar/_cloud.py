@@ -222,11 +222,12 @@ class Cloud(Mapping):
         frame.attrs = {"units": {**dict.fromkeys("xyz", "m"), **self.units}, "fields": fields}  # pandas compares them
         return frame
 
-    def coordinates(self, frame: str = "enu") -> np.ndarray:
+    def coordinates(self, frame: str = "enu", motion_correction: bool = True) -> np.ndarray:
         """Coordinates of an echo cloud or a cloud of beams in another frame, as n rows of three numbers.
 
         enu       metres east, north, up of the scene's origin (the array `points`, not a copy)
-        sensor    metres right, forward, up of the sensor, including its orientation
+        sensor    metres right, forward, up of the sensor, including its orientation. If the sensor moves: at the start
+                  of the scan; without `motion_correction` at the firing of each point's beam, as lidars record
         geodetic  longitude and latitude in degrees, height above the ellipsoid WGS84 in metres
         utm       easting, northing in metres (zone of the origin), height above the ellipsoid in metres
         ecef      geocentric metres
@@ -242,6 +243,9 @@ class Cloud(Mapping):
             if "position" not in fields or "orientation" not in fields:
                 raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
             from scipy.spatial.transform import Rotation
+            if not motion_correction and "sensor_orientation" in self:
+                turns = Rotation.from_quat(self["sensor_orientation"][:, [1, 2, 3, 0]])
+                return turns.apply(self.points - self["sensor_position"], inverse=True)
             yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
             turn = Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
             return turn.apply(self.points - fields["position"], inverse=True)

@@ -32,6 +32,8 @@ VERBS = {
     "scan": ("one scan of a scene",
         "Scans a scene once and writes the echoes to one file or several.", """\
   avianlidar scan airport.lidarscene.json --sensor Search905 --position 0 0 3 -o echoes.las
+  avianlidar scan airport.lidarscene.json --sensor Search905 --trajectory car.gpx --trajectory-set \
+height_reference=clamp --position 0 0 2 -o echoes.las
   avianlidar scan hangar.stl --scale 0.001 --material Metal --position 0 -60 2 -o echoes.pcd -o range.png
   avianlidar scan airport.glb --sensor mine.lidarsensor.json --sensor-set range_gate=800 \
 --scan-set rays_per_beam=400 -o echoes.csv
@@ -84,6 +86,7 @@ VERBS = {
     "sequence": ("labelled scans of birds, to train on",
         f"Writes labelled scans of a scenario in the layout of SemanticKITTI. {RESUMES}", """\
   avianlidar sequence hongqiao.scenario.json -o sequences --scans 100
+  avianlidar sequence hongqiao.scenario.json -o drive --trajectory car.gpx --scans 50
   avianlidar sequence hongqiao.scenario.json -o still --sensor-set sway_amplitude=0 --sensor-set encoder_jitter=0
 """),
     "track": ("tracks of birds in simulated or recorded scans",
@@ -108,6 +111,7 @@ VERBS = {
         "(CSV) and clutter (VTP) for a plan. A plan that compares sensors makes a folder for each sensor.", """\
   avianlidar coverage hongqiao.coverage.json -o maps --coverage-set species=crow
   avianlidar coverage hongqiao.coverage.json -o maps --tracks radar.csv
+  avianlidar coverage hongqiao.coverage.json -o maps --trajectory drone.csv
 """),
     "siting": ("where lidars should stand",
         "Writes candidates by rank (CSV, GeoJSON, VTP), the best networks and what changes these networks, for a "
@@ -192,6 +196,15 @@ def _out(verb, what: str, required: bool = True, **options: Any) -> None:
     verb.add_argument("-o", "--out", type=pathlib.Path, help=what, required=required, **options)
 
 
+def _trajectory(verb) -> None:
+    """Adds the options of a sensor that moves."""
+    verb.add_argument("--trajectory", metavar="FILE", help="trajectory of the car, drone or other platform that carries "
+                      "the sensor: CSV, GPX, KML, VTP or a bag of ROS 2; times since 1970 count from its start")
+    own = ", or position=0,0,2, the sensor's place on the platform" if verb.prog.endswith("coverage") else ""
+    _settings(verb, trajectory="how the file is read, for example height_reference=clamp, which puts the platform on "
+              f"the ground, or track=NAME{own}; {MANY}")
+
+
 def _of_recording(add) -> None:
     """Adds the options that choose scans of a recording."""
     add("--rate", type=float, metavar="HZ", help="scans a second of a recording in numbered files; default: times in "
@@ -215,7 +228,9 @@ def parser() -> Parser:
         add("scene", help="a mesh (STL, OBJ, PLY, glTF, VTP, ...; metres, z up) or a .lidarscene.json file")
         add("--sensor", default="Airport16", help=f"{SENSOR}; default Airport16")
         add("--position", nargs=3, type=float, metavar=("X", "Y", "Z"),
-            help="position of the sensor, m; default: the lidar's position in the scene file, else 0 0 0")
+            help="position of the sensor, m; default: the lidar's position in the scene file, else 0 0 0; with "
+                 "--trajectory in the frame of the platform (right, forward, up), default 0 0 0")
+        _trajectory(verb[name])
         add("--material", help="material of the whole scene, a name that `avianlidar materials` lists; default: the "
             "materials of the file, else Wall")
         add("--scale", type=float,
@@ -324,6 +339,7 @@ def parser() -> Parser:
     add = verb["sequence"].add_argument
     add("scenario", help="a scenario file, or the manifest.json of another sequence")
     add("--scans", type=int, help="number of scans that replaces the number in the scenario")
+    _trajectory(verb["sequence"])
 
     add = verb["track"].add_argument
     add("inputs", nargs="+", help="folders that `avianlidar sequence` has made, or scenario files; or recordings: "
@@ -371,6 +387,7 @@ def parser() -> Parser:
         if name == "coverage":
             add("--tracks", type=pathlib.Path, metavar="FILE", help="birds that a radar or a GPS logger has recorded "
                 "(CSV): the share of scans that detects each bird, in birds.csv")
+            _trajectory(verb[name])
         if name in ("siting", "report"):
             _settings(verb[name], siting="a part of the plan's siting, for example spacing=100; file names are "
                                          "relative to the plan's folder")
@@ -401,6 +418,8 @@ def main(argv: list[str] | None = None) -> int:
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
     _terminal.names_given(sys.argv[1:] if argv is None else map(str, argv))
     options = parser().parse_args(argv)
+    if getattr(options, "trajectory_set", None) and not options.trajectory and options.verb != "sequence":
+        parser().error(f"--trajectory-set {options.trajectory_set[0][0]} is for a trajectory, expected --trajectory FILE")
     code, terminated = 2, []
 
     def terminate(number, _):

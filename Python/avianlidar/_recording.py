@@ -180,45 +180,84 @@ class _Transforms:
                 self.known[child].clear()
             self.known[child][10**9 * seconds + nanoseconds] = transform
 
-    def _step(self, child: str, stamp: int) -> np.ndarray:
-        """The matrix (4 x 4) from a frame to its parent: linear in place and spherical in rotation between times, and
-        the nearest one before the first and after the last time."""
+    def _step(self, child: str, stamp: Any) -> np.ndarray:
+        """The matrix (4 x 4) from a frame to its parent, at a time or at each of several times: linear in place and
+        spherical in rotation between times, and the nearest one before the first and after the last time."""
         from scipy.spatial.transform import Rotation, Slerp
         known = self.known[child]
         times = sorted(known)
         places = np.array([known[time][0] for time in times])
         turns = Rotation.from_quat([known[time][1] for time in times])
         seconds = 1e-9 * np.array([time - times[0] for time in times])
-        at = float(np.clip(1e-9 * (stamp - times[0]), seconds[0], seconds[-1]))
+        at = np.clip(1e-9 * (np.asarray(stamp) - times[0]), seconds[0], seconds[-1])
         turn = Slerp(seconds, turns)(at) if len(times) > 1 else turns[0]
-        matrix = np.eye(4)
-        matrix[:3, :3] = turn.as_matrix()
-        matrix[:3, 3] = [np.interp(at, seconds, places[:, axis]) for axis in range(3)]
+        matrix = np.zeros((*at.shape, 4, 4))
+        matrix[..., :3, :3] = turn.as_matrix()
+        matrix[..., :3, 3] = np.stack([np.interp(at, seconds, places[:, axis]) for axis in range(3)], -1)
+        matrix[..., 3, 3] = 1.0
         return matrix
+
+    def above(self, frame: str) -> list[str]:
+        """The frame and all frames above it that have a parent, upwards."""
+        found: list[str] = []
+        while frame in self.parents:
+            if frame in found:
+                raise ValueError(f"the frame {frame} is above itself in the messages of tf")
+            found.append(frame)
+            frame = self.parents[frame]
+        return found
 
     def covers(self, frame: str, stamp: int) -> bool:
         """Whether a time is not far outside the times of any moving frame above."""
-        seen = set()
-        while frame in self.parents and frame not in seen:
-            seen.add(frame)
-            times = self.known[frame]
-            if len(times) > 1 and not min(times) - BEYOND <= stamp <= max(times) + BEYOND:
-                return False
-            frame = self.parents[frame]
-        return True
+        moving = [times for times in (self.known[one] for one in self.above(frame)) if len(times) > 1]
+        return all(min(times) - BEYOND <= stamp <= max(times) + BEYOND for times in moving)
 
-    def pose(self, frame: str, stamp: int) -> np.ndarray | None:
-        """The matrix (3 x 4) from a frame to the frame that has no parent; None for an unknown frame."""
-        matrix, seen = np.eye(4), {frame}
+    def pose(self, frame: str, stamp: Any) -> np.ndarray | None:
+        """The matrix (3 x 4) from a frame to the frame that has no parent; None for an unknown frame.
+        @param stamp a time (ns), or an array of n times, which gives n x 3 x 4"""
         if frame not in self.parents:
             return None
-        while frame in self.parents:
-            matrix = self._step(frame, stamp) @ matrix
-            frame = self.parents[frame]
-            if frame in seen:
-                raise ValueError(f"the frame {frame} is above itself in the messages of tf")
-            seen.add(frame)
-        return matrix[:3]
+        matrix = np.eye(4)
+        for one in self.above(frame):
+            matrix = self._step(one, stamp) @ matrix
+        return matrix[..., :3, :]
+
+
+def moving_poses(path: pathlib.Path, frame: str, notes: list[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Times (ns) and matrices (n x 3 x 4) from a frame's x right, y forward and z up to the fixed frame of a bag, at
+    the times of all moving transforms above the frame.
+
+    path   the bag or its folder
+    frame  default: the frame of the clouds if they have one, else the only moving frame that has none below
+    notes  sentences on parts that are missing are added
+    """
+    transforms, clouds = _Transforms(), set()
+    for message in _bags.messages(_bags.files_of(path, notes) if path.is_dir() else [path],
+                                  (_ros.TRANSFORMS, *([] if frame else [_ros.CLOUD])), notes):
+        try:
+            if message.kind == _ros.TRANSFORMS:
+                transforms.add(message.data, message.topic.endswith("static"))
+            else:
+                clouds.add(_ros.unpacked(_ros.CLOUD, message.data)[0][1].lstrip("/"))
+        except ValueError as error:
+            raise ValueError(f"{path}: a message of {message.topic} {error}") from None
+    known = {child: [*poses.values()] for child, poses in transforms.known.items()}
+    moving = {child for child, poses in known.items() if any(pose != poses[0] for pose in poses)}
+    frames = {frame.lstrip("/")} if frame else clouds if len(clouds) == 1 else moving - {
+        transforms.parents[child] for child in moving}
+    above = transforms.above(next(iter(frames), ""))
+    stamps = [np.array(sorted(transforms.known[one]), np.int64) for one in above if one in moving]
+    if len(frames) != 1 or not stamps:
+        raise ValueError(f"{path}: {' and '.join(sorted(frames)) or 'no frame'} may be meant, expected the choice of "
+                         f"one frame that moves: {', '.join(sorted(moving)) or 'the messages of /tf have none'}")
+    times = np.unique(np.concatenate(stamps))
+    times = times[(times >= max(one[0] for one in stamps)) & (times <= min(one[-1] for one in stamps))]
+    if not len(times):
+        raise ValueError(f"{path}: {', '.join(above)} have no time in common, expected transforms of one recording")
+    poses = transforms.pose(above[0], times)
+    assert poses is not None
+    poses[..., :3] = poses[..., :3] @ TURNED.T
+    return times, poses
 
 
 def _topic_of(source, counts: "collections.Counter[str]", topic: str | None) -> str:

@@ -5,12 +5,44 @@ import os
 from typing import Any
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, add_array, with_points
+from ._cloud import Cloud, add_array, point_array, rows_of, with_points
 from ._pipeline import file_name, is_current, update
 from ._properties import DECISIVE, PATTERN, PropertyOwner, choices, choose, wraps
+
+
+def trajectory(positions, times, orientations=None) -> vtkPolyData:
+    """A trajectory of a moving platform for `Sensor(trajectory=...)`: a line with a pose at each point.
+
+    positions     n rows of x, y, z in metres
+    times         n ascending times in seconds, on the clock of the beams
+    orientations  n unit quaternions w, x, y, z from the platform's frame (x right, y forward, z up) to the scene's
+                  frame; None: no rotation
+
+    >>> car = trajectory([(0, 0, 2), (40, 0, 2)], times=[0, 4])
+    >>> Sensor(trajectory=car).beams.points[-1].round()
+    array([20.,  0.,  2.])
+    """
+    line = with_points(rows_of("positions", positions, (3,)))
+    count = line.GetNumberOfPoints()
+    cells = vtkCellArray()
+    cells.InsertNextCell(count)
+    for number in range(count):
+        cells.InsertCellPoint(number)
+    line.SetLines(cells)
+    add_array(line.GetPointData(), "time", rows_of("times", times, ()), "s")
+    if orientations is not None:
+        add_array(line.GetPointData(), "pose_orientation", rows_of("orientations", orientations, (4,)), "1")
+    return line
+
+
+def poses_of(line: vtkPolyData) -> tuple[np.ndarray, ...]:
+    """Copies of positions (m), times (s) and, if there are any, orientations of a trajectory."""
+    names = [name for name in ("time", "pose_orientation") if line.GetPointData().GetArray(name)]
+    return tuple(np.array(part) for part in (Cloud(line).points, *(point_array(line, name) for name in names)))
 
 
 @wraps(_wrapped.vtkAvianLidarBeamSource)
@@ -30,7 +62,7 @@ class Sensor(PropertyOwner):
     _beams: Any  # directions, times and positions of the user's beams, or None
 
     def __init__(self, preset: str | os.PathLike = "Airport16", *, directions=None, times=None, positions=None,
-                 **properties: Any):
+                 trajectory: vtkPolyData | None = None, **properties: Any):
         """`preset` is one of `Sensor.presets()`, or a file (`.lidarsensor.json`). Any property by name changes the
         preset. Frequent properties:
 
@@ -44,6 +76,8 @@ class Sensor(PropertyOwner):
         times        n seconds since the start of the scan, 0 or more; default: all 0. Without `rotation_rate`, a scan
                      that is too short for the times is extended to the last time
         positions    n rows of x, y, z in metres; default: all 0
+
+        A sensor on a car or a drone has a `trajectory`, see there.
         """
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
         if str(preset).endswith(".json"):
@@ -58,6 +92,7 @@ class Sensor(PropertyOwner):
         elif times is not None or positions is not None:
             raise TypeError("Sensor: times and positions need directions, which are not given")
         self.set(**properties)
+        self.trajectory = trajectory
 
     def _take_beams(self, directions, times, positions) -> float:
         """Sets the beams, and returns the time of the last beam, s."""
@@ -75,6 +110,19 @@ class Sensor(PropertyOwner):
         update(self.algorithm, run=lambda: self.algorithm.SetBeams(beams))
         return float(found[1].max())
 
+    @property
+    def trajectory(self) -> vtkPolyData | None:
+        """The trajectory of the platform on which the sensor moves: vtkPolyData of `avianlidar.trajectory` or
+        `read_trajectory`; None for a sensor that stands. May be set. `position` and `orientation` are then in the frame
+        of the platform (x right, y forward, z up)."""
+        return self.algorithm.GetInputDataObject(0, 0) if self.algorithm.GetNumberOfInputConnections(0) else None
+
+    @trajectory.setter
+    def trajectory(self, trajectory: vtkPolyData | None) -> None:
+        if not (trajectory is None or isinstance(trajectory, vtkPolyData)):
+            raise TypeError(f"a trajectory is vtkPolyData, as of read_trajectory, not {type(trajectory).__name__}")
+        self.algorithm.SetInputDataObject(0, trajectory)
+
     @staticmethod
     def presets() -> tuple[str, ...]:
         """Names of the sensors that are known.
@@ -86,7 +134,9 @@ class Sensor(PropertyOwner):
         return tuple(choices(_wrapped.vtkAvianLidarBeamSource, "Preset"))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"text": self.algorithm.GetDescription(), "beams": self._beams, "properties": self.properties()}
+        line = self.trajectory
+        return {"text": self.algorithm.GetDescription(), "beams": self._beams, "properties": self.properties(),
+                "trajectory": line and poses_of(line)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.algorithm = _wrapped.vtkAvianLidarBeamSource()
@@ -95,6 +145,7 @@ class Sensor(PropertyOwner):
         if self._beams:
             self._take_beams(*self._beams)
         self.set(**state["properties"])
+        self.trajectory = state["trajectory"] and trajectory(*state["trajectory"])
 
     def __repr__(self) -> str:
         return _display.line(self, _display.sensor_rows)

@@ -27,6 +27,7 @@ from ._writers import check_suffix, check_target, refuse
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
 from .apps.inputs._air import check_received
 from .apps.inputs._read import read_plan, read_scenario
+from .apps.sequences._trajectory import MARKUP, read_trajectory
 
 OUTSIDE = 0.1  # share of recorded points outside all beams from which on the sensor is doubtful
 WIDTH = 110  # characters of a line about one sensor
@@ -67,7 +68,9 @@ def _scan_of(options) -> Scan:
     """The scan that the options describe."""
     scene = Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
                   progress=_percent_of("scene"))
-    sensor = Sensor(options.sensor, position=options.position or scene.lidar_position or (0, 0, 0))
+    line = read_trajectory(options.trajectory, scene, **dict(options.trajectory_set)) if options.trajectory else None
+    place = options.position or (None if line else scene.lidar_position) or (0, 0, 0)
+    sensor = Sensor(options.sensor, position=place, trajectory=line)
     scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=_percent_of(options.verb))
     preset = getattr(options, "preset", None)
     if preset:
@@ -81,6 +84,10 @@ def _scan_of(options) -> Scan:
 def _say_place(options, scan: Scan) -> None:
     """Prints where the lidar stands, what placed it there, and what the scene leaves out or assumes."""
     place, known = scan.sensor.position, scan.scene.lidar_position
+    if options.trajectory:
+        tell("the lidar is at ({:.10g}, {:.10g}, {:.10g}) m when the scan begins, as --trajectory and --position say"
+             .format(*scan.sensor.beams.fields["position"]), *_display.scene_notes(scan.scene))
+        return
     why = "as --sensor-set says"
     if place == tuple(options.position or known or (0, 0, 0)):
         why = ("as --position says" if options.position else "as the scene file says" if known else
@@ -246,6 +253,8 @@ def info(options) -> None:
             raise ValueError(f"--{option} is for recordings, expected none for {file}")
     if not file.exists():
         raise FileNotFoundError(f"no such file: {file}")
+    if file.suffix.lower() in MARKUP:
+        raise ValueError(f"{file}: is a trajectory, expected it as --trajectory of scan, sequence or coverage")
     chosen = _of_packets(options, file)
     hints: Iterable[str] = ()
     notes: Iterable[str] = ()

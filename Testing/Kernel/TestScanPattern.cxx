@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -113,6 +114,42 @@ TEST(ScanPattern, OrientationsTurnBeams)
     EXPECT_NEAR(beam.azimuth, of.azimuthThen, 1e-13);
     EXPECT_NEAR(beam.elevation, of.elevationThen, 1e-13);
   }
+}
+
+TEST(ScanPattern, AnglesOfARotationGiveItBack)
+{
+  for (const double pitch : { -90.0, -89.9999999, -30.0, 0.0, 60.0, 90.0 })
+  {
+    for (const double roll : { -170.0, 0.0, 20.0 })
+    {
+      const glm::dmat3 rotation = rotationOf(250.0, pitch, roll);
+      const Vec3 angles = anglesOf(rotation);
+      const glm::dmat3 again = rotationOf(angles.x, angles.y, angles.z);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        expectVector(again[axis], rotation[axis].x, rotation[axis].y, rotation[axis].z, 4e-15);
+      }
+    }
+  }
+  const Vec3 angles = anglesOf(rotationOf(-60.0, 30.0, 20.0));
+  expectVector(angles / 60.0, -1.0, 0.5, 1.0 / 3.0, 4e-15);
+}
+
+TEST(ScanPattern, DurationEndsWithTheLastFiring)
+{
+  ScanPattern p = corridor();
+  const ScanGenerator scan(p);
+  double last = 0.0;
+  for (std::int64_t i = 0; i < scan.size(); ++i)
+  {
+    last = std::max(last, scan.beam(i).time);
+  }
+  EXPECT_EQ(durationOf(p), last);
+  auto table = std::make_shared<BeamTable>();
+  table->directions = { Vec3(0.0, 1.0, 0.0), Vec3(1.0, 0.0, 0.0) };
+  table->times = { 0.07, 0.05 };
+  p.table = table;
+  EXPECT_EQ(durationOf(p), 0.07);
 }
 
 TEST(ScanPattern, DirectionsAreUnitAndAgreeWithTheirAngles)

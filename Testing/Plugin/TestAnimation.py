@@ -11,6 +11,9 @@ import sys
 
 import numpy
 from paraview import simple
+from vtkmodules.vtkCommonCore import vtkDoubleArray
+from vtkmodules.vtkFiltersSources import vtkLineSource
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from plugin_testing import OUTPUT_DIR, airport, assert_same, fetch, load_plugin
@@ -153,6 +156,48 @@ def test_a_moving_scene():
         assert numpy.allclose(seen, [50 + 2 * (time // 2) for time in times], rtol=0, atol=0.01), seen
 
 
+def test_a_sensor_that_drives():
+    """Moves along the trajectory in a file. A sensor that is made while another source is active stands still."""
+    fresh()
+    controller = vtkMultiProcessController.GetGlobalController()
+    name = os.path.join(OUTPUT_DIR, "TestAnimationTrajectory.vtp")
+    if controller.GetLocalProcessId() == 0:
+        line, times, writer = vtkLineSource(), vtkDoubleArray(), vtkXMLPolyDataWriter()
+        line.SetPoint1(0, 0, 2)
+        line.SetPoint2(40, 0, 2)
+        line.SetResolution(2)
+        line.SetOutputPointsPrecision(1)
+        line.Update()
+        times.SetName("time")
+        for time in (0, 2, 6):
+            times.InsertNextValue(time)
+        line.GetOutput().GetPointData().AddArray(times)
+        writer.SetInputData(line.GetOutput())
+        writer.SetFileName(name)
+        assert writer.Write()
+    controller.Barrier()
+    way = simple.XMLPolyDataReader(FileName=[name])
+    way.UpdatePipeline()
+    simple.SetActiveSource(way)
+    beams = simple.AvianLidarAirport16(AzimuthStep=360 / COLUMNS, NumberOfRevolutions=2)
+    assert beams.Trajectory is None and count(beams) == 16 * COLUMNS
+    assert beams.GetDataInformation().GetBounds()[:2] == (0.0, 0.0)
+    beams.Trajectory = way
+    scene = played()
+
+    def look():
+        return count(beams), *beams.GetDataInformation().GetBounds()[:2]
+
+    (all_of_first, low, high), (all_of_second, later, last) = frames_of(scene, look)
+    assert all_of_first == all_of_second == 16 * COLUMNS
+    # 20 m in the first 2 s, then 5 m/s; the last beam is fired a column and a firing before the end.
+    assert low == 0.0 and 19 < high < 20 and later == 20.0 and 29.5 < last < 30, (low, high, later, last)
+    assert beams.PointData["sensor_position"].GetRange(2) == (2.0, 2.0)
+    beams.Trajectory = None
+    look()
+    assert beams.GetDataInformation().GetBounds()[:2] == (0.0, 0.0)
+
+
 def test_saving_every_step(kind):
     """Save Data with "Write timesteps as file-series" leaves a file for each step of the sensor."""
     fresh()
@@ -179,6 +224,7 @@ def main():
     test_a_static_scene_stays_as_it_is()
     test_sweeps()
     test_a_moving_scene()
+    test_a_sensor_that_drives()
     test_saving_every_step(kind)
 
 

@@ -124,7 +124,7 @@ class Movers(unittest.TestCase):
                               ("pose_position' holds no numbers", dict(pose_position="here")),
                               ("pose_position' has 2 components", dict(pose_position=[(1, 2), (3, 4)])),
                               ("pose_time' has 3 values", dict(pose_time=[1, 2, 3])),
-                              ("pose 1: pose_time is not later", dict(pose_time=[9, 0])),
+                              ("pose 1: its time is not later", dict(pose_time=[9, 0])),
                               ("flap_axis' has 0 values", dict(flap_axis=None))):
             with self.subTest(words):
                 scan.movers = with_fields(good, **fields)

@@ -37,6 +37,7 @@ PICTURES = {
     "corridor": {"corridor": "corridor-corridor"},
     "design": {"head": "design-head"},
     "first_picture": {"airport": "airport-birds", "moving": "airport-birds-moving"},
+    "origins": {"platforms": "moving-platforms", "moving": "moving-platforms-moving"},
     "paper": {"facade": "paper-facade", "terminal-1": "paper-terminal-1"},
     "patterns": {"prisms": "sensors-prisms", "rotors": "sensors-rotors"},
     "predicted_measured": {"least": "measured-least"},

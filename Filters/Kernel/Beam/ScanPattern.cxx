@@ -4,6 +4,8 @@
 #include "ValueError.h"
 #include "Vector.h"
 
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -12,18 +14,6 @@ namespace avianlidar
 {
 namespace
 {
-/// Rotation from the sensor's frame to the scene's frame. Each matrix is given by its columns.
-glm::dmat3 orientation(double yawDegrees, double pitchDegrees, double rollDegrees)
-{
-  const auto [sy, cy] = sinCosDegrees(yawDegrees);
-  const auto [sp, cp] = sinCosDegrees(pitchDegrees);
-  const auto [sr, cr] = sinCosDegrees(rollDegrees);
-  const glm::dmat3 yaw(Vec3(cy, -sy, 0.0), Vec3(sy, cy, 0.0), Vec3(0.0, 0.0, 1.0));
-  const glm::dmat3 pitch(Vec3(1.0, 0.0, 0.0), Vec3(0.0, cp, sp), Vec3(0.0, -sp, cp));
-  const glm::dmat3 roll(Vec3(cr, 0.0, -sr), Vec3(0.0, 1.0, 0.0), Vec3(sr, 0.0, cr));
-  return yaw * pitch * roll;
-}
-
 Vec3 directionOf(double azimuthDegrees, double elevationDegrees)
 {
   const auto [se, ce] = sinCosDegrees(elevationDegrees);
@@ -321,9 +311,40 @@ std::int64_t numberOfFirings(const ScanPattern& pattern)
   return columns * numberOfChannels(pattern);
 }
 
-Vec3 upOf(double yaw, double pitch, double roll)
+glm::dmat3 rotationOf(double yawDegrees, double pitchDegrees, double rollDegrees)
 {
-  return orientation(yaw, pitch, roll)[2];
+  const auto [sy, cy] = sinCosDegrees(yawDegrees);
+  const auto [sp, cp] = sinCosDegrees(pitchDegrees);
+  const auto [sr, cr] = sinCosDegrees(rollDegrees);
+  // Each matrix is given by its columns.
+  const glm::dmat3 yaw(Vec3(cy, -sy, 0.0), Vec3(sy, cy, 0.0), Vec3(0.0, 0.0, 1.0));
+  const glm::dmat3 pitch(Vec3(1.0, 0.0, 0.0), Vec3(0.0, cp, sp), Vec3(0.0, -sp, cp));
+  const glm::dmat3 roll(Vec3(cr, 0.0, -sr), Vec3(0.0, 1.0, 0.0), Vec3(sr, 0.0, cr));
+  return yaw * pitch * roll;
+}
+
+Vec3 anglesOf(const glm::dmat3& rotation)
+{
+  const Vec3& ahead = rotation[1];
+  const double yaw = std::atan2(ahead.x, ahead.y) / RadiansPerDegree;
+  const double pitch = std::atan2(ahead.z, std::hypot(ahead.x, ahead.y)) / RadiansPerDegree;
+  // The rest after yaw and pitch, so that the roll also holds for a sensor that looks straight up.
+  const Vec3 up = glm::transpose(rotationOf(yaw, pitch, 0.0)) * rotation[2];
+  return { yaw, pitch, std::atan2(up.x, up.z) / RadiansPerDegree };
+}
+
+double durationOf(const ScanPattern& pattern)
+{
+  double last = 0.0;
+  const std::int64_t columns = numberOfColumns(pattern);
+  for (std::int64_t column = pattern.table ? 0 : columns - 1; column < columns; ++column)
+  {
+    for (int channel = 0; channel < numberOfChannels(pattern); ++channel)
+    {
+      last = std::max(last, beamTime(pattern, column, channel));
+    }
+  }
+  return last;
 }
 
 std::string checkPattern(const ScanPattern& pattern)
@@ -346,7 +367,7 @@ ScanGenerator::ScanGenerator(const ScanPattern& pattern, int revolution)
   , Channels(numberOfChannels(pattern))
   , Beams(numberOfBeams(pattern))
   , Tilted(pattern.pitch != 0.0 || pattern.roll != 0.0)
-  , Rotation(orientation(pattern.yaw, pattern.pitch, pattern.roll))
+  , Rotation(rotationOf(pattern.yaw, pattern.pitch, pattern.roll))
 {
 }
 

@@ -134,9 +134,14 @@ std::int64_t numberOfFirings(const ScanPattern& pattern);
 /// pattern is valid.
 std::string checkPattern(const ScanPattern& pattern);
 
-/// Upward axis of a sensor, in scene coordinates. @param yaw, pitch, roll angles as in ScanPattern,
-/// deg
-Vec3 upOf(double yaw, double pitch, double roll);
+/// Time from the start of a scan to its last firing, s.
+double durationOf(const ScanPattern& pattern);
+
+/// Rotation from a sensor's frame to the frame in which it stands. Angles are as in ScanPattern.
+glm::dmat3 rotationOf(double yawDegrees, double pitchDegrees, double rollDegrees);
+
+/// Yaw, pitch and roll of a rotation, deg.
+Vec3 anglesOf(const glm::dmat3& rotation);
 
 /// Sine and cosine of an angle in degrees, exact at multiples of 90 degrees.
 std::array<double, 2> sinCosDegrees(double degrees);

@@ -12,31 +12,11 @@ namespace avianlidar
 {
 namespace
 {
-/// Farthest position, m: the limit of all coordinates of a scene.
-constexpr double FarthestPosition = 1e30;
-
-/// Largest deviation of the length of a quaternion or an axis from 1.
+/// Largest deviation of the length of an axis from 1.
 constexpr double UnitWithin = 1e-6;
 
 /// Factor by which rounding widens spheres.
 constexpr double Wider = 1.0 + 1e-9;
-
-std::string checkPose(const Pose& pose, std::size_t number, bool always)
-{
-  const std::string which = "pose " + std::to_string(number) + ": ";
-  if (!always && !std::isfinite(pose.time))
-  {
-    return which + valueError("pose_time", pose.time, "a finite number of seconds");
-  }
-  if (!isFinite(pose.position) || !(safeLength(pose.position) <= FarthestPosition))
-  {
-    return which + "pose_position is not finite or beyond 1e30 m";
-  }
-  const double length = glm::length(pose.orientation);
-  return std::fabs(length - 1.0) <= UnitWithin
-    ? std::string()
-    : which + valueError("length of pose_orientation", length, "1 (a unit quaternion w, x, y, z)");
-}
 
 std::string checkFlap(const Flap& flap, std::size_t number)
 {
@@ -102,18 +82,6 @@ std::uint64_t hashOfMover(const Mover& mover)
   add(numbers);
   return hash;
 }
-
-Vec3 between(const Vec3& a, const Vec3& b, double share)
-{
-  return a + share * (b - a); // a, bit for bit, if a and b are equal
-}
-
-/// The first pose after a time.
-std::vector<Pose>::const_iterator after(const Mover& mover, double time)
-{
-  return std::upper_bound(mover.poses.begin(), mover.poses.end(), time,
-    [](double t, const Pose& pose) { return t < pose.time; });
-}
 }
 
 std::string prepareMover(Mover& mover)
@@ -122,23 +90,10 @@ std::string prepareMover(Mover& mover)
   {
     return "it has no pose, expected field data 'pose_position' with at least one";
   }
-  for (std::size_t k = 0; k < mover.poses.size(); ++k)
+  const std::string wrong = preparePoses(mover.poses, !mover.always);
+  if (!wrong.empty())
   {
-    const std::string wrong = checkPose(mover.poses[k], k, mover.always);
-    if (!wrong.empty())
-    {
-      return wrong;
-    }
-    if (k > 0 && !(mover.poses[k - 1].time < mover.poses[k].time))
-    {
-      return "pose " + std::to_string(k) +
-        ": pose_time is not later than that of the pose before, expected rising times";
-    }
-    Pose& pose = mover.poses[k];
-    if (glm::dot(pose.orientation, pose.orientation) != 1.0)
-    {
-      pose.orientation = glm::normalize(pose.orientation);
-    }
+    return wrong;
   }
   for (std::size_t k = 0; k < mover.flaps.size(); ++k)
   {
@@ -174,20 +129,7 @@ bool poseAt(const Mover& mover, double time, Pose& pose)
     pose.time = time;
     return true;
   }
-  const auto next = after(mover, time);
-  if (next == mover.poses.begin() || (next == mover.poses.end() && time > mover.poses.back().time))
-  {
-    return false;
-  }
-  const Pose& one = *(next - 1);
-  const Pose& two = next == mover.poses.end() ? one : *next;
-  const double share = &one == &two ? 0.0 : (time - one.time) / (two.time - one.time);
-  pose.time = time;
-  pose.position = between(one.position, two.position, share);
-  pose.orientation = one.orientation == two.orientation
-    ? one.orientation
-    : glm::normalize(glm::slerp(one.orientation, two.orientation, share));
-  return true;
+  return poseAt(mover.poses, time, pose);
 }
 
 MoverSphere sphereAt(const Mover& mover, const Pose& pose)
@@ -217,7 +159,8 @@ bool sphereBetween(const Mover& mover, double begin, double end, MoverSphere& sp
     lower = glm::min(lower, p);
     upper = glm::max(upper, p);
   };
-  for (auto knot = after(mover, first); knot != mover.poses.end() && knot->time < last; ++knot)
+  for (auto knot = poseAfter(mover.poses, first); knot != mover.poses.end() && knot->time < last;
+       ++knot)
   {
     extend(knot->position);
   }

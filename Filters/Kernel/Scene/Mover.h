@@ -4,13 +4,11 @@
  * @brief A moving object: triangles in its own frame, poses of this frame over time, and parts that
  * flap about hinges.
  *
- * Between two poses the position is linear in time. The orientation is a spherical linear
- * interpolation (slerp). The object is absent before the first pose and after the last pose. An
- * object without times has one pose and is present at all times. Before the pose is applied, a part
- * turns about its hinge by the angle a sin(2 pi (f t + phase)), with a the amplitude and f the
- * frequency.
+ * The object is absent before the first pose and after the last pose. An object without times has
+ * one pose and is present at all times. Before the pose is applied, a part turns about its hinge by
+ * the angle a sin(2 pi (f t + phase)), with a the amplitude and f the frequency.
  *
- * Source: slerp: K. Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985.
+ * Source: none.
  * Valid: positions up to 1e30 m. An object at rest in the scene's frame (position 0, orientation 1)
  * keeps the bits of its points.
  * Test: TestMover.cxx.
@@ -18,10 +16,9 @@
 #ifndef avianlidar_Mover_h
 #define avianlidar_Mover_h
 
+#include "Poses.h"
 #include "Reflectance.h"
 #include "TriangleMesh.h"
-
-#include <glm/gtc/quaternion.hpp>
 
 #include <cstdint>
 #include <string>
@@ -29,13 +26,6 @@
 
 namespace avianlidar
 {
-struct Pose
-{
-  double time = 0.0; ///< time on the clock of the beams, s
-  Vec3 position{ 0.0 };
-  glm::dquat orientation{ 1.0, 0.0, 0.0, 0.0 }; ///< unit quaternion, from object to scene
-};
-
 /// Flapping of a part, in the object's frame.
 struct Flap
 {
@@ -60,7 +50,7 @@ struct Mover
   std::vector<Material> materials;  ///< material of each triangle
   std::vector<int> objectIds;       ///< object id of each triangle; no other object has these ids
   std::vector<int> materialIds;     ///< material id of each triangle
-  std::vector<Pose> poses;          ///< poses in order of time
+  Poses poses;                      ///< poses in order of time
   bool always = false;              ///< true if the only pose holds at any time
   std::vector<Flap> flaps;
   // Set by prepareMover().

@@ -257,6 +257,13 @@ constexpr Name Skipped{ "skipped", "" };
 /// bound of the energy by which range units of echoes differ from the full model
 constexpr Name SkippedBound{ "skipped_bound", "J" };
 
+// Poses of a sensor that moves (point data of beams and echoes).
+/// position of the sensor when the beam is fired (3 components); with a trajectory only
+constexpr Name SensorPosition{ "sensor_position", "m" };
+/// unit quaternion w, x, y, z from the sensor's frame to the scene's when the beam is fired; with a
+/// trajectory only
+constexpr Name SensorOrientation{ "sensor_orientation", "1" };
+
 // Waveforms (point and cell data).
 /// mean energy that a sample receives, without noise
 constexpr Name Signal{ "signal", "J" };

@@ -8,6 +8,7 @@
 #define vtkAvianLidarBeamSourceInternals_h
 
 #include "PointingErrors.h"
+#include "Poses.h"
 #include "ScanBeams.h"
 #include "ScanClock.h"
 #include "ScanPattern.h"
@@ -23,6 +24,7 @@
 
 class vtkFieldData;
 class vtkInformation;
+class vtkInformationVector;
 
 struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
 {
@@ -124,8 +126,13 @@ struct vtkAvianLidarBeamSource::vtkInternals
     const Source& self, vtkInformation* asked, avianlidar::ScanPart& part, int& revolution);
   // Throws std::runtime_error for the first bad value.
   static void RequireProperties(const Source& self);
-  // The sensor as field data of its beams.
-  static void AddSensor(const Source& self, int revolution, vtkFieldData* fields);
+  // The poses of the platform; empty without a trajectory. Throws std::runtime_error unless there
+  // are poses at the times of all beams of the revolution.
+  static avianlidar::Poses TrajectoryOf(
+    const Source& self, vtkInformationVector* input, int revolution);
+  // The sensor as field data of its beams. @param pose pose of the platform
+  static void AddSensor(
+    const Source& self, int revolution, const avianlidar::Pose& pose, vtkFieldData* fields);
 };
 
 #endif

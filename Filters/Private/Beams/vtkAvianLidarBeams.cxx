@@ -49,7 +49,7 @@ void ReadUp(vtkFieldData* fields, avianlidar::Sensor& sensor)
     throw std::runtime_error(std::string("field data '") + name +
       "' is not finite, expected yaw, pitch and roll in degrees");
   }
-  sensor.up = avianlidar::upOf(a.x, a.y, a.z);
+  sensor.up = avianlidar::rotationOf(a.x, a.y, a.z)[2];
 }
 
 /// Read one of two choices. Without the array, `choice` is kept. @param words meaning of 0 and of 1
@@ -207,6 +207,21 @@ std::vector<Vec3> ReadDirections(vtkPolyData* input, const Arrays::Name& name, b
   return directions;
 }
 
+/// An optional point array of several components.
+template <std::size_t Size>
+std::vector<std::array<double, Size>> ReadTuples(vtkPolyData* input, const Arrays::Name& name)
+{
+  vtkDataArray* given = input->GetPointData()->GetArray(name.name);
+  Arrays::RequireNumeric(input->GetPointData(), name, "point array");
+  Arrays::RequireShape(given, "point array", Size, input->GetNumberOfPoints());
+  std::vector<std::array<double, Size>> tuples(given ? given->GetNumberOfTuples() : 0);
+  for (std::size_t i = 0; i < tuples.size(); ++i)
+  {
+    given->GetTuple(static_cast<vtkIdType>(i), tuples[i].data());
+  }
+  return tuples;
+}
+
 void ReadOrigins(vtkPolyData* input, avianlidar::ScanBeams& beams)
 {
   for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
@@ -294,7 +309,8 @@ std::uint64_t HashOf(vtkPolyData* input)
 {
   std::uint64_t hash = 0;
   for (const auto& array : { Arrays::Direction, Arrays::ReportedDirection, Arrays::BeamId,
-         Arrays::LaserId, Arrays::Azimuth, Arrays::VerticalAngle, Arrays::Timestamp })
+         Arrays::LaserId, Arrays::Azimuth, Arrays::VerticalAngle, Arrays::Timestamp,
+         Arrays::SensorPosition, Arrays::SensorOrientation })
   {
     vtkAbstractArray* any = input->GetPointData()->GetAbstractArray(array.name);
     const std::int64_t type = any ? any->GetDataType() : -1; // an array of text changes the hash
@@ -459,6 +475,8 @@ void vtkAvianLidarBeams::ReadBeams(vtkPolyData* input)
   this->beams.directions = ReadDirections(input, Arrays::Direction, true);
   ReadOrigins(input, this->beams);
   this->reportedDirections = ReadDirections(input, Arrays::ReportedDirection, false);
+  this->sensorPositions = ReadTuples<3>(input, Arrays::SensorPosition);
+  this->sensorOrientations = ReadTuples<4>(input, Arrays::SensorOrientation);
   ReadIds(input, this->beams);
   vtkDataArray* laser = FindNumbers(input, Arrays::LaserId, true);
   vtkDataArray* azimuth = FindNumbers(input, Arrays::Azimuth, false);

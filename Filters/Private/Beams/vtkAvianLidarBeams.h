@@ -11,6 +11,7 @@
 #include "vtkAvianLidarContent.h"
 #include "vtkAvianLidarRanks.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,9 +29,12 @@ struct vtkAvianLidarBeams
     azimuths; ///< azimuths, 0.01 deg clockwise from north, as given, else of the reported direction
   std::vector<double> verticalAngles; ///< elevations, deg, as given, else of the reported direction
   std::vector<double> timestamps;     ///< firing times, us, as given, else 0
-  bool isTimed = false;               ///< true if timestamps were given
-  double displayLength = 1000.0;      ///< length of the lines that display beams, m
-  std::int32_t revolution = 0;        ///< revolution of the sensor, as given, else 0
+  /// Position, m, and orientation of the sensor at each firing, as given; empty: not given.
+  std::vector<std::array<double, 3>> sensorPositions;
+  std::vector<std::array<double, 4>> sensorOrientations;
+  bool isTimed = false;          ///< true if timestamps were given
+  double displayLength = 1000.0; ///< length of the lines that display beams, m
+  std::int32_t revolution = 0;   ///< revolution of the sensor, as given, else 0
 
   /// Azimuth of a direction, 0.01 deg clockwise from north, in [0, 36000).
   static double AzimuthOf(const avianlidar::Vec3& d);

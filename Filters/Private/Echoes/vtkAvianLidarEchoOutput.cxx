@@ -19,6 +19,7 @@
 #include "vtkTypeUInt64Array.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -74,6 +75,24 @@ void AddPoses(vtkPolyData* poly, const names::Name& time, const names::Name& pos
     positions->SetTuple(i, &poseOf(static_cast<std::size_t>(i)).position.x);
   }
   poly->GetPointData()->AddArray(positions);
+}
+
+/// Add a point array of the echoes from values of their beams, unless there are none.
+template <std::size_t Size>
+void AddOfBeams(vtkPolyData* poly, const names::Name& name,
+  const std::vector<std::array<double, Size>>& values, const std::vector<std::size_t>& beamOf)
+{
+  if (values.empty())
+  {
+    return;
+  }
+  auto array = names::Make<vtkDoubleArray>(
+    name, static_cast<vtkIdType>(beamOf.size()), static_cast<int>(Size));
+  for (std::size_t i = 0; i < beamOf.size(); ++i)
+  {
+    array->SetTypedTuple(static_cast<vtkIdType>(i), values[beamOf[i]].data());
+  }
+  poly->GetPointData()->AddArray(array);
 }
 
 /// Position that the sensor reports for an echo at `range`, m.
@@ -330,6 +349,8 @@ void vtkAvianLidarEchoOutput::FillEchoes(const avianlidar::ScanResult& result,
   AddBeamArrays(beams, echoes, beamOf);
   Add<vtkDoubleArray>(
     echoes, names::Timestamp, [&](std::size_t i) { return beams.timestamps[beamOf(i)]; });
+  AddOfBeams(echoes, names::SensorPosition, beams.sensorPositions, result.beamOfEcho);
+  AddOfBeams(echoes, names::SensorOrientation, beams.sensorOrientations, result.beamOfEcho);
   Add<vtkIntArray>(echoes, names::ReturnNumber, [&](std::size_t i) { return all[i].returnNumber; });
   Add<vtkIntArray>(
     echoes, names::NumberOfReturns, [&](std::size_t i) { return all[i].numberOfReturns; });

@@ -21,6 +21,7 @@ from .coverage import _sites_page
 from .coverage._answer import percent, share_of
 from .coverage._design_page import Designs, answers
 from .coverage._flown import write_flown
+from .coverage._passed import write_passed
 from .coverage._maps import write_maps
 from .coverage._plan import Plan
 from .coverage._report import Report
@@ -70,6 +71,10 @@ def sequence(options) -> None:
     for part, values in (("sensor", options.sensor_set), ("scan", options.scan_set)):
         if values:
             changes[part] = {**scenario.get(part, {}), **in_snake_case(PROPERTIES[part], dict(values), f"--{part}-set")}
+    line = {"file_name": str(pathlib.Path(options.trajectory).resolve())} if options.trajectory else \
+        scenario.get("trajectory", {})
+    if line or options.trajectory_set:
+        changes["trajectory"] = {**line, **dict(options.trajectory_set)}
     sequence = Sequence(options.scenario, threads=threads, **changes)
     for one in sequence.flights.values() if ranks.rank == 0 else ():
         tell(f"{one.words}\n  {sequence.period(one)}")
@@ -195,6 +200,8 @@ def coverage(options) -> None:
             with only_run(folder, goes_on=False) if len(plans) > 1 else contextlib.nullcontext():
                 count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
                 birds = [write_flown(plan, options.tracks, folder)] if options.tracks else []
+                if options.trajectory:
+                    birds.append(write_passed(plan, options.trajectory, folder, bar, **dict(options.trajectory_set)))
             row = plan.overall
             tell(f"{folder}: {counted(count, 'file')}; "
                  f"{plan.bird if any(plan.mix) else 'the target'} detected in one scan: "

@@ -15,6 +15,7 @@ from ..._cloud import leaves_of
 from ..._coverage import Coverage, places_of
 from ..._numbers import figures
 from ..._pipeline import Error, update
+from ..._properties import PropertyOwner
 from ..._ranks import digest_of, digest_of_arrays
 from ..._scene import Scene, load_scene
 from ..._sensor import Sensor
@@ -41,14 +42,14 @@ BYTES_OF_PLACE = 200  # memory for a drawn place and its results, bytes
 
 
 @contextlib.contextmanager
-def restored(cover: Coverage, *names: str) -> Iterator[None]:
-    """Gives attributes of a coverage their present values again afterwards, also after an error or Ctrl-C."""
-    own = {name: getattr(cover, name) for name in names}
+def restored(owner: PropertyOwner, *names: str) -> Iterator[None]:
+    """Gives attributes of a coverage or sensor their present values again afterwards, also after an error or Ctrl-C."""
+    own = {name: getattr(owner, name) for name in names}
     try:
         yield
     finally:
         for name, value in own.items():
-            setattr(cover, name, value)
+            setattr(owner, name, value)
 
 
 class Plan:

@@ -160,6 +160,9 @@ def with_files(scenario: Dict[str, Any], change: Callable[[str], str]) -> Dict[s
     preset = scenario["sensor"]["preset"]
     birds = [{**group, **{name: change(group[name]) for name in ("file_name", "species_file_name") if name in group}}
              for group in scenario.get("birds", ())]
+    if "trajectory" in scenario:
+        line = scenario["trajectory"]
+        scenario = {**scenario, "trajectory": {**line, "file_name": change(line["file_name"])}}
     return {**scenario, "scene": change(scenario["scene"]), "birds": birds,
             "sensor": {**scenario["sensor"], "preset": change(preset) if preset.endswith(".json") else preset}}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Tuple
+from typing import Callable, Optional, Tuple
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -39,7 +39,8 @@ class Boxes:
     def __init__(self, tree, sensor, pose: np.ndarray):
         """tree    vtkAvianLidarCollisionTree of the scene, updated
            sensor  a Sensor, at rest
-           pose    3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates"""
+           pose    3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates, or
+                   to those of the platform on which the sensor stands"""
         self.tree, self.pose = tree, pose
         self.gate = float(sensor.minimum_range), float(sensor.range_gate)
         turned, up = self._angles(sensor.beams["direction"] @ pose[:, :3])
@@ -55,16 +56,29 @@ class Boxes:
         """Angles to the left and upwards of each row, rad."""
         return np.arctan2(rows[:, 1], rows[:, 0]), np.arctan2(rows[:, 2], np.hypot(rows[:, 0], rows[:, 1]))
 
-    def lines(self, report: Cloud, movers) -> str:
-        """A line for each mover in the field of view. @param report the mover report @param movers of the scan"""
+    def lines(self, report: Cloud, movers, poses: Optional[Callable[[int], np.ndarray]] = None,
+              frame: Optional[np.ndarray] = None) -> str:
+        """A line for each mover in the field of view.
+
+        report  the mover report
+        movers  of the scan
+        poses   for a sensor that moves, its pose (as `pose`) by the id of the beam that meets the mover
+        frame   matrix from the coordinates of the boxes to the scene's; default: the sensor's pose
+        """
         blocks = {int(block.GetCellData().GetArray("object_id").GetTuple1(0)): block for block in leaves_of(movers)}
         if not report.number_of_points:
             return ""
-        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes")]
-        return "".join(self._line(blocks[number], number, 1e-6 * time, points, place)
-                       for number, time, points, place in zip(*columns, report.points))
+        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes",
+                                                             "beam_id")]
+        found = []
+        for number, time, points, beam, place in zip(*columns, report.points):
+            self.pose = poses(beam) if poses else self.pose
+            found.append(self._line(blocks[number], number, 1e-6 * time, points, place,
+                                    self.pose if frame is None else frame))
+        return "".join(found)
 
-    def _line(self, block: vtkPolyData, number: int, time: float, points: int, place: np.ndarray) -> str:
+    def _line(self, block: vtkPolyData, number: int, time: float, points: int, place: np.ndarray,
+              frame: np.ndarray) -> str:
         fields = field_values(block)
         quaternions = np.reshape(fields.get("pose_orientation", [1.0, 0, 0, 0]), (-1, 4))
         rotation = _rotation(np.ravel(fields.get("pose_time", [0.0])), quaternions, time)
@@ -74,8 +88,8 @@ class Boxes:
             return ""
         bounds = np.reshape(block.GetBounds(), (3, 2))
         width, length, height = bounds[:, 1] - bounds[:, 0]  # x is right, y is forward
-        centre = (rotation @ bounds.mean(axis=1) + place - self.pose[:, 3]) @ self.pose[:, :3]
-        ahead = rotation[:, 1] @ self.pose[:, :3]
+        centre = (rotation @ bounds.mean(axis=1) + place - frame[:, 3]) @ frame[:, :3]
+        ahead = rotation[:, 1] @ frame[:, :3]
         name = "_".join(str(fields["object_classes"][0]).split()) or "object"
         numbers = " ".join(f"{value:.4f}" for value in (*centre, length, width, height, np.arctan2(ahead[1], ahead[0])))
         return f"{name} {truncated:.2f} {hidden:.2f} {numbers} {number} {points}\n"

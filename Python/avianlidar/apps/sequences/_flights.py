@@ -13,12 +13,11 @@ from numbers import Real
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from ... import vtkAvianLidar as _wrapped
-from ..._cloud import add_array
+from ..._cloud import add_array, with_points
 from ..._pipeline import Error, callers_level, update
 from ..._properties import set_properties, unknown
 from ..._scene import load_scene
@@ -73,14 +72,7 @@ class Flights:
         """Tracks under way at some time between begin and end (s), as lines, and their ids. The positions before and
         after, from which turns follow, are included."""
         chosen, parts = self._under_way(begin, end, 3)
-        rows, lines = np.concatenate([*parts, np.empty((0, 4))]), vtkPolyData()
-        points, cells = vtkPoints(), vtkCellArray()
-        points.SetData(numpy_to_vtk(np.ascontiguousarray(rows[:, :3]), deep=True))
-        cells.SetData(numpy_to_vtkIdTypeArray(np.cumsum([0, *map(len, parts)]), deep=True),
-                      numpy_to_vtkIdTypeArray(np.arange(len(rows)), deep=True))
-        lines.SetPoints(points)
-        lines.SetLines(cells)
-        add_array(lines.GetPointData(), "time", np.ascontiguousarray(rows[:, 3]))
+        lines = lines_of(parts)
         if len(chosen):
             add_array(lines.GetCellData(), "species", [self.species[track] for track in chosen])
         return lines, [self.ids[track] for track in chosen]
@@ -118,6 +110,17 @@ class Flights:
                 if away < NEAR:
                     return f"probably {words}: corrected, the nearest bird is {away:.0f} m away"
         return f"the origin is {origin[0]:g}, {origin[1]:g} (latitude, longitude)"
+
+
+def lines_of(parts: Sequence[np.ndarray]) -> vtkPolyData:
+    """Lines with the point array `time` (s). @param parts positions of each line with their times, n x 4"""
+    rows = np.concatenate([*parts, np.empty((0, 4))])
+    lines, cells = with_points(rows[:, :3]), vtkCellArray()
+    cells.SetData(numpy_to_vtkIdTypeArray(np.cumsum([0, *map(len, parts)]), deep=True),
+                  numpy_to_vtkIdTypeArray(np.arange(len(rows)), deep=True))
+    lines.SetLines(cells)
+    add_array(lines.GetPointData(), "time", rows[:, 3], "s")
+    return lines
 
 
 def _cut(track: np.ndarray, begin: float, end: float) -> np.ndarray:
@@ -167,7 +170,7 @@ def read_flights(file, origin: Any = None, scene=None, species: str = "",
     geoid_undulation   height of the sea level above the ellipsoid, m
     columns            names of columns by meaning
     """
-    file, given = str(file), columns or {}
+    file = str(file)
     if origin is not None:
         origin = origin_of(origin)
     elif scene is not None:
@@ -178,17 +181,9 @@ def read_flights(file, origin: Any = None, scene=None, species: str = "",
     try:
         if height_reference not in ("", *LEVELS):
             raise Error(unknown("height_reference", height_reference, LEVELS))
-        known = Columns(reader.names, given)
-        ignored = known.ignore(reader.empty)
-        if ignored:
-            reader.notes.append(f"columns without a value are ignored: {', '.join(ignored)}")
-        in_degrees = ("longitude" in known.found or "latitude" in known.found) and not {"x", "y"} & {*given}
-        across = ("longitude", "latitude") if in_degrees else ("x", "y")
-        chosen = {what: known.need(what) for what in ("time", *across)}
-        chosen["height"], level = _height(known, in_degrees, height_reference)
-        more = {what: known.find(what) for what in ("id", "species", "date", *OUTLIERS)}
-        chosen.update((what, column) for what, column in more.items() if column)
-        _check_level(chosen["height"].name, level, in_degrees, origin, geoid_undulation, scene)
+        chosen, across, level = columns_of(reader, columns, height_reference, ("id", "species", "date", *OUTLIERS))
+        in_degrees = across[0] == "longitude"
+        check_level(f"heights ({chosen['height'].name})", level, in_degrees, origin, geoid_undulation, scene)
     except Error as error:
         raise Error(f"{file}: {error}") from None
     frame = reader.rows(chosen, across)
@@ -196,18 +191,9 @@ def read_flights(file, origin: Any = None, scene=None, species: str = "",
     order, begins, ids = reader.tracks(frame, times, across)
     frame, times = frame.iloc[order], times[order]
     places, heights = frame[[*across]].to_numpy(float), frame["height"].to_numpy(float)
-    above_sea = heights - (geoid_undulation or 0.0) * (level == "ellipsoid")
     if not in_degrees and origin is not None:
-        _check_metres(file, chosen, places, origin)
-    if in_degrees:
-        assert origin is not None
-        points = placed(np.column_stack([places, above_sea if level != "ground" else np.full(len(places), origin[2])]),
-                        origin)
-    else:
-        below = origin[2] if origin is not None and level in ("sea", "ellipsoid") else 0.0
-        points = np.column_stack([places, above_sea - below])
-    if level == "ground":
-        points[:, 2] = heights
+        check_metres(file, chosen, places, origin)
+    points = points_of(places, heights, level, in_degrees, origin, geoid_undulation)
     names = ", ".join(f"{what} is {column.name}" for what, column in chosen.items() if what not in OUTLIERS)
     left = [f"{reason} ({count})" for reason, count in reader.left.items() if count]
     of_tracks = _species_of(reader, frame, begins, species, species_file_name)
@@ -241,22 +227,62 @@ def read_tracks(file, scene=None, start_time: Any = None, **settings: Any) -> vt
     return found.lines(-np.inf, np.inf)[0]
 
 
-def _check_level(name: str, level: str, in_degrees: bool, origin: Optional[Sequence[float]],
-                 geoid_undulation: Optional[float], scene) -> None:
-    """Raises an error if the scene cannot place birds of these coordinates. @param name column of the heights"""
+def columns_of(reader: Log, columns: Optional[Dict[str, str]], height_reference: str, more: Sequence[str]
+               ) -> Tuple[Dict[str, Column], Tuple[str, str], str]:
+    """The columns of a table by their meaning, the names of the horizontal coordinates, and the level that heights
+    count from. @param height_reference as of read_flights; "clamp" needs no heights @param more other meanings"""
+    given = columns or {}
+    known = Columns(reader.names, given)
+    ignored = known.ignore(reader.empty)
+    if ignored:
+        reader.notes.append(f"columns without a value are ignored: {', '.join(ignored)}")
+    in_degrees = ("longitude" in known.found or "latitude" in known.found) and not {"x", "y"} & {*given}
+    across = ("longitude", "latitude") if in_degrees else ("x", "y")
+    chosen, level = {what: known.need(what) for what in ("time", *across)}, height_reference
+    if level != "clamp":
+        chosen["height"], level = _height(known, in_degrees, height_reference)
+    found = {what: known.find(what) for what in more}
+    chosen.update((what, column) for what, column in found.items() if column)
+    return chosen, across, level
+
+
+def points_of(places: np.ndarray, heights: np.ndarray, level: str, in_degrees: bool,
+              origin: Optional[Sequence[float]], geoid_undulation: Optional[float]) -> np.ndarray:
+    """East, north, and up from the scene's origin or, for the level `ground`, from the ground, n x 3, m.
+
+    places   n x 2: longitudes and latitudes (deg) or x and y (m)
+    heights  n, m
+    """
+    above_sea = heights - (geoid_undulation or 0.0) * (level == "ellipsoid")
+    if in_degrees:
+        assert origin is not None
+        points = placed(np.column_stack([places, above_sea if level != "ground" else np.full(len(places), origin[2])]),
+                        origin)
+    else:
+        below = origin[2] if origin is not None and level in ("sea", "ellipsoid") else 0.0
+        points = np.column_stack([places, above_sea - below])
+    if level == "ground":
+        points[:, 2] = heights
+    return points
+
+
+def check_level(what: str, level: str, in_degrees: bool, origin: Optional[Sequence[float]],
+                geoid_undulation: Optional[float], scene) -> None:
+    """Raises an error if the scene cannot place points of these coordinates. @param what the heights in words"""
     if origin is None and (in_degrees or level in ("sea", "ellipsoid")):
-        what = "longitudes and latitudes" if in_degrees else f"heights above the {level}"
-        raise Error(f"has {what}, but the scene has no origin on the Earth: expected the key origin in the scene file, "
-                    "or in this group of birds (latitude and longitude in degrees, height in metres)")
+        coordinates = "longitudes and latitudes" if in_degrees else f"heights above the {level}"
+        raise Error(f"has {coordinates}, but the scene has no origin on the Earth: expected the key origin in the "
+                    "scene file, or origin beside the file's name (latitude and longitude in degrees, height in "
+                    "metres)")
     if level == "ellipsoid" and geoid_undulation is None:
-        raise Error(f"heights ({name}) are above the ellipsoid, and those of the scene above the sea: expected "
+        raise Error(f"{what} are above the ellipsoid, and those of the scene above the sea: expected "
                     "geoid_undulation, the height of the sea level above the ellipsoid in metres (GUND in AD 2.2 of "
                     "the airport's AIP; 0 if the scene's heights are above the ellipsoid)")
     if level == "ground" and scene is None:
-        raise Error(f"heights ({name}) are above the ground, but there is no scene: expected scene")
+        raise Error(f"{what} are above the ground, but there is no scene: expected scene")
 
 
-def _check_metres(file: str, chosen: Dict[str, Column], places: np.ndarray, origin: Sequence[float]) -> None:
+def check_metres(file: str, chosen: Dict[str, Column], places: np.ndarray, origin: Sequence[float]) -> None:
     """Raises an error for x and y that are longitude and latitude near the origin, or these exchanged."""
     if not len(places) or np.abs(places).max() > 400.0:
         return

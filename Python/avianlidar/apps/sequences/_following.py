@@ -275,6 +275,9 @@ class Input:
         self.folder, self.name, self.manifest = folder, name, folder / "manifest.json"
         known = read_manifest(folder, ", or a scenario")
         self.scenario, self.numbers = read_scenario(self.manifest), sorted(known["sequences"])
+        if "trajectory" in self.scenario:
+            raise Error(f"{self.manifest}: the sensor moves, expected one that stands still, as the clutter filter learns "
+                        "the ranges of a fixed sensor")
         self.assumed = list(known.get("assumed", ()))
         self.content = {number: self._whole(number) for number in self.numbers}
         first = self.content[self.numbers[0]]["inputs"]

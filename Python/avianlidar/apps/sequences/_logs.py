@@ -18,12 +18,13 @@ from ..._files import read_regular
 from ..._pipeline import Error
 from ..._properties import unknown
 
-# Words of a column's name that change nothing, and units with their size in m or s
-FILLERS = {"gps", "gnss", "location", "position", "pos", "fix", "coordinate", "coord", "decimal", "utc", "gmt"}
+# Words of a column's name that change nothing, and units with their size in m, s or deg
+FILLERS = {"gps", "gnss", "location", "position", "pos", "fix", "coordinate", "coord", "decimal", "utc", "gmt", "osd"}
 UNITS = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "km": 1000.0, "ft": 0.3048, "feet": 0.3048,
          "foot": 0.3048, "cm": 0.01, "centimetres": 0.01, "centimeters": 0.01, "mm": 1e-3, "millimetres": 1e-3,
          "millimeters": 1e-3, "s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3,
-         "millis": 1e-3, "milliseconds": 1e-3, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "dd": 1.0}
+         "millis": 1e-3, "milliseconds": 1e-3, "deg": 1.0, "degree": 1.0, "degrees": 1.0, "dd": 1.0,
+         "rad": 180 / math.pi, "radians": 180 / math.pi}
 # The names of columns without their units. If several columns fit, the first list with a column counts.
 NAMES: Dict[str, Sequence[Set[str]]] = {
     "time": ({"timestamp", "time stamp", "datetime", "date time"},
@@ -36,7 +37,11 @@ NAMES: Dict[str, Sequence[Set[str]]] = {
            {"tag local identifier", "tag id", "tag", "device id", "device", "device info serial", "logger id"},
            {"id", "identifier", "object id", "name"}),
     "species": ({"species", "species name"}, {"individual taxon canonical name", "taxon canonical name", "taxon",
-                                              "taxon name", "scientific name", "common name"})}
+                                              "taxon name", "scientific name", "common name"}),
+    "heading": ({"heading", "compass heading", "true heading", "heading true"}, {"yaw"},
+                {"course", "course over ground", "cog"}),
+    "pitch": ({"pitch"},), "roll": ({"roll"},),
+    **{f"q{axis}": ({f"q{axis}", f"q {axis}", f"quaternion {axis}", f"orientation {axis}"},) for axis in "xyzw"}}
 CLOCKS = "time", "timestamp"  # ends of other names of times
 HEIGHTS = {"height", "altitude", "alt", "elevation", "ele", "elev", "z"}
 PRESSURE = {"baro", "barometric"}  # such heights count if there are no others
@@ -65,7 +70,7 @@ SINCE_1970, LATEST = 1e8, 8e9  # s: greater times count from 1970, and lie befor
 class Column(NamedTuple):
     name: str
     number: int
-    unit: float  # in m or s
+    unit: float  # in m, s or deg
     rank: int  # place in the lists of NAMES
     level: str = ""  # of LEVELS, or empty
 
@@ -123,7 +128,7 @@ class Columns:
         self.found: Dict[str, List[Column]] = {}
         for number, name in enumerate(names):
             what, column = _meaning(name, number)
-            if what and what not in given:
+            if what and what not in given and name not in given.values():
                 self.found.setdefault(what, []).append(column)
         for what, name in given.items():
             if what not in (*NAMES, "height"):
@@ -228,10 +233,11 @@ def as_time(seconds: float) -> str:
 class Log:
     """Reads a table of tracks."""
 
-    def __init__(self, file: str):
+    def __init__(self, file: str, made: Optional[bytes] = None):
+        """@param made a table that was made of the points of a file"""
         import pandas
-        self.pandas, self.file = pandas, file
-        raw = read_regular(file)
+        self.pandas, self.file, self.is_made = pandas, file, made is not None
+        raw = read_regular(file) if made is None else made
         if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
             raise Error(f"{file}: is in UTF-16, expected UTF-8: save the table again as CSV in UTF-8")
         raw = COMMENT.sub(b"", _with_header(raw.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")))
@@ -251,10 +257,12 @@ class Log:
         self.left: Dict[str, int] = {}  # number of rows or tracks left out, by reason
         self.notes: List[str] = []
 
-    def line(self, row: int) -> int:
-        """The number of a row's line in the file."""
+    def line(self, row: int) -> str:
+        """A row's line in the file in words."""
+        if self.is_made:
+            return f"point {row + 1}"
         lines = (number for number, text in enumerate(self.raw.split(b"\n"), 1) if text.strip())
-        return next(number for k, number in enumerate(lines) if k == row + 1) + self.skipped
+        return f"line {next(number for k, number in enumerate(lines) if k == row + 1) + self.skipped}"
 
     def _table(self, numbers: List[str], dtype: Any, **more: Any) -> Any:
         try:
@@ -291,7 +299,7 @@ class Log:
             numbers = self.pandas.to_numeric(text, errors="coerce")
             wrong = np.flatnonzero(numbers.isna() & column.notna() & (text != ""))
             if len(wrong):
-                raise Error(f"{self.file}: line {self.line(frame.index[wrong[0]])}: {what} is "
+                raise Error(f"{self.file}: {self.line(frame.index[wrong[0]])}: {what} is "
                             f"{str(column.iloc[wrong[0]])[:40]!r}, expected {expected}")
             column = numbers
         found = column.to_numpy(dtype=float)
@@ -303,21 +311,24 @@ class Log:
         return frame[keep]
 
     def rows(self, chosen: Dict[str, Column], across: Tuple[str, str]) -> Any:
-        """The rows with a position, a time and an id. @param across names of the horizontal coordinates"""
+        """The rows with a position, a time and an id; of points of a file, also those without a height.
+        @param across names of the horizontal coordinates"""
         frame = self.read(chosen, {"time", "id", "species", "date", *OUTLIERS})
         for what, sign in OUTLIERS.items():
             if what in frame:
                 says_yes = frame[what].str.strip().str.lower().isin(["true", "t", "1", "1.0", "yes"])
                 frame = self.leave(frame, frame[what].isna() | (says_yes != sign), "rows marked as outliers")
-        for what in (*across, "height"):
+        for what in (what for what in (*across, "height") if what in chosen):
             expected = "degrees, as in 121.3363" if what in ("longitude", "latitude") else "a number in metres"
             frame = frame.assign(**{what: self.numbers(frame, what, chosen[what].unit, expected)})
             if what == across[1]:
                 frame = self.leave(frame, frame[[*across]].notna().all(axis=1), "rows without a position")
-        frame = self.leave(frame, frame["height"].notna(), "rows without a height")
-        heights, unit = frame["height"], chosen["height"].unit
-        known = ~(heights / unit).round(6).isin(UNKNOWN) | (unit < 0.3)
-        frame = self.leave(frame, heights.between(*PLAUSIBLE) & known, "rows with an impossible height")
+        if "height" in chosen:
+            frame = self.leave(frame, frame["height"].notna() | self.is_made, "rows without a height")
+            heights, unit = frame["height"], chosen["height"].unit
+            known = ~(heights / unit).round(6).isin(UNKNOWN) | (unit < 0.3)
+            possible = heights.between(*PLAUSIBLE) & known | heights.isna()
+            frame = self.leave(frame, possible, "rows with an impossible height")
         if across[0] == "longitude":
             frame = self.leave(frame, (frame[[*across]] != 0.0).any(axis=1), "rows at 0, 0 degrees")
             self.check_degrees(frame, chosen)
@@ -334,7 +345,7 @@ class Log:
             wrong = np.flatnonzero(frame[what].abs() > most)
             if len(wrong):
                 may_be = what == "latitude" and (frame[["longitude", what]].abs().max() <= (90.0, 360.0)).all()
-                raise Error(f"{self.file}: line {self.line(frame.index[wrong[0]])}: {what} ({chosen[what].name}) is "
+                raise Error(f"{self.file}: {self.line(frame.index[wrong[0]])}: {what} ({chosen[what].name}) is "
                             f"{frame[what].iloc[wrong[0]]:g}, expected degrees within {-most:g} and {most:g}"
                             f"{'; latitude and longitude may be exchanged' if may_be else ''}")
 
@@ -349,7 +360,7 @@ class Log:
         if "id" not in frame and same.any():
             one, other = order[np.flatnonzero(same)[0] - 1:][:2]
             if (frame[[*across]].iloc[one] != frame[[*across]].iloc[other]).any():
-                raise Error(f"{self.file}: line {self.line(frame.index[other])}: a bird is at two places at one time, "
+                raise Error(f"{self.file}: {self.line(frame.index[other])}: a bird is at two places at one time, "
                             "expected a column with the ids of the tracks, such as track_id, or its name in columns")
         self.left["rows of a time that their track already has"] = int(same.sum())
         order = order[~same]
@@ -373,7 +384,7 @@ class Log:
                     break
             if size > LATEST:
                 worst = int(np.abs(found).argmax())
-                raise Error(f"{self.file}: line {self.line(frame.index[worst])}: time is {texts.iloc[worst]!r}, "
+                raise Error(f"{self.file}: {self.line(frame.index[worst])}: time is {texts.iloc[worst]!r}, "
                             f"expected {ISO_EXPECTED} since 1970 or since the first scan")
             return found, bool(size > SINCE_1970)
         codes, values = self.pandas.factorize(texts)
@@ -381,7 +392,7 @@ class Log:
             found, is_local = _iso(list(values))
         except ValueError as error:
             row = int(np.flatnonzero(codes == list(values).index(str(error)))[0])
-            raise Error(f"{self.file}: line {self.line(frame.index[row])}: time is {str(error)[:40]!r}, "
+            raise Error(f"{self.file}: {self.line(frame.index[row])}: time is {str(error)[:40]!r}, "
                         f"expected {ISO_EXPECTED}") from None
         if is_local:
             self.notes.append("times without a zone are UTC")

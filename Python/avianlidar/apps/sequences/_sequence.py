@@ -13,9 +13,10 @@ import warnings
 from typing import Any, Callable, Counter, Dict, List, Optional
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from ... import vtkAvianLidar as _wrapped
-from ..._cloud import Cloud
+from ..._cloud import Cloud, add_array, with_points
 from ..._disk import only_run, synchronize, write_whole
 from ..._files import numbers_of, read_regular
 from ..._pipeline import Error, Updates, callers_level
@@ -59,7 +60,9 @@ class Sequence(Simulation):
         """Writes the files of a sequence. @return a description of the content"""
         for name in FOLDERS:
             (folder / name).mkdir(parents=True)
-        boxes = Boxes(self.scene.tree, self.at_rest, self._pose())
+        boxes = Boxes(self.scene.tree, self.mount, self._pose(self.mount.beams.data))
+        moves, corrected = self.trajectory is not None, bool(self.scenario.get("motion_correction", True))
+        poses: List[np.ndarray] = []
         writer = _wrapped.vtkAvianLidarKITTIWriter()
         table: List[Dict[str, Any]] = []
         classes: Counter[int] = collections.Counter()
@@ -67,7 +70,8 @@ class Sequence(Simulation):
         with Updates(writer) as write:
             for k, scan, species in self.frames(number):
                 echoes, name = scan.algorithm.GetOutput(0), f"{k - scans.start:06d}"
-                writer.SetInputData(echoes)
+                poses.append(self._pose(echoes))
+                writer.SetInputData(echoes if corrected else as_recorded(echoes))
                 writer.SetFileName(str(folder / "velodyne" / f"{name}.bin"))
                 write(writer.Write)
                 labels = relabel(np.fromfile(folder / "velodyne" / f"{name}.label", np.uint32), self.bird_class)
@@ -77,13 +81,14 @@ class Sequence(Simulation):
                 _, subset = self.clutter.look(points["beam_id"], points["distance_m"])
                 (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
                 (folder / "boxes" / f"{name}.txt").write_text(
-                    boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers), encoding="utf-8")
+                    boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers, self._pose_at if moves else None,
+                                poses[-1] if corrected else None), encoding="utf-8")
                 table += self._truth(k, species)
                 classes.update((labels & 0xffff).tolist())
                 if progress:
                     progress(number, k - scans.start + 1, len(scans))
         np.savetxt(folder / "times.txt", np.array(scans) / self.sensor.rotation_rate, "%.6f")
-        np.savetxt(folder / "poses.txt", [self._pose().ravel()] * len(scans), "%.9g")
+        np.savetxt(folder / "poses.txt", [pose.ravel() for pose in poses], "%.9g")
         names = "P0", "P1", "P2", "P3", "Tr"
         (folder / "calib.txt").write_text("".join(f"{name}: 1 0 0 0 0 1 0 0 0 0 1 0\n" for name in names))
         (folder / "truth.csv").write_bytes(as_csv([TRUTH, *([*row.values()] for row in table)]))
@@ -100,7 +105,7 @@ class Sequence(Simulation):
         scenario = with_files({**self.scenario, "scene": ""},
                               lambda name: name and hashlib.sha256(read_regular(name)).hexdigest())
         parts = {"scenario": {name: part for name, part in scenario.items() if name not in ("scene", "sensor", "scan")},
-                 "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.at_rest.beams.data)},
+                 "sensor": {**self.sensor.properties(), "beams": digest_of_arrays(self.mount.beams.data)},
                  "scan": self.scan.properties()}
         found = {f"{part}.{name}": _short(value) for part, values in parts.items() for name, value in values.items()
                  if name not in NO_BIT}
@@ -116,7 +121,8 @@ class Sequence(Simulation):
         A sequence gets its name when it is complete, so a killed run can be started again and continues with the next
         sequence. More scans add sequences; a sequence that had fewer scans is made again, with a warning. Sequences of
         another scenario, more scans than requested, and changed files are errors. Each rank makes whole sequences.
-        semantic-kitti.yaml beside the manifest is the configuration for programs that read SemanticKITTI.
+        semantic-kitti.yaml beside the manifest is the configuration for programs that read SemanticKITTI, and
+        trajectory.vtp the trajectory of a sensor that moves, for ParaView.
 
         progress  called with the number of the sequence, its finished scans and all its scans
         """
@@ -169,6 +175,8 @@ class Sequence(Simulation):
                 points = {int(label): count for label, count in _sums(manifest, "points_of_classes").items()}
                 write_whole(out / "manifest.json", as_json(manifest))
                 write_whole(out / "datasheet.md", datasheet(manifest).encode())
+                if self.trajectory is not None:
+                    Cloud(self.trajectory).save(out / "trajectory.vtp")
                 write_whole(out / CONFIGURATION, configuration(self.bird_class, points, map(int, contents)).encode())
             ranks.wait()
             return manifest
@@ -205,6 +213,16 @@ class Sequence(Simulation):
             raise Error(f"{folder / DONE}: {wrong[0]} is missing or is not a count. {_AGAIN}")
         content_of(folder)
         return True
+
+
+def as_recorded(echoes: vtkPolyData) -> vtkPolyData:
+    """Echoes of a sensor that moves, in its frame at the firing of each beam, as a real lidar records them."""
+    data = vtkPolyData()
+    data.ShallowCopy(echoes)
+    data.SetPoints(with_points(Cloud(echoes).coordinates("sensor", motion_correction=False)).GetPoints())
+    for name in ("position", "orientation"):
+        add_array(data.GetFieldData(), name, np.zeros((1, 3)))
+    return data
 
 
 def _short(value: Any) -> str:

@@ -9,7 +9,7 @@ import json
 import math
 import os
 import warnings
-from typing import Any, Dict, Iterator, List, Tuple, Union
+from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkFieldData, vtkMultiBlockDataSet, vtkPolyData
@@ -29,6 +29,7 @@ from ..inputs._read import checked, read_scenario
 from ._flights import FAR, SETTINGS, Flights, least_distance, origin_of, read_flights
 from ._labels import BIRD, FIRST_BIRD, FIRST_OBJECT, LAST_ID, classes_of
 from ._logs import as_time, seconds_of
+from ._trajectory import read_trajectory
 
 SUBSETS = ("sky", "near_clutter", "through_edges")
 STATUSES = ("absent", "outside", "hidden", "air", "too weak", "missed", "seen")
@@ -99,14 +100,22 @@ class Simulation:
         if len(self.scene.objects) > FIRST_OBJECT:
             raise Error(f"{self.scenario['scene']}: has {len(self.scene.objects)} objects, "
                         f"expected at most {FIRST_OBJECT}: labels hold no more")
-        sensor: Dict[str, Any] = {"position": self.scene.lidar_position or (0, 0, 0), "motion_seed": self.seed,
+        self.trajectory = self._read_trajectory()
+        place = (0, 0, 0) if self.trajectory else self.scene.lidar_position or (0, 0, 0)
+        sensor: Dict[str, Any] = {"position": place, "motion_seed": self.seed,
                                   **self.scenario["sensor"], "number_of_revolutions": self.scans}
         with naming(f"{self.file}: weather"):
             air = in_weather(self.scenario.get("scan", {}), self.scenario.get("weather"))
         settings: Dict[str, Any] = {"seed": self.seed, **air, "number_of_threads": threads}
         with naming(f"{self.file}: sensor"):
-            self.sensor = Sensor(**sensor)
-            update(self.sensor.algorithm)
+            self.sensor = Sensor(**sensor, trajectory=self.trajectory)
+            last = functools.partial(self.sensor.algorithm.UpdateTimeStep, (self.scans - 1) / self.sensor.rotation_rate)
+            for run in (last, None) if self.trajectory else (None,):
+                update(self.sensor.algorithm, run=run)
+        self.place, self.way = np.array(self.sensor.position), 0.0  # middle and half length of the sensor's way, m
+        if self.trajectory:
+            low, high = np.reshape(self.trajectory.GetBounds(), (3, 2)).T
+            self.place, self.way = (low + high) / 2, float(np.linalg.norm(high - low) / 2)
         with naming(f"{self.file}: scan"):
             self.scan = Scan(self.scene, self.sensor, **settings)
         with naming(self.file):
@@ -123,7 +132,8 @@ class Simulation:
             self.bare = self._in_media([], others)
         self.tracks: Dict[int, str] = {}  # ids in files of the birds of the current sequence
         sensor.update(number_of_revolutions=1, sway_amplitude=0.0, encoder_jitter=0.0)
-        self.at_rest = Sensor(**sensor)
+        self.mount = Sensor(**sensor)  # on its platform, which stands still
+        self.at_rest = Sensor(**sensor, trajectory=self.trajectory) if self.trajectory else self.mount
         self.flights = self._read_flights()
         self._moving(0, said=True)  # errors of birds and objects are raised before the work
         # Clutter without the effects that differ from scan to scan.
@@ -150,6 +160,20 @@ class Simulation:
         """The scans of a sequence."""
         return range(number * self.length, min((number + 1) * self.length, self.scans))
 
+    def _read_trajectory(self) -> Optional[vtkPolyData]:
+        """The trajectory of the platform, or None. Its start becomes the time of the first scan if nothing else says
+        this time."""
+        given = dict(self.scenario.get("trajectory", {}))
+        if not given:
+            return None
+        with naming(f"{self.file}: trajectory"):
+            line = read_trajectory(given.pop("file_name"), scene=self.scene,
+                                   start_time=self.scenario.get("start_time"), **given)
+        start = field_values(line).get("start_time")
+        if start is not None:
+            self.scenario.setdefault("start_time", as_time(start))
+        return line
+
     def _read_flights(self) -> Dict[int, Flights]:
         """The tracks of files, by the place of their group in the scenario. Warnings name files whose birds are not
         under way during the scans or are far away."""
@@ -164,7 +188,7 @@ class Simulation:
                         given["origin"] = origin_of(given["origin"])
                     found[place] = read_flights(given.pop("file_name"), scene=self.scene, **given)
         dated, end = [one for one in found.values() if one.since_1970], self.scans / self.sensor.rotation_rate
-        if "start_time" in self.scenario and not dated and all(len(one.times) for one in found.values()):
+        if "start_time" in self.scenario and not dated and not self.trajectory and all(len(one.times) for one in found.values()):
             raise Error(f"{self.file}: start_time: is given, but no file of birds has times since 1970")
         with naming(f"{self.file}: start_time"):
             if any(len(one.times) for one in dated):
@@ -175,7 +199,7 @@ class Simulation:
         for place, one in found.items():
             if one.warning:
                 self._warn(one.warning)
-            away = one.nearest(self.sensor.position, 0.0, end)
+            away = one.nearest(self.place, 0.0, end)
             if len(one.times) == 0:
                 self._warn(f"{one.file}: holds no track of two or more positions")
             elif len(away) == 0:
@@ -183,7 +207,7 @@ class Simulation:
                            f"choose {'start_time or ' * one.since_1970}number_of_scans")
             elif away.min() > FAR:
                 origin = self._origin(place)
-                self._warn_of_far(one.file, away, one.mistake(self.sensor.position, origin))
+                self._warn_of_far(one.file, away, one.mistake(self.place, origin))
             else:
                 self._warn_of_far(one.file, away)
                 self._warn_of_levels(one, end, self._origin(place))
@@ -206,7 +230,7 @@ class Simulation:
 
     def _warn_of_far(self, what: str, away, why: str = "") -> None:
         """Warns of birds that never come within the range gate. @param away their least distances, m"""
-        far = away[away > self.sensor.range_gate]
+        far = away[away > self.sensor.range_gate + self.way]
         if len(far):
             least, most = (f"{x:.0f} m" if x < 9999.5 else f"{x / 1000:,.0f} km" for x in (far.min(), far.max()))
             who = "the bird never comes" if len(away) == 1 else f"{len(far)} of {len(away)} birds never come"
@@ -217,7 +241,7 @@ class Simulation:
     def _warn_of_levels(self, flights: Flights, end: float, origin: Any) -> None:
         """Warns if all birds in the range gate of a level sensor stay above or below its beams, until a time (s)."""
         off, count = flights.within(self.sensor.position, self.sensor.range_gate, end)
-        if count == 0 or any(self.sensor.orientation[1:]):
+        if count == 0 or any(self.sensor.orientation[1:]) or self.trajectory:
             return
         from ...reach import band
         lowest, highest = band(self.at_rest)
@@ -274,7 +298,7 @@ class Simulation:
                 blocks.append(block)
             if said and place not in self.flights:
                 self._warn_of_far(f"{self.file}: birds[{place}]", np.array(
-                    [least_distance(field_values(block)["pose_position"], self.sensor.position) for block in found]))
+                    [least_distance(field_values(block)["pose_position"], self.place) for block in found]))
             if len(blocks) > LAST_ID - FIRST_BIRD:
                 raise Error(f"{self.file}: birds: {len(blocks)} and more, "
                             f"expected at most {LAST_ID - FIRST_BIRD}: labels hold no more")
@@ -339,7 +363,8 @@ class Simulation:
         scans = [*dict.fromkeys((self.scan, self.clear, self.bare))]
         for scan in scans:
             scan.movers = movers
-        differ = self.sensor.algorithm.GetNumberOfPrisms() > 0  # beams of rotating prisms differ from scan to scan
+        # Beams of rotating prisms and of a sensor that moves differ from scan to scan.
+        differ = self.sensor.algorithm.GetNumberOfPrisms() > 0 or self.trajectory is not None
         with contextlib.ExitStack() as stack:
             runs = [(stack.enter_context(Updates(scan.algorithm)), scan.algorithm.UpdateTimeStep)
                     for scan in scans + [self._still] * differ]
@@ -396,10 +421,20 @@ class Simulation:
                 row.update({f"{when}{name}_m": f"{x:.4f}" for name, x in zip("xyz", at)})
         return list(rows.values())
 
-    def _pose(self) -> np.ndarray:
-        """The 3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates."""
-        place = np.array(self.sensor.position, float)
+    @staticmethod
+    def _pose(beams: vtkPolyData) -> np.ndarray:
+        """The 3 x 4 matrix from the coordinates of points (x forward, y left, z up) to the scene's coordinates, at the
+        start of the scan. @param beams beams or echoes of the scan"""
+        place = np.array(field_values(beams)["position"])
         ends = mesh(np.vstack([place + axis for axis in np.eye(3)]), [(0, 1, 2)])
-        ends.GetFieldData().PassData(self.sensor.beams.data.GetFieldData())
+        ends.GetFieldData().PassData(beams.GetFieldData())
         right, forward, up = Cloud(ends).coordinates("sensor").T  # the scene's axes in the sensor's frame
         return np.column_stack([forward, -right, up, place])
+
+    def _pose_at(self, beam: int) -> np.ndarray:
+        """The matrix of `_pose`, at the firing of a beam of the current scan of a sensor that moves."""
+        from scipy.spatial.transform import Rotation
+        beams = Cloud(self.sensor.algorithm.GetOutput())
+        row = int(np.searchsorted(beams["beam_id"], beam))
+        right, forward, up = Rotation.from_quat(beams["sensor_orientation"][row][[1, 2, 3, 0]]).as_matrix().T
+        return np.column_stack([forward, -right, up, beams["sensor_position"][row]])
