@@ -164,6 +164,6 @@ TEST(Mover, BadPosesAndPartsAreNamed)
   };
   EXPECT_EQ(wrong([](Mover&) {}), "");
   EXPECT_NE(
-    wrong([&](Mover& m) { m.poses[1].time = nan; }).find("pose 1: pose_time"), std::string::npos);
+    wrong([&](Mover& m) { m.poses[1].time = nan; }).find("pose 1: its time is"), std::string::npos);
   EXPECT_NE(wrong([&](Mover& m) { m.flaps[0].phase = nan; }).find("flap_phase"), std::string::npos);
 }

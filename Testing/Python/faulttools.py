@@ -218,6 +218,9 @@ CLASSES = [
     ("Medium", {"Shape": al.vtkAvianLidarMedium.SHAPE_SURFACE}, (produced_surfaces, NOTHING)),
     ("Tracks", {"Pattern": al.vtkAvianLidarTracks.PATTERN_LINES},
      (lambda: Producer(make("Tracks"), "Radius", 500.0, "Radius", 1), NOTHING)),
+    ("BeamSource", {"NumberOfChannels": 2}, (  # carried along the trail of a bird
+        lambda: Producer(make("Tracks", NumberOfBirds=1), "Radius", 500.0, "Radius", 1),
+        [("point", "time", ARRAY + ("missing",))])),
     ("LASWriter", {}, (produced_echoes, [
         ("points", "point", (1e39,)), ("point", "intensity", FINITE), ("point", "return_number", WHOLE),
         ("point", "number_of_returns", WHOLE), ("point", "timestamp", FINITE), ("point", "vertical_angle", FINITE),

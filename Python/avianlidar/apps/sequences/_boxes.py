@@ -68,11 +68,10 @@ class Boxes:
         blocks = {int(block.GetCellData().GetArray("object_id").GetTuple1(0)): block for block in leaves_of(movers)}
         if not report.number_of_points:
             return ""
-        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes",
-                                                             "beam_id")]
+        columns = [report[name].tolist() for name in ("object_id", "timestamp", "number_of_echoes")]
         found = []
-        for number, time, points, beam, place in zip(*columns, report.points):
-            self.pose = poses(beam) if poses else self.pose
+        for row, (number, time, points, place) in enumerate(zip(*columns, report.points)):
+            self.pose = poses(int(report["beam_id"][row])) if poses else self.pose
             found.append(self._line(blocks[number], number, 1e-6 * time, points, place,
                                     self.pose if frame is None else frame))
         return "".join(found)
