@@ -161,7 +161,6 @@ def test_a_sensor_that_drives():
     fresh()
     name = os.path.join(OUTPUT_DIR, "TestAnimationTrajectory.vtp")
     line, times = vtkLineSource(), vtkDoubleArray()
-    writer = vtkXMLPolyDataWriter()
     line.SetPoint1(0, 0, 2)
     line.SetPoint2(40, 0, 2)
     line.SetResolution(2)
@@ -171,8 +170,9 @@ def test_a_sensor_that_drives():
     for time in (0, 2, 6):
         times.InsertNextValue(time)
     line.GetOutput().GetPointData().AddArray(times)
-    writer.SetInputData(line.GetOutput())
+    writer = vtkXMLPolyDataWriter()
     writer.SetDataModeToBinary()
+    writer.SetInputData(line.GetOutput())
     writer.SetFileName(name)
     assert writer.Write()
     way = simple.XMLPolyDataReader(FileName=[name])
