@@ -3,6 +3,7 @@
 
 #include "Air.h"
 #include "AvailableMemory.h"
+#include "Figures.h"
 #include "PhotonReceiver.h"
 #include "vtkAvianLidarArrays.h"
 #include "vtkAvianLidarBeamSourceInternals.h"
@@ -29,7 +30,6 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -37,6 +37,9 @@ namespace
 {
 namespace Arrays = vtkAvianLidarArrays;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// Length of a lever arm from which on it is probably a place in the scene, m.
+constexpr double LongestLeverArm = 50.0;
 
 // The requested piece. A piece that does not exist has no columns.
 avianlidar::ScanPart PieceOf(vtkInformation* asked)
@@ -495,25 +498,45 @@ void vtkAvianLidarBeamSource::vtkInternals::RequireProperties(const Source& self
 }
 
 //------------------------------------------------------------------------------
-avianlidar::Poses vtkAvianLidarBeamSource::vtkInternals::TrajectoryOf(
-  const Source& self, vtkInformationVector* input, int revolution)
+const avianlidar::Poses& vtkAvianLidarBeamSource::vtkInternals::TrajectoryOf(
+  Source& self, vtkInformationVector* input, int revolution)
 {
+  static const avianlidar::Poses none;
   if (input->GetNumberOfInformationObjects() == 0)
   {
-    return {};
+    return none;
   }
-  avianlidar::Poses poses = vtkAvianLidarTrajectory::Read(vtkPolyData::GetData(input));
+  vtkPolyData* const data = vtkPolyData::GetData(input);
+  if (!self.Trajectory || self.Trajectory->input != data ||
+    self.Trajectory->time != data->GetMTime())
+  {
+    self.Trajectory.reset();
+    auto read = std::make_shared<vtkTrajectory>();
+    *read = { data, data->GetMTime(), vtkAvianLidarTrajectory::Read(data) };
+    self.Trajectory = read;
+  }
+  const avianlidar::Poses& poses = self.Trajectory->poses;
   const double begin = revolution / self.RotationRate;
   const double end = begin + avianlidar::durationOf(PatternOf(self));
   if (begin < poses.front().time || end > poses.back().time)
   {
-    std::ostringstream text;
-    text << "Input port 0 (trajectory), its poses are from " << poses.front().time << " to "
-         << poses.back().time << " s, but the beams of revolution " << revolution << " are from "
-         << begin << " to " << end << " s: expected poses at all these times";
-    vtkAvianLidarRequire(text.str());
+    const auto figures = [](double value) { return avianlidar::figures(value, 12); };
+    vtkAvianLidarRequire("Input port 0 (trajectory), its poses are from " +
+      figures(poses.front().time) + " to " + figures(poses.back().time) +
+      " s, but the beams of revolution " + std::to_string(revolution) + " are from " +
+      figures(begin) + " to " + figures(end) + " s: expected poses at all these times");
   }
   return poses;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkAvianLidarBeamSource::vtkInternals::WarningOnLeverArm(const Source& self)
+{
+  const double arm =
+    avianlidar::safeLength({ self.Position[0], self.Position[1], self.Position[2] });
+  return arm > LongestLeverArm ? "Position is " + avianlidar::figures(arm, 4) +
+      " m from the origin of the platform, in whose frame it is with a trajectory"
+                               : std::string();
 }
 
 //------------------------------------------------------------------------------
@@ -623,7 +646,7 @@ int vtkAvianLidarBeamSource::RequestData(
       vtkInformation* asked = vtkAvianLidarRevolutions::NoteTime(request, outputVector);
       avianlidar::ScanPart part = PieceOf(asked);
       int revolution = 0;
-      avianlidar::Poses poses;
+      const avianlidar::Poses* poses = nullptr;
       vtkAvianLidarWithin("Beam source: ",
         [&]()
         {
@@ -638,24 +661,26 @@ int vtkAvianLidarBeamSource::RequestData(
                 "client, too, which then sets both properties)"));
           }
           vtkInternals::FindMoment(*this, asked, part, revolution);
-          poses = vtkInternals::TrajectoryOf(*this, inputVector[0], revolution);
+          poses = &vtkInternals::TrajectoryOf(*this, inputVector[0], revolution);
         });
       vtkPolyData* beams = vtkPolyData::GetData(outputVector, 0);
       vtkPolyData* rays = vtkPolyData::GetData(outputVector, 1);
       vtkAvianLidarScanArrays::FillBeams(vtkInternals::PatternOf(*this),
         vtkInternals::PointingOf(*this), part, revolution, this->Position, beams);
       avianlidar::Pose pose; // at the start of the revolution
-      if (!poses.empty())
+      if (!poses->empty())
       {
-        vtkAvianLidarTrajectory::Carry(poses, this->Position, this->Orientation, beams);
-        avianlidar::poseAt(poses, revolution / this->RotationRate, pose);
+        vtkAvianLidarTrajectory::Carry(*poses, this->Position, this->Orientation, beams);
+        avianlidar::poseAt(*poses, revolution / this->RotationRate, pose);
       }
       vtkAvianLidarScanArrays::FillRays(beams, this->DisplayLength, rays);
       vtkInternals::AddSensor(*this, revolution, pose, beams->GetFieldData());
       vtkInternals::AddSensor(*this, revolution, pose, rays->GetFieldData());
       const avianlidar::Sensor sensor = vtkInternals::SensorOf(*this);
       std::string warning;
-      for (const std::string& one : { avianlidar::warningOnElectrons(sensor),
+      const std::string arm =
+        poses->empty() ? std::string() : vtkInternals::WarningOnLeverArm(*this);
+      for (const std::string& one : { arm, avianlidar::warningOnElectrons(sensor),
              avianlidar::warningOnAmbiguity(
                sensor, avianlidar::pulseInterval(vtkInternals::PatternOf(*this))) })
       {

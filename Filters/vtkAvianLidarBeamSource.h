@@ -484,8 +484,10 @@ private:
   std::string TakeFile(const std::function<vtkAvianLidarSensorFile()>& read, bool keepPlace);
   struct vtkInternals;
   struct vtkBeamTable;
+  struct vtkTrajectory;
   std::string Warned;                        ///< warning given last, which is not repeated
   std::shared_ptr<const vtkBeamTable> Table; ///< beams of SetBeams(), or null
+  std::shared_ptr<vtkTrajectory> Trajectory; ///< poses that were read last
 };
 
 #endif

@@ -243,9 +243,10 @@ class Cloud(Mapping):
             if "position" not in fields or "orientation" not in fields:
                 raise ValueError("the frame 'sensor' needs field data 'position' and 'orientation'")
             from scipy.spatial.transform import Rotation
-            if not motion_correction and "sensor_orientation" in self:
-                turns = Rotation.from_quat(self["sensor_orientation"][:, [1, 2, 3, 0]])
-                return turns.apply(self.points - self["sensor_position"], inverse=True)
+            if not motion_correction and {"sensor_orientation", "sensor_orientation_0"} & {*self}:  # _0 from PCD, PLY
+                places, turns = (self[name] if name in self else np.column_stack([self[f"{name}_{i}"] for i in range(n)])
+                                 for name, n in (("sensor_position", 3), ("sensor_orientation", 4)))
+                return Rotation.from_quat(turns[:, [1, 2, 3, 0]]).apply(self.points - places, inverse=True)
             yaw, pitch, roll = fields["orientation"]  # clockwise from north, nose up, roll to the right
             turn = Rotation.from_euler("ZXY", (-yaw, pitch, roll), degrees=True)
             return turn.apply(self.points - fields["position"], inverse=True)

@@ -12,7 +12,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ._advice import to_act_on
-from ._cloud import field_values, triangles_of
+from ._cloud import field_values, point_array, triangles_of
 from ._numbers import figures
 from ._properties import PATTERN
 from ._sight import extent
@@ -123,6 +123,9 @@ def sensor_rows(sensor) -> dict[str, Any]:
                  "wavelength": value("wavelength", "nm"), "range gate": value("range_gate", "m"),
                  "pulse energy": value("pulse_energy", "\u00b5J", 1e6),
                  "full beam width": value("half_beamwidth", "mrad", 2e3), "rate": value("rotation_rate", "Hz")})
+    if sensor.trajectory:
+        times = point_array(sensor.trajectory, "time")
+        rows["trajectory"] = f"{len(times)} poses from {times[0]:.6g} to {times[-1]:.6g} s, in whose frame the position is"
     if sensor.half_beamwidth_across:
         rows["full beam width"] += " by " + value("half_beamwidth_across", "mrad", 2e3)
     said, gaussian = sensor.description, sensor.algorithm.GetBeamProfile() == 1

@@ -26,16 +26,19 @@ def trajectory(positions, times, orientations=None) -> vtkPolyData:
     >>> Sensor(trajectory=car).beams.points[-1].round()
     array([20.,  0.,  2.])
     """
-    line = with_points(rows_of("positions", positions, (3,)))
-    count = line.GetNumberOfPoints()
+    line, at = with_points(rows_of("positions", positions, (3,))), rows_of("times", times, ())
+    count, turns = line.GetNumberOfPoints(), None if orientations is None else rows_of("orientations", orientations, (4,))
+    if {count, len(at), count if turns is None else len(turns)} != {count}:
+        raise ValueError(f"there are {count} positions, {len(at)} times and {'no' if turns is None else len(turns)} "
+                         "orientations, expected as many of each")
     cells = vtkCellArray()
     cells.InsertNextCell(count)
     for number in range(count):
         cells.InsertCellPoint(number)
     line.SetLines(cells)
-    add_array(line.GetPointData(), "time", rows_of("times", times, ()), "s")
-    if orientations is not None:
-        add_array(line.GetPointData(), "pose_orientation", rows_of("orientations", orientations, (4,)), "1")
+    add_array(line.GetPointData(), "time", at, "s")
+    if turns is not None:
+        add_array(line.GetPointData(), "pose_orientation", turns, "1")
     return line
 
 

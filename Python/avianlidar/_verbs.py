@@ -27,7 +27,7 @@ from ._writers import check_suffix, check_target, refuse
 from .apps._studies import airport, bench, coverage, design, reach, report, sequence, siting, track  # noqa: F401 verbs
 from .apps.inputs._air import check_received
 from .apps.inputs._read import read_plan, read_scenario
-from .apps.sequences._trajectory import MARKUP, read_trajectory
+from .apps.sequences._trajectory import MARKUP, read_trajectory, settings_of
 
 OUTSIDE = 0.1  # share of recorded points outside all beams from which on the sensor is doubtful
 WIDTH = 110  # characters of a line about one sensor
@@ -68,7 +68,7 @@ def _scan_of(options) -> Scan:
     """The scan that the options describe."""
     scene = Scene(options.scene, material=options.material, scale=options.scale, up_axis=options.up_axis,
                   progress=_percent_of("scene"))
-    line = read_trajectory(options.trajectory, scene, **dict(options.trajectory_set)) if options.trajectory else None
+    line = read_trajectory(options.trajectory, scene, **settings_of(options.trajectory_set)) if options.trajectory else None
     place = options.position or (None if line else scene.lidar_position) or (0, 0, 0)
     sensor = Sensor(options.sensor, position=place, trajectory=line)
     scan = Scan(scene, sensor.set(**dict(options.sensor_set)), progress=_percent_of(options.verb))
@@ -254,7 +254,7 @@ def info(options) -> None:
     if not file.exists():
         raise FileNotFoundError(f"no such file: {file}")
     if file.suffix.lower() in MARKUP:
-        raise ValueError(f"{file}: is a trajectory, expected it as --trajectory of scan, sequence or coverage")
+        raise ValueError(f"{file}: is a trajectory, expected it as --trajectory of scan, advise, sequence or coverage")
     chosen = _of_packets(options, file)
     hints: Iterable[str] = ()
     notes: Iterable[str] = ()

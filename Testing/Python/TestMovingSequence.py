@@ -59,6 +59,13 @@ class TestMovingSequence(InFolder):
                 points += np.isin(echoes["object_id"], [*species]).sum()
                 self.check_boxes(first, k - 2)
             self.assertGreater(points, 5)
+            offsets = np.fromfile(first / "offsets" / "000001.offset", "<f4") if not corrected else ()
+            if not corrected:
+                np.testing.assert_allclose(offsets, 1e-6 * echoes["timestamp"] - 6, atol=1e-6)
+                self.assertEqual(run("convert", first, self.folder / "raw.mcap")[0], 0)
+                *_, last = load_clouds(str(self.folder / "raw.mcap"))
+                np.testing.assert_allclose(last["timestamp"] - last["timestamp"].min(),
+                                           1e6 * (offsets - offsets.min()), atol=2)
             line = al.read_trajectory(out / "trajectory.vtp")
             np.testing.assert_array_equal(al.Cloud(line).points, PLACES)
 
@@ -103,16 +110,22 @@ class TestMovingSequence(InFolder):
             al.Sequence(self.file, number_of_scans=8)
 
     def test_the_command(self):
-        plain = scenario_file(self.folder, number_of_scans=1)
         gpx = "<gpx><trk><trkseg>" + "".join(
             f'<trkpt lat="{47 + 1e-5 * k}" lon="8.5"><ele>3</ele><time>2026-05-04T06:00:0{k}Z</time></trkpt>'
             for k in range(6)) + "</trkseg></trk></gpx>"
         (self.folder / "car.gpx").write_text(gpx, "utf-8")
         options = ("--trajectory", self.folder / "car.gpx", "--trajectory-set", "origin=47,8.5,0")
+        # The lidar of a scenario stands in the scene, not on the platform.
+        plain = scenario_file(self.folder, number_of_scans=1, sensor={**SENSOR, "position": [500, 40, 3]})
         code, _, errors = run("sequence", plain, "-o", self.folder / "out", "--sensor-set", "position=0,0,2", *options)
         self.assertEqual(code, 0, errors)
         pose = np.loadtxt(self.folder / "out" / "sequences" / "00" / "poses.txt").reshape(3, 4)
         np.testing.assert_allclose(pose[:, 3], [0, 0, 5], atol=1e-3)
+        np.testing.assert_allclose(pose[:, 0], [0, 1, 0], atol=1e-3)
+        for words in (("columns=time",), ("foo=1",)):
+            code, _, errors = run("scan", self.folder / "small.lidarscene.json", *options, "-o", self.folder / "e.vtp",
+                                  "--trajectory-set", *words)
+            self.assertEqual((code, "--trajectory-set: " in errors), (2, True), errors)
         code, said, errors = run("scan", self.folder / "small.lidarscene.json", "--sensor", "Search905", "--position", 0, 0,
                                  2, "-o", self.folder / "echoes.vtp", *options)
         self.assertEqual(code, 0, errors)

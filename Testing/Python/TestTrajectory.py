@@ -2,6 +2,7 @@
 """A sensor on a platform that moves: poses, echoes and errors. Oracles: SciPy's interpolation of rotations, own
 intersections of rays with planes, and that only relative motion matters."""
 import pickle
+import tempfile
 import unittest
 
 import numpy as np
@@ -126,6 +127,10 @@ class TestTrajectory(unittest.TestCase):
         np.testing.assert_allclose(still["energy_received"], echoes["energy_received"], rtol=1e-9)
         np.testing.assert_allclose(echoes.coordinates("sensor", motion_correction=False), still.points, atol=1e-9)
         self.assertGreater(np.abs(echoes.coordinates("sensor") - still.points).max(), 1.0)
+        with tempfile.TemporaryDirectory() as folder:
+            echoes.save(f"{folder}/a.ply")  # one field for each component
+            read = al.load_cloud(f"{folder}/a.ply")
+        np.testing.assert_allclose(read.coordinates("sensor", motion_correction=False), still.points, atol=1e-4)
 
     def test_threads_and_pieces_give_the_same_bits(self):
         sensor = al.Sensor("Search905", trajectory=moving(), position=ARM, sway_amplitude=0.1)
@@ -173,6 +178,11 @@ class TestTrajectory(unittest.TestCase):
                 self.assertEqual(sensor.beams.number_of_points, 15360)
         with self.assertRaisesRegex(TypeError, "not list"):
             al.Sensor(trajectory=[1])
+        with self.assertRaisesRegex(ValueError, "1 positions, 2 times and no orientations"):
+            al.trajectory([(0, 0, 2)], [0, 1])
+        with self.assertWarnsRegex(RuntimeWarning, "Position is 1838 m from the origin of the platform"):
+            al.Sensor("Search905", range_gate=2000, position=(419, -1790, 5), trajectory=moving()).beams.points
+        self.assertIn("trajectory 3 poses from 0 to 2.5 s", repr(al.Sensor(trajectory=moving())))
 
 
 if __name__ == "__main__":

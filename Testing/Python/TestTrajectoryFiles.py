@@ -12,7 +12,7 @@ import avianlidar as al
 import scenetools
 from avianlidar import _ros
 from avianlidar._cloud import add_array, vertices
-from avianlidar.apps.sequences._trajectory import read_trajectory
+from avianlidar.apps.sequences._trajectory import read_trajectory, settings_of
 from echotools import InFolder
 from helpertools import warned
 
@@ -64,8 +64,10 @@ class TestTrajectoryFiles(InFolder):
         return parts_of(line)
 
     def check(self, found, below=0.0):
-        np.testing.assert_allclose(found[0][:3], closed_form(np.array(PLACES) - [0, 0, below]), atol=1e-6)
-        np.testing.assert_allclose(found[1][:3], [0, 1.5, 4.25], atol=1e-6)
+        """The file's points; others may lie between them, where the heading changes."""
+        rows = [int(np.abs(found[1] - time).argmin()) for time in (0, 1.5, 4.25)]
+        np.testing.assert_allclose(found[1][rows], [0, 1.5, 4.25], atol=1e-6)
+        np.testing.assert_allclose(found[0][rows], closed_form(np.array(PLACES) - [0, 0, below]), atol=1e-6)
 
     def test_gpx(self):
         self.check(self.read("a.gpx", GPX.format("", ""), origin=ORIGIN))
@@ -77,7 +79,7 @@ class TestTrajectoryFiles(InFolder):
         found = self.read("a.gpx", GPX.format(more, ""), origin=ORIGIN, scene=SLOPE)
         self.check(found)
         east, north, _ = closed_form([(47.4516, 8.5526, ORIGIN[2])])[0]
-        np.testing.assert_allclose(found[0][3], (east, north, 0.1 * east), atol=1e-6)
+        np.testing.assert_allclose(found[0][-1], (east, north, 0.1 * east), atol=1e-6)
         self.assertEqual([text.rpartition("a.gpx: ")[2] for text in self.said], [
             "left out: rows at 0, 0 degrees (1), rows without a time (1), points of the same time as before (1)"])
 
@@ -90,6 +92,7 @@ class TestTrajectoryFiles(InFolder):
                 ("a.csv", table, {"height_reference": "clamp"}, 0), ("a.kml", KML.format(mode, ""), {}, heights),
                 ("a.gpx", GPX.format("", ""), {"height_reference": "ground"}, heights)):
             points, *_ = self.read(name, text, origin=ORIGIN, scene=SLOPE, **settings)
+            points = points[[int(np.abs(points[:, 0] - one).argmin()) for one in east]]
             np.testing.assert_allclose(points, np.column_stack([east, north, 0.1 * east + above]), atol=1e-6)
 
     def test_kml(self):
@@ -110,7 +113,7 @@ class TestTrajectoryFiles(InFolder):
         self.assertAlmostEqual(headings(level)[0], np.degrees(np.arctan2(east, north)), places=6)
 
     def test_angles_and_quaternions_in_tables(self):
-        head, rows = "time,x,y,z,", "".join(f"{t},{t},0,5,{{}}\n" for t in range(3))
+        head, rows = "time,x,y,z,", "".join(f"{t},{5 * t},0,5,{{}}\n" for t in range(3))
         heading, pitch, roll = np.radians((40, 25, -15))
         for names, values in (("yaw,pitch,roll", "40,25,-15"), ("roll,compass_heading(degrees),pitch", "-15,40,25"),
                               ("OSD.yaw [rad],pitch,roll", f"{heading},25,-15")):
@@ -127,18 +130,37 @@ class TestTrajectoryFiles(InFolder):
             np.testing.assert_allclose(turns.apply(ours), chance.apply(theirs), atol=1e-12)
 
     def test_heading_along_the_way(self):
-        """East, two short legs while it stands, north, and back; and a circle at 100 Hz, whose legs are short."""
+        def along(ways, **settings):
+            """Headings by time of a table of rows of time, x and y."""
+            _, times, turns = self.read("a.csv", "time,x,y,z\n" + "".join("{},{},{},0\n".format(*row) for row in ways),
+                                        **settings)
+            found = np.unwrap(headings(turns), period=360)
+            return lambda at: np.interp(at, times, found)
+
+        # East, north after a stop in which the receiver scatters, and back.
         places = [(0, 0), (5, 0), (10, 0), (10.2, 0.3), (10.1, 0.1), (10.1, 5.1), (10.1, 9), (10.1, 5)]
-        text = "".join(f"{2 * t},{x},{y},0\n" for t, (x, y) in enumerate(places))
-        *_, turns = self.read("a.csv", f"time,x,y,z\n{text}")
-        np.testing.assert_allclose(headings(turns), [90, 90, 90, 90, 45, 0, 180, 180], atol=1e-5)
-        times = np.arange(600) * 0.01
-        circle = np.column_stack([times, 20 * np.sin(times), 20 * np.cos(times), 0 * times])
-        *_, turns = self.read("a.csv", "time,x,y,z\n" + "".join("{},{},{},{}\n".format(*row) for row in circle))
-        inside = slice(60, -60)
-        np.testing.assert_allclose(np.cos(np.radians(headings(turns) - 90) - times)[inside], 1, atol=1e-6)
-        *_, turns = self.read("a.csv", "time,x,y,z\n0,5,5,5\n1,5.1,5,5\n")
-        np.testing.assert_allclose(headings(turns), 0)
+        found = along((2 * t, *place) for t, place in enumerate(places))
+        np.testing.assert_allclose([found(t) for t in (0, 4, 6, 8)], 90)
+        np.testing.assert_allclose([found(10), found(14) % 360], [0, 180], atol=2)
+        for radius, speed, step in ((20, 20, 0.01), (20, 0.4, 1.0), (200, 30, 0.5)):  # circles, also slow and dense ones
+            times = np.arange(0, 3 * radius / speed, step)
+            angle = times * speed / radius
+            found = along(zip(times, radius * np.sin(angle), radius * np.cos(angle)))
+            middle = times[len(times) // 4:-len(times) // 4]
+            off = found(middle) - 90 - np.degrees(middle * speed / radius)
+            self.assertLess(np.abs((off + 180) % 360 - 180).max(), 6)
+        # Far points: the platform turns within 10 m of the bend.
+        found = along([(0, 0, 0), (70, 0, 700), (140, 700, 700)])
+        np.testing.assert_allclose([found(t) for t in (0, 40, 68.9, 70, 71.1, 140)], [0, 0, 0, 45, 90, 90], atol=1e-6)
+        # A parked car, whose receiver scatters by 0.8 m (1 sigma is half of it).
+        scatter = np.random.default_rng(3).normal(0, 0.4, (600, 2))
+        way = [(t, 10 * t, 0) for t in range(20)] + [(20 + t, 200 + x, y) for t, (x, y) in enumerate(scatter)]
+        found = along(way)
+        np.testing.assert_allclose([found(t) for t in range(5, 619)], 90, atol=8)  # the last leg ends in the scatter
+        self.assertEqual(along([(0, 5, 5), (1, 5.1, 5)])(0.5), 0)
+        self.assertRegex(self.said[0], "a.csv: it never moves by 3 m, and heads north")
+        along([*((t, 10 * t, 0) for t in range(20)), (99, 300, 0)])
+        self.assertRegex(self.said[0], "a.csv: the longest gap between its points is 80 s")
 
     def test_vtk(self):
         (self.folder / "a.csv").write_text("time,x,y,z,yaw,pitch\n0,1,2,3,350,5\n1,2,2,3,20,-5\n2,3,2,3,10,0\n")
@@ -201,11 +223,12 @@ class TestTrajectoryFiles(InFolder):
                 ("a.csv", good, {"height_reference": "clamp"}, "points without a height.* expected scene"),
                 ("a.csv", good, {"track": "a"}, "has no names as tracks"),
                 ("a.csv", good[:-8], {}, "expected 2 or more points with a position and a time, has 1"),
-                ("a.csv", good.replace("z", "z,qx"), {}, "quaternion"),
+                ("a.csv", good.replace("z", "z,qx"), {}, "the quaternion of point 1 has the length nan, expected 1"),
+                ("a.csv", good, {"geoid_undulation": "a"}, "geoid_undulation is 'a', expected metres"),
                 ("a.csv", "time,lat,lon,alt\n0,47,8,400\n1,47,8,400\n", {}, "has longitudes and latitudes, but"),
                 ("a.gpx", gpx, {}, "has longitudes and latitudes, but"), ("a.gpx", "<gpx>", {}, "is damaged, expected"),
                 ("a.gpx", GPX.format("", WALK), {"track": "walk"}, r"has 0; left out: rows without a time \(1\)"),
-                ("a.gpx", "<gpx><rte><rtept/></rte></gpx>", {}, r"1 of routes \(rtept\), which have no times"),
+                ("a.gpx", "<gpx><rte><rtept/></rte></gpx>", {}, r"1 of routes \(rtept\)"),
                 ("a.gpx", gpx.replace("47.4512", "147"), {"origin": ORIGIN}, "point 2: latitude"),
                 ("a.gpx", gpx.replace("12:00", "noon"), {"origin": ORIGIN}, "point 1: time is"),
                 ("a.kml", KML.format("<when/>", ""), {}, "the track flight has 5 when, 4 coord"),
@@ -214,8 +237,14 @@ class TestTrajectoryFiles(InFolder):
             words = f"{name}: .*{words}"
             with self.subTest(words), self.assertRaisesRegex((al.Error, ValueError), words):
                 self.read(name, text, **settings)
-        self.assertRaisesRegex(al.Error, "start_time: is given, but .*a.csv has no times since 1970", self.read,
-                               "a.csv", good, start_time=DAY)
+        self.assertRaisesRegex(al.Error, "start_time: is '2021', but .*a.csv has no times since 1970", self.read,
+                               "a.csv", good, start_time="2021")
+        self.assertEqual(self.read("a.csv", good, start_time=-4)[1].tolist(), [4, 5])
+        words = (("columns", ("time:t", "z:height")), ("track", 3), ("height_reference", "clamp"))
+        self.assertEqual(settings_of(words), {"columns": {"time": "t", "z": "height"}, "track": "3",
+                                              "height_reference": "clamp"})
+        for name, value in (("heigt_reference", 1), ("columns", "time")):
+            self.assertRaisesRegex(ValueError, f"--trajectory-set: .*{name}", settings_of, [(name, value)])
         self.assertRaisesRegex(al.Error, "the trajectory: has the point arrays none, expected time", read_trajectory,
                                vertices([(1, 2, 3)]))
         still = [TestRecording.transform(stamp, "map", "base", (1, 2, 3), (0, 0, 0, 1)) for stamp in (1, 2)]

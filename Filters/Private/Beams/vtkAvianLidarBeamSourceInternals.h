@@ -30,6 +30,13 @@ struct vtkAvianLidarBeamSource::vtkBeamTable : avianlidar::BeamTable
 {
 };
 
+struct vtkAvianLidarBeamSource::vtkTrajectory
+{
+  const vtkPolyData* input = nullptr;
+  vtkMTimeType time = 0;
+  avianlidar::Poses poses;
+};
+
 // Access to the properties of the source, for the kernel and the field data.
 struct vtkAvianLidarBeamSource::vtkInternals
 {
@@ -128,8 +135,10 @@ struct vtkAvianLidarBeamSource::vtkInternals
   static void RequireProperties(const Source& self);
   // The poses of the platform; empty without a trajectory. Throws std::runtime_error unless there
   // are poses at the times of all beams of the revolution.
-  static avianlidar::Poses TrajectoryOf(
-    const Source& self, vtkInformationVector* input, int revolution);
+  static const avianlidar::Poses& TrajectoryOf(
+    Source& self, vtkInformationVector* input, int revolution);
+  // A warning about a lever arm that is probably a place in the scene; empty: none.
+  static std::string WarningOnLeverArm(const Source& self);
   // The sensor as field data of its beams. @param pose pose of the platform
   static void AddSensor(
     const Source& self, int revolution, const avianlidar::Pose& pose, vtkFieldData* fields);

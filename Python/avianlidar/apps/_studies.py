@@ -21,12 +21,12 @@ from .coverage import _sites_page
 from .coverage._answer import percent, share_of
 from .coverage._design_page import Designs, answers
 from .coverage._flown import write_flown
-from .coverage._passed import write_passed
 from .coverage._maps import write_maps
+from .coverage._passed import write_passed
 from .coverage._plan import Plan
 from .coverage._report import Report
 from .coverage._sites import Sites
-from .inputs._on_sale import farthest, idea
+from .inputs._on_sale import PLACE, farthest, idea
 from .inputs._read import PROPERTIES, read_plan, read_scenario
 from .inputs._tables import write_table
 from .pages import _drawing as drawing
@@ -34,6 +34,7 @@ from .pages._words import counted
 from .sequences._recorded import RecordedTracks
 from .sequences._sequence import Sequence
 from .sequences._tracks import BirdTracks
+from .sequences._trajectory import settings_of
 from .view import _view
 
 
@@ -74,7 +75,10 @@ def sequence(options) -> None:
     line = {"file_name": str(pathlib.Path(options.trajectory).resolve())} if options.trajectory else \
         scenario.get("trajectory", {})
     if line or options.trajectory_set:
-        changes["trajectory"] = {**line, **dict(options.trajectory_set)}
+        changes["trajectory"] = {**line, **settings_of(options.trajectory_set)}
+    if options.trajectory and "trajectory" not in scenario:  # its sensor stands in the scene, not on the platform
+        given = in_snake_case(PROPERTIES["sensor"], dict(options.sensor_set), "--sensor-set")
+        changes["sensor"] = {**{name: value for name, value in scenario["sensor"].items() if name not in PLACE}, **given}
     sequence = Sequence(options.scenario, threads=threads, **changes)
     for one in sequence.flights.values() if ranks.rank == 0 else ():
         tell(f"{one.words}\n  {sequence.period(one)}")
@@ -201,7 +205,8 @@ def coverage(options) -> None:
                 count = write_maps(plan, folder, functools.partial(bar, f"files of {plan.name}"))
                 birds = [write_flown(plan, options.tracks, folder)] if options.tracks else []
                 if options.trajectory:
-                    birds.append(write_passed(plan, options.trajectory, folder, bar, **dict(options.trajectory_set)))
+                    birds.append(write_passed(plan, options.trajectory, folder, bar,
+                                              **settings_of(options.trajectory_set, *PLACE)))
             row = plan.overall
             tell(f"{folder}: {counted(count, 'file')}; "
                  f"{plan.bird if any(plan.mix) else 'the target'} detected in one scan: "

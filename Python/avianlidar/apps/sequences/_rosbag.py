@@ -29,7 +29,8 @@ _TOPICS = {_TF: ("/tf", TRANSFORMS), _POINTS: ("/points", CLOUD),
 _CUBE, _ADD, _DELETE_ALL = 1, 0, 3  # type and actions of markers
 _BIRD, _OTHER = (0.1, 0.7, 0.3, 0.5), (0.6, 0.3, 0.8, 0.5)  # red, green, blue, opacity of birds and of other movers
 _POINT = np.dtype([*((name, "<f4") for name in ("x", "y", "z", "intensity")), ("label", "<u2"), ("instance", "<u2")])
-_DATATYPES = {"f": 7, "u": 4}  # in PointField, by the kind of a field of _POINT
+_TIMED = np.dtype([*_POINT.descr, ("t", "<u4")])  # with ns since the start of the scan, as drivers write them
+_DATATYPES = {"f4": 7, "u2": 4, "u4": 6}  # in PointField
 
 
 def _message(key: int, *fields) -> bytes:
@@ -46,9 +47,10 @@ def _transform(time: int, pose: np.ndarray) -> bytes:
 
 
 def _cloud(time: int, points: np.ndarray) -> bytes:
-    fields = [(name, offset, _DATATYPES[kind.kind], 1) for name, (kind, offset, *_) in (_POINT.fields or {}).items()]
+    fields = [(name, offset, _DATATYPES[kind.str[1:]], 1) for name, (kind, offset, *_) in
+              (points.dtype.fields or {}).items()]
     data, stamped = points.tobytes(), (divmod(time, 10**9), "lidar")
-    return _message(_POINTS, stamped, 1, len(points), fields, False, _POINT.itemsize, len(data), data, True)
+    return _message(_POINTS, stamped, 1, len(points), fields, False, points.dtype.itemsize, len(data), data, True)
 
 
 def _marker(time: int, name: str, number: int, action: int, numbers: Sequence[float], words: str = "") -> Tuple:
@@ -99,7 +101,12 @@ def _scans(folder: pathlib.Path) -> Iterator[Tuple[str, int, np.ndarray, np.ndar
         if not ((light >= 0) & (light <= 1)).all():
             raise ValueError(f"{file}: the fourth numbers of its points are not all reflectances, "
                              "expected 0 to 1, as KITTI has them")
-        points = np.rec.fromarrays([x, y, z, 255 * light, labels & 0xffff, labels >> 16], dtype=_POINT)
+        parts, known = [x, y, z, 255 * light, labels & 0xffff, labels >> 16], folder / "offsets" / f"{file.stem}.offset"
+        if known.exists():
+            parts.append(np.rint(1e9 * np.frombuffer(read_regular(known), "<f4").astype(float)))
+        if len(parts[-1]) != len(x):
+            raise ValueError(f"{known}: has {len(parts[-1])} times, expected one for each of {len(x)} points")
+        points = np.rec.fromarrays(parts, dtype=_TIMED if known.exists() else _POINT)
         yield file.stem, round(1e9 * time), pose, points
 
 

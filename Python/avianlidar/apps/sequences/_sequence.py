@@ -34,7 +34,8 @@ from ._simulation import STATUSES, SUBSETS, TRUTH, Simulation
 DONE = "done.json"
 PART = ".part"  # suffix of a folder that is being written
 FOLDERS = {"velodyne": ".bin", "labels": ".label", "subsets": ".subset", "boxes": ".txt"}  # suffix of the files
-POINT = {"velodyne": 16, "labels": 4, "subsets": 1}  # bytes of a point
+OFFSETS = {"offsets": ".offset"}  # only without motion correction: s from the start of the scan, float32
+POINT = {"velodyne": 16, "labels": 4, "subsets": 1, "offsets": 4}  # bytes of a point
 TEXTS = ("truth.csv", "times.txt", "poses.txt", "calib.txt")  # files of a whole sequence
 TABLES = ("points_of_classes", "birds_of_statuses", "birds_seen_of_subsets")  # tables in DONE
 COUNTS = ("scans", "scans_with_birds_seen")
@@ -58,10 +59,10 @@ class Sequence(Simulation):
 
     def _write_one(self, folder: pathlib.Path, number: int, progress: Optional[Progress]) -> Dict[str, Any]:
         """Writes the files of a sequence. @return a description of the content"""
-        for name in FOLDERS:
+        moves, corrected = self.trajectory is not None, bool(self.scenario.get("motion_correction", True))
+        for name in FOLDERS if corrected else (*FOLDERS, *OFFSETS):
             (folder / name).mkdir(parents=True)
         boxes = Boxes(self.scene.tree, self.mount, self._pose(self.mount.beams.data))
-        moves, corrected = self.trajectory is not None, bool(self.scenario.get("motion_correction", True))
         poses: List[np.ndarray] = []
         writer = _wrapped.vtkAvianLidarKITTIWriter()
         table: List[Dict[str, Any]] = []
@@ -80,6 +81,9 @@ class Sequence(Simulation):
                 points = Cloud(echoes)
                 _, subset = self.clutter.look(points["beam_id"], points["distance_m"])
                 (folder / "subsets" / f"{name}.subset").write_bytes(subset.tobytes())
+                if not corrected:
+                    offsets = 1e-6 * points["timestamp"] - k / self.sensor.rotation_rate
+                    (folder / "offsets" / f"{name}.offset").write_bytes(offsets.astype("<f4").tobytes())
                 (folder / "boxes" / f"{name}.txt").write_text(
                     boxes.lines(Cloud(scan.algorithm.GetOutput(2)), scan.movers, self._pose_at if moves else None,
                                 poses[-1] if corrected else None), encoding="utf-8")
@@ -260,18 +264,24 @@ def content_of(folder: pathlib.Path) -> Dict[str, Any]:
     return content
 
 
+def _folders_of(folder: pathlib.Path) -> Dict[str, str]:
+    """The folders of the scans of a sequence, with the suffix of their files."""
+    return {**FOLDERS, **OFFSETS} if (folder / "offsets").is_dir() else FOLDERS
+
+
 def _check_scans(folder: pathlib.Path, count: int) -> None:
     """`Error` unless all folders of a sequence hold its scans, with a label and a subset for each point, a time and a
     pose."""
     names = [f"{number:06d}" for number in range(count)]
-    for name, suffix in FOLDERS.items():
+    folders = _folders_of(folder)
+    for name, suffix in folders.items():
         if sorted(file.stem for file in (folder / name).glob(f"*{suffix}")) != names:
             raise Error(f"{folder / name}: expected the files of {counted(count, 'scan')}, 000000{suffix} and so on. "
                         f"{_AGAIN}")
     for name in names:
         points = (folder / "velodyne" / f"{name}.bin").stat().st_size / POINT["velodyne"]
-        for kind, size in POINT.items():
-            file = folder / kind / f"{name}{FOLDERS[kind]}"
+        for kind, size in ((kind, POINT[kind]) for kind in folders if kind in POINT):
+            file = folder / kind / f"{name}{folders[kind]}"
             if file.stat().st_size != size * int(points):
                 raise Error(f"{file}: has {file.stat().st_size} bytes, expected {size} for each of "
                             f"{int(points)} points. {_AGAIN}")
@@ -282,7 +292,7 @@ def _check_scans(folder: pathlib.Path, count: int) -> None:
 
 def _digest(folder: pathlib.Path) -> str:
     """Checksum of names and contents of all files of a sequence. Other files beside them are ignored."""
-    scans = [path for name, suffix in FOLDERS.items() for path in (folder / name).glob(f"*{suffix}")]
+    scans = [path for name, suffix in _folders_of(folder).items() for path in (folder / name).glob(f"*{suffix}")]
     digest = hashlib.sha256()
     for path in sorted([*scans, *map(folder.joinpath, TEXTS)]):
         digest.update(str(path.relative_to(folder)).encode() + b"\0" + (path.read_bytes() if path.is_file() else b""))

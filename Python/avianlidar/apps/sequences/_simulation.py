@@ -167,11 +167,13 @@ class Simulation:
         if not given:
             return None
         with naming(f"{self.file}: trajectory"):
-            line = read_trajectory(given.pop("file_name"), scene=self.scene,
-                                   start_time=self.scenario.get("start_time"), **given)
-        start = field_values(line).get("start_time")
-        if start is not None:
-            self.scenario.setdefault("start_time", as_time(start))
+            file = given.pop("file_name")
+            line = read_trajectory(file, scene=self.scene, **given)
+            start = field_values(line).get("start_time")
+            if start is not None and "start_time" in self.scenario and "start_time" not in given:
+                line = read_trajectory(file, scene=self.scene, start_time=self.scenario["start_time"], **given)
+            elif start is not None:
+                self.scenario.setdefault("start_time", as_time(start))
         return line
 
     def _read_flights(self) -> Dict[int, Flights]:

@@ -5,7 +5,9 @@ Sources: the schema of GPX 1.1 (topografix.com/GPX/1/1); KML 2.3 (OGC 12-007r2),
 from __future__ import annotations
 
 import csv
+import inspect
 import io
+import math
 import os
 import pathlib
 import re
@@ -32,7 +34,10 @@ from ._logs import LEVELS, OUTLIERS, SINCE_1970, Log, seconds_of
 
 TABLES, MARKUP, FOLDER = (".csv", ".tsv", ".txt"), (".gpx", ".kml", ".kmz"), "or a folder"
 USERS = {"columns": TABLES, "track": TABLES + MARKUP, "frame": (*SUFFIXES, FOLDER)}  # suffixes by the argument
-LEAST, WINDOW = 0.5, 1.0  # m, s: a shorter way in a leg, or in this time about it, gives no heading (assumed)
+LEAST = 3.0  # m: a shorter way gives no heading, as standing GPS receivers scatter (assumed)
+BEND = 10.0  # m before and after a bend of the way in which a platform turns (assumed)
+STANDS = 0.6  # share of the time of a leg in which less than half of LEAST is covered, from which on a platform stands
+LONG = 10.0  # s, and medians of steps: longer gaps between points are said
 ANGLES, QUATERNION = ("heading", "pitch", "roll"), ("qx", "qy", "qz", "qw")
 MODES = {"clampToGround": "clamp", "relativeToGround": "ground", "absolute": "sea"}  # levels by KML's altitudeMode
 
@@ -59,11 +64,11 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
     file              vtkPolyData or .vtp (arrays `time`, and `pose_orientation` or `heading`, `pitch`, `roll`), a table
                       (.csv, .tsv, .txt), .gpx, .kml, .kmz, or a bag of ROS or its folder (the transforms)
     scene             a Scene or the name of a scene file, for longitudes and latitudes and for the ground
-    start_time        time 0: a datetime or a text in ISO 8601 (in UTC without a zone), or seconds since 1970; default:
-                      the first time if times count from 1970, else as in the file
+    start_time        time 0: seconds of the file's clock, or, if it counts from 1970, a datetime or a text in ISO 8601
+                      (in UTC without a zone); default: the first time if times count from 1970, else as in the file
     origin            latitude, longitude (deg) and height (m) of the scene's origin; default: from the scene
     height_reference  level that heights count from: sea, ground or ellipsoid, or clamp: the platform stands on the
-                      ground, as points without a height do; default: as the file says
+                      ground, as points of GPX and KML without a height do; default: as the file says
     geoid_undulation  height of the sea level above the ellipsoid, m
     columns           names of columns of a table by meaning, also heading, pitch, roll, qx, qy, qz and qw
     track             name of one of several tracks in a file
@@ -82,6 +87,8 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
             raise ValueError(f"{name}: {what} is {value!r}, expected none: it is for {', '.join(USERS[what])}")
     if height_reference not in ("", "clamp", *LEVELS):
         raise Error(f"{name}: {unknown('height_reference', height_reference, (*LEVELS, 'clamp'))}")
+    if geoid_undulation is not None and not isinstance(geoid_undulation, (int, float)):
+        raise Error(f"{name}: geoid_undulation is {geoid_undulation!r}, expected metres")
     scene = load_scene(scene) if isinstance(scene, (str, os.PathLike)) else scene
     origin = origin_of(origin) if origin is not None else scene.geodetic_origin if scene is not None else None
     read = (_of_data(Cloud(file) if given else load_cloud(path), name) if suffix == ".vtp" else
@@ -96,10 +103,10 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
     counts = {**read.left, "points without a position": np.sum(~placed),
               "points without a time": np.sum(placed & ~timed), "points of the same time as before": np.sum(again)}
     left = ", ".join(f"{reason} ({count})" for reason, count in counts.items() if count)
-    notes = "; ".join([*read.notes, *([f"left out: {left}"] if left else [])])
+    notes = [*read.notes, *([f"left out: {left}"] if left else [])]
     order = order[~again]
     if len(order) < 2:
-        raise Error(f"{name}: expected 2 or more points with a position and a time, has {len(order)}; {notes}")
+        raise Error(f"{name}: expected 2 or more points with a position and a time, has {'; '.join([f'{len(order)}', *notes])}")
     times, places, heights = read.times[order], read.places[order, :2], read.places[order, 2]
     heights = np.where(level == "clamp", np.nan, heights)
     on_ground = np.isnan(heights)
@@ -115,18 +122,21 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
         points[on_ground, 2] = np.nan_to_num(heights[on_ground]) + np.nan_to_num(ground)
     since_1970 = np.abs(times).max() > SINCE_1970
     with naming("start_time"):
-        if start_time is not None and not since_1970:
-            raise Error(f"is given, but {name} has no times since 1970")
-        start = (times[0] if start_time is None else seconds_of(start_time)) if since_1970 else 0.0
+        if isinstance(start_time, str) and not since_1970:
+            raise Error(f"is {start_time!r}, but {name} has no times since 1970: expected a number of its clock, s")
+        start = (times[0] if since_1970 else 0.0) if start_time is None else seconds_of(start_time)
         times = times - start
-    turned = (read.turns[order] if read.turns is not None else
-              _turns(times, points, read.angles[order] if read.angles is not None else np.full((len(order), 3), np.nan))
-              ).as_quat()[:, [3, 0, 1, 2]]
-    if not np.isfinite(turned).all():
-        raise Error(f"{name}: a quaternion is missing, expected the unit quaternion of a rotation at each point")
+    steps = np.diff(times)
+    if steps.max() > LONG * max(float(np.median(steps)), 1.0):
+        notes += [f"the longest gap between its points is {steps.max():.6g} s, which it passes in a straight line"]
+    turns, said = read.turns[order] if read.turns is not None else None, ""
+    if turns is None:
+        times, points, turns, said = _levelled(times, points, None if read.angles is None else read.angles[order])
+    notes += [said] if said else []
+    turned = turns.as_quat()[:, [3, 0, 1, 2]]
     turned[1:] *= np.cumprod(np.where((turned[1:] * turned[:-1]).sum(axis=1) < 0.0, -1.0, 1.0))[:, None]
     if notes:
-        warnings.warn(f"{name}: {notes}", RuntimeWarning, stacklevel=callers_level())
+        warnings.warn(f"{name}: {'; '.join(notes)}", RuntimeWarning, stacklevel=callers_level())
     line = lines_of([np.column_stack([points, times])])
     add_array(line.GetPointData(), "pose_orientation", turned, "1")
     if since_1970:
@@ -134,24 +144,76 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
     return line
 
 
-def _turns(times: np.ndarray, points: np.ndarray, angles: np.ndarray) -> Any:
-    """Rotations by angles. Where the heading is NaN, it is the mean direction of the legs before and after. A short leg
-    goes with the way of WINDOW about its middle, and has the last heading if this way is short, too."""
+def _along(times: np.ndarray, points: np.ndarray) -> Tuple[np.ndarray, np.ndarray, List[float]]:
+    """Times and headings (deg, without jumps) of a platform that heads along its way, and the times that need a point of
+    their own, as the heading begins or ends to change there. A leg begins at a point, and ends
+    at the first one more than LEAST from it. It has one heading, but for BEND at its ends, where the platform turns. A
+    platform that stands keeps its heading."""
+    (x, y), begin = points[:, :2].T.tolist(), 0
+    knots: List[Tuple[float, float]] = []
+    own: List[float] = []
+    for end in range(1, len(times)):
+        east, north = x[end] - x[begin], y[end] - y[begin]
+        length = math.hypot(east, north)
+        if length <= LEAST:
+            continue
+        heading, first, last = math.degrees(math.atan2(east, north)), times[begin], times[end]
+        away = np.linalg.norm(points[begin:end, :2] - points[begin, :2], axis=1)
+        leaves = times[begin + int(np.flatnonzero(away <= LEAST / 2)[-1])]
+        if leaves - first > STANDS * (last - first):
+            first = leaves
+            knots.append((first, knots[-1][1] if knots else heading))
+            own.append(first)
+        part = min(BEND / length, 0.5) * (last - first)
+        knots += [(first + part, heading), (last - part, heading)]
+        own += [first + part, last - part] if length > 2.0 * BEND else []
+        begin = end
+    found = np.array(knots).reshape(-1, 2)
+    return found[:, 0], np.unwrap(found[:, 1], period=360.0), own
+
+
+def _levelled(times: np.ndarray, points: np.ndarray, angles: Any) -> Tuple[np.ndarray, np.ndarray, Any, str]:
+    """Times, points and rotations by angles, and a sentence on a missing heading or nothing. If no point has a heading,
+    points are added where the heading along the way begins or ends to change."""
     from scipy.spatial.transform import Rotation
-    lasts, middles, along = np.diff(times), 0.5 * (times[1:] + times[:-1]), np.zeros(len(times))
-    is_short = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1) <= LEAST
-    half = 0.5 * np.where(is_short, np.maximum(lasts, WINDOW), lasts)
-    ends = middles - half, middles + half
-    ways = np.array([np.diff([np.interp(end, times, x) for end in ends], axis=0)[0] for x in points[:, :2].T])
-    sizes = np.linalg.norm(ways, axis=0)
-    counting = np.flatnonzero(sizes > LEAST)
-    if len(counting):
-        last = counting[np.maximum(np.searchsorted(counting, np.arange(len(lasts)), side="right") - 1, 0)]
-        east, north = ways[:, last] / sizes[last]
-        after = 1.0 + 1e-9  # weight of the leg after, which counts where the way turns back
-        along = np.degrees(np.arctan2(*(np.append(x[:1], x) + after * np.append(x, x[-1:]) for x in (east, north))))
-    heading = np.where(np.isnan(angles[:, 0]), along, angles[:, 0])
-    return Rotation.from_euler("ZXY", np.column_stack([-heading, np.nan_to_num(angles[:, 1:])]), degrees=True)
+    angles = np.full((len(times), 3), np.nan) if angles is None else angles
+    unknown_heading, said = np.isnan(angles[:, 0]), ""
+    if unknown_heading.any():
+        knots, headings, own = _along(times, points)
+        if not len(knots):
+            knots, headings, said = times[:1], np.zeros(1), f"it never moves by {LEAST:g} m, and heads north"
+        moments = np.union1d(times, own) if unknown_heading.all() else times
+        points = np.column_stack([np.interp(moments, times, axis) for axis in points.T])
+        angles = np.column_stack([np.interp(moments, times, axis) for axis in angles.T])
+        angles[:, 0], times = np.where(np.isnan(angles[:, 0]), np.interp(moments, knots, headings), angles[:, 0]), moments
+    turns = Rotation.from_euler("ZXY", np.column_stack([-angles[:, 0], np.nan_to_num(angles[:, 1:])]), degrees=True)
+    return times, points, turns, said
+
+
+def _rotations(quaternions: np.ndarray) -> Any:
+    """Rotations by quaternions x, y, z, w."""
+    from scipy.spatial.transform import Rotation
+    lengths = np.linalg.norm(quaternions, axis=1)
+    wrong = np.flatnonzero(~(np.abs(lengths - 1.0) < 1e-2))
+    if len(wrong):
+        raise Error(f"the quaternion of point {wrong[0] + 1} has the length {lengths[wrong[0]]:g}, expected 1 (x, y, z and "
+                    "w of a rotation)")
+    return Rotation.from_quat(quaternions)
+
+
+def settings_of(words: Sequence[Tuple[str, Any]], *more: str) -> Dict[str, Any]:
+    """Settings of `read_trajectory` in a command, by name; columns as in time:seconds,z:height. @param more further
+    names"""
+    known, found = [*list(inspect.signature(read_trajectory).parameters)[2:], *more], dict(words)
+    for name in found:
+        if name not in known:
+            raise ValueError(unknown("--trajectory-set:", name, known))
+    if "columns" in found:
+        pairs = [f"{word}".partition(":") for word in np.atleast_1d(found["columns"])]
+        if not all(name for *_, name in pairs):
+            raise ValueError(f"--trajectory-set: columns is {found['columns']}, expected words such as time:seconds")
+        found["columns"] = {meaning: name for meaning, _, name in pairs}
+    return {name: f"{value}" if name in ("track", "frame") else value for name, value in found.items()}
 
 
 def _choose(names: Sequence[str], track: str) -> np.ndarray:
@@ -171,7 +233,7 @@ def _of_data(data: Cloud, name: str) -> _Points:
                     "point, and pose_orientation with four, or heading, pitch and roll with one")
     angles = np.column_stack([known.get(what, np.full(len(known["time"]), np.nan)) for what in ANGLES])
     with naming(name):
-        turns = Rotation.from_quat(known["pose_orientation"][:, [1, 2, 3, 0]]) if "pose_orientation" in known else None
+        turns = _rotations(known["pose_orientation"][:, [1, 2, 3, 0]]) if "pose_orientation" in known else None
     return _Points(known["time"], data.points.astype(float), angles=angles, turns=turns)
 
 
@@ -201,7 +263,7 @@ def _of_table(reader: Log, columns: Optional[Dict[str, str]], height_reference: 
         reader.numbers(frame, what, chosen[what].unit if what in ANGLES else 1.0, "a number")
         if what in chosen else np.full(len(frame), np.nan) for what in ("height", *ANGLES, *QUATERNION))
     with naming(reader.file):
-        turns = (Rotation.from_quat(np.column_stack([qx, qy, qz, qw])) * Rotation.from_matrix(TURNED.T)
+        turns = (_rotations(np.column_stack([qx, qy, qz, qw])) * Rotation.from_matrix(TURNED.T)
                  if {*QUATERNION} & {*chosen} else None)
     return _Points(times, np.column_stack([places, heights]), level, across[0] == "longitude", np.column_stack(angles),
                    turns, reader.left)
@@ -260,6 +322,6 @@ def _rows(root: ElementTree.Element) -> List[Tuple[str, ...]]:
             rows += [(name, mode, when, *place, *turn) for when, place, turn in zip(whens, places, turns)]
     if not rows:
         routes, stamps = (len(root.findall(f".//{{*}}{tag}")) for tag in ("rtept", "TimeStamp"))
-        raise Error(f"has no points of a track, but {routes} of routes (rtept), which have no times, and {stamps} "
-                    "places with a TimeStamp: expected trkpt (GPX), or gx:Track with when and gx:coord (KML)")
+        raise Error(f"has no points of a track with times, but {routes} of routes (rtept) and {stamps} places with a "
+                    "TimeStamp: expected trkpt (GPX), or gx:Track with when and gx:coord (KML); a LineString has no times")
     return rows
