@@ -12,7 +12,7 @@ import warnings
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints, vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from ..._cloud import rows_of
@@ -69,7 +69,10 @@ def _along_verticals(scene, points) -> List[np.ndarray]:
     update(scene.tree)
     surfaces = scene.tree.GetOutput()
     low, high = surfaces.GetBounds()[4:]
-    locator = vtkStaticCellLocator()
+    locator: Any = vtkStaticCellLocator()
+    if vtkVersion().GetVTKMinorVersion() < 2:  # the locator of VTK 9.1 finds one surface alone
+        from vtkmodules.vtkFiltersFlowPaths import vtkModifiedBSPTree
+        locator = vtkModifiedBSPTree()
     locator.SetDataSet(surfaces)
     locator.BuildLocator()
     hits, cells, found = vtkPoints(), vtkIdList(), []
