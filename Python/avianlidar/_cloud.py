@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Point clouds of VTK as NumPy arrays, without copies."""
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -106,6 +106,17 @@ def with_points(rows, deep: bool = True) -> vtkPolyData:
     places.SetData(numpy_to_vtk(np.ascontiguousarray(rows), deep=deep))
     data.SetPoints(places)
     return data
+
+
+def lines_of(parts: Sequence[np.ndarray]) -> vtkPolyData:
+    """Lines with the point array `time` (s). @param parts positions of each line with their times, n x 4"""
+    rows = np.concatenate([*parts, np.empty((0, 4))])
+    lines, cells = with_points(rows[:, :3]), vtkCellArray()
+    cells.SetData(numpy_to_vtkIdTypeArray(np.cumsum([0, *map(len, parts)]), deep=True),
+                  numpy_to_vtkIdTypeArray(np.arange(len(rows)), deep=True))
+    lines.SetLines(cells)
+    add_array(lines.GetPointData(), "time", rows[:, 3], "s")
+    return lines
 
 
 def vertices(points) -> vtkPolyData:

@@ -5,11 +5,11 @@ import os
 from typing import Any
 
 import numpy as np
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import _display
 from . import vtkAvianLidar as _wrapped
-from ._cloud import Cloud, add_array, point_array, rows_of, with_points
+from ._cloud import Cloud, add_array, lines_of, point_array, rows_of, with_points
 from ._pipeline import file_name, is_current, update
 from ._properties import DECISIVE, PATTERN, PropertyOwner, choices, choose, wraps
 
@@ -26,17 +26,12 @@ def trajectory(positions, times, orientations=None) -> vtkPolyData:
     >>> Sensor(trajectory=car).beams.points[-1].round()
     array([20.,  0.,  2.])
     """
-    line, at = with_points(rows_of("positions", positions, (3,))), rows_of("times", times, ())
-    count, turns = line.GetNumberOfPoints(), None if orientations is None else rows_of("orientations", orientations, (4,))
-    if {count, len(at), count if turns is None else len(turns)} != {count}:
-        raise ValueError(f"there are {count} positions, {len(at)} times and {'no' if turns is None else len(turns)} "
+    places, at = rows_of("positions", positions, (3,)), rows_of("times", times, ())
+    turns = None if orientations is None else rows_of("orientations", orientations, (4,))
+    if {len(places), len(at), len(at if turns is None else turns)} != {len(places)}:
+        raise ValueError(f"there are {len(places)} positions, {len(at)} times and {'no' if turns is None else len(turns)} "
                          "orientations, expected as many of each")
-    cells = vtkCellArray()
-    cells.InsertNextCell(count)
-    for number in range(count):
-        cells.InsertCellPoint(number)
-    line.SetLines(cells)
-    add_array(line.GetPointData(), "time", at, "s")
+    line = lines_of([np.column_stack([places, at])])
     if turns is not None:
         add_array(line.GetPointData(), "pose_orientation", turns, "1")
     return line

@@ -14,7 +14,7 @@ from paralleltools import (CONTROLLER, COSTS, LAST, RANK, RANKS, assert_same, bl
                            in_order, joined, main, point_arrays, table, tests_of, total, update)
 import cloudtools
 import echotools
-from avianlidar import mover, vtkAvianLidar as al
+from avianlidar import mover, trajectory, vtkAvianLidar as al
 
 TOWN = echotools.town(3, 24)
 for number in range(0, 24, 3):
@@ -261,6 +261,16 @@ def test_beams_of_any_source():
     mine = table(range(count)) if RANK == LAST else vtk.vtkPolyData()
     echo = together(blocks_of(TOWN, lambda i: RANK == 0), mine)
     assert_same(joined(echo.GetOutput(0)), in_order(point_arrays(expected.GetOutput(0))))
+
+
+def test_a_sensor_that_moves():
+    """Every rank has the whole trajectory, and its own columns."""
+    beams = echotools.sensor()
+    beams.SetInputData(trajectory([(0, 0, 0), (3, 4, 0.5)], [0, 2], [(1, 0, 0, 0), (0.8, 0, 0, 0.6)]))
+    expected = echotools.scan(TOWN, beams, **SETTINGS)
+    expected.Update()
+    assert expected.GetOutput().GetPointData().HasArray("sensor_position")
+    check(together(blocks_of(TOWN, interleaved), beams), expected)
 
 
 def test_nothing_anywhere():

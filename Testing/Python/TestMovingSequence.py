@@ -2,9 +2,13 @@
 """Labelled scans and coverage of a lidar that drives: poses, points with and without motion correction, and the command.
 Oracles: SciPy's interpolation, the echoes of the same scans, and independent scans of one place."""
 import json
+import os
+import pathlib
+import runpy
 import unittest
 
 import numpy as np
+from PIL import Image
 from scipy.spatial.transform import Rotation
 
 import avianlidar as al
@@ -17,6 +21,7 @@ from echotools import InFolder
 from helpertools import rows_of, run
 from TestSequence import scenario_file
 
+EXAMPLE = pathlib.Path(os.environ["AVIANLIDAR_SOURCE_DIR"]) / "Examples" / "moving" / "platforms.py"
 TIMES, PLACES = [0.0, 5.0, 14.0], np.array([[-40, -30, 0], [20, 10, 0], [20, 100, 0]], float)  # s, m
 HEADINGS = [40.0, 90.0, 10.0]  # deg
 ROOF = [0.0, 0.5, 2.0]  # place of the lidar on the car, m
@@ -137,6 +142,28 @@ class TestMovingSequence(InFolder):
                               self.folder / "echoes.vtp")
         self.assertEqual(code, 2)
         self.assertIn("expected --trajectory FILE", errors)
+
+    def test_the_example(self):
+        """A car and a drone see birds, and the moving picture has a frame for each scan."""
+        platforms = runpy.run_path(str(EXAMPLE))
+        platforms["main"](["--scans", "2", "--out", str(self.folder)])
+        with Image.open(self.folder / "moving.webp") as moving, Image.open(self.folder / "platforms.png") as last:
+            self.assertEqual((moving.n_frames, last.size), (2, (900, 900)))
+        for name in ("car", "drone"):
+            _, scans = platforms["scanned"](name, 2)
+            self.assertGreater(sum(len(points) for *_, birds in scans for points in birds.values()), 2, name)
+            self.assertGreater(np.linalg.norm(scans[1][0] - scans[0][0]), 5)
+
+    def test_a_clock_of_the_scenario(self):
+        """Times since 1970 count from the scenario's start_time, other clocks from the trajectory's own."""
+        rows = "".join(f"2026-05-04T06:00:{t:02}Z,{t},0,0\n" for t in (0, 20))
+        (self.folder / "day.csv").write_text(f"time,x,y,z\n{rows}", "utf-8")
+        for line, start, east in (({"file_name": "day.csv"}, "2026-05-04T06:00:07Z", 7),
+                                  ({"file_name": "day.csv"}, None, 0), ({"file_name": "car.csv", "start_time": 5}, None, 20)):
+            own = {"trajectory": line, "number_of_scans": 1, **({"start_time": start} if start else {})}
+            file = scenario_file(self.folder, sensor={**SENSOR, "position": [0, 0, 0]}, **own)
+            sequence = al.Sequence(file)
+            self.assertAlmostEqual(sequence.sensor.beams.fields["position"][0], east)
 
     def test_coverage_while_standing_and_passing(self):
         (self.folder / "still.csv").write_text("time,x,y,z,heading\n0,5,-8,1,0\n9,5,-8,1,0\n", "utf-8")

@@ -17,8 +17,8 @@ import numpy as np
 import avianlidar as al
 import tools
 from avianlidar._pipeline import update
-from running import argument, built_scene, study, whole
-from waveforms import SCENES, SENSORS
+from running import argument, study, whole
+from waveforms import SENSORS, loaded_scenes
 
 WAY = 20.0  # m
 EXAMPLE = pathlib.Path(__file__).resolve().parents[3] / "Examples" / "moving" / "platforms.py"
@@ -42,12 +42,7 @@ def seconds(scene, position, preset, parts, **settings):
 @study(argument("--turns", type=whole(1, 1000), default=7, help="turns, default 7"))
 def main(options):
     rows = []
-    for title, (name, position) in SCENES.items():
-        file = built_scene(name) if name else al.example_scene()
-        if file is None:
-            continue
-        scene = al.Scene(file)
-        update(scene.tree)
+    for title, scene, position in loaded_scenes():
         row = [title]
         for settings in ({}, {"beam_samples": "Rays"}):
             for preset in SENSORS:

@@ -34,15 +34,20 @@ def scan(scene, position, sensor, digitiser_rate=0.0, **settings):
     return time.perf_counter() - begin, made.algorithm.GetOutput(3).GetActualMemorySize() / 1024.0
 
 
+def loaded_scenes():
+    """Title, scene and place of the lidar of each of SCENES that is there."""
+    for title, (name, position) in SCENES.items():
+        file = built_scene(name) if name else al.example_scene()
+        if file is not None:
+            scene = al.Scene(file)
+            update(scene.tree)
+            yield title, scene, position
+
+
 @study(argument("--turns", type=whole(1, 1000), default=7, help="turns, default 7"))
 def main(options):
     rows = []
-    for title, (name, position) in SCENES.items():
-        file = built_scene(name) if name else al.example_scene()
-        if file is None:
-            continue
-        scene = al.Scene(file)
-        update(scene.tree)
+    for title, scene, position in loaded_scenes():
         row = [title]
         for sensor in SENSORS:
             turns = [[scan(scene, position, sensor, **one) for one in SETTINGS] for _ in range(options.turns)]

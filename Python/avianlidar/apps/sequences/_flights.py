@@ -13,11 +13,10 @@ from numbers import Real
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from ... import vtkAvianLidar as _wrapped
-from ..._cloud import add_array, with_points
+from ..._cloud import add_array, lines_of
 from ..._pipeline import Error, callers_level, update
 from ..._properties import set_properties, unknown
 from ..._scene import load_scene
@@ -110,17 +109,6 @@ class Flights:
                 if away < NEAR:
                     return f"probably {words}: corrected, the nearest bird is {away:.0f} m away"
         return f"the origin is {origin[0]:g}, {origin[1]:g} (latitude, longitude)"
-
-
-def lines_of(parts: Sequence[np.ndarray]) -> vtkPolyData:
-    """Lines with the point array `time` (s). @param parts positions of each line with their times, n x 4"""
-    rows = np.concatenate([*parts, np.empty((0, 4))])
-    lines, cells = with_points(rows[:, :3]), vtkCellArray()
-    cells.SetData(numpy_to_vtkIdTypeArray(np.cumsum([0, *map(len, parts)]), deep=True),
-                  numpy_to_vtkIdTypeArray(np.arange(len(rows)), deep=True))
-    lines.SetLines(cells)
-    add_array(lines.GetPointData(), "time", rows[:, 3], "s")
-    return lines
 
 
 def _cut(track: np.ndarray, begin: float, end: float) -> np.ndarray:

@@ -21,7 +21,7 @@ from ..._pipeline import Error, Updates, callers_level, update
 from ..._properties import set_properties
 from ..._scan import Scan
 from ..._scene import Scene, load_scene, mesh, mover
-from ..._sensor import Sensor
+from ..._sensor import Sensor, poses_of, trajectory
 from ..._weather import in_weather
 from ..inputs._air import check_received, scatters
 from ..inputs._json import naming
@@ -167,13 +167,14 @@ class Simulation:
         if not given:
             return None
         with naming(f"{self.file}: trajectory"):
-            file = given.pop("file_name")
-            line = read_trajectory(file, scene=self.scene, **given)
-            start = field_values(line).get("start_time")
-            if start is not None and "start_time" in self.scenario and "start_time" not in given:
-                line = read_trajectory(file, scene=self.scene, start_time=self.scenario["start_time"], **given)
-            elif start is not None:
-                self.scenario.setdefault("start_time", as_time(start))
+            line = read_trajectory(given.pop("file_name"), scene=self.scene, **given)
+        start = field_values(line).get("start_time")
+        if start is not None and "start_time" in self.scenario and "start_time" not in given:
+            with naming(f"{self.file}: start_time"):
+                places, times, turns = poses_of(line)
+                line = trajectory(places, times + start - seconds_of(self.scenario["start_time"]), turns)
+        elif start is not None:
+            self.scenario.setdefault("start_time", as_time(start))
         return line
 
     def _read_flights(self) -> Dict[int, Flights]:

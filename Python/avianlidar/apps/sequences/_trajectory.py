@@ -27,9 +27,10 @@ from ..._pipeline import Error, callers_level
 from ..._properties import unknown
 from ..._recording import TURNED, moving_poses
 from ..._scene import load_scene
+from ..._sensor import trajectory
 from ..inputs._json import naming
 from ..places._candidates import ground_of
-from ._flights import check_level, check_metres, columns_of, lines_of, origin_of, points_of
+from ._flights import check_level, check_metres, columns_of, origin_of, points_of
 from ._logs import LEVELS, OUTLIERS, SINCE_1970, Log, seconds_of
 
 TABLES, MARKUP, FOLDER = (".csv", ".tsv", ".txt"), (".gpx", ".kml", ".kmz"), "or a folder"
@@ -106,7 +107,8 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
     notes = [*read.notes, *([f"left out: {left}"] if left else [])]
     order = order[~again]
     if len(order) < 2:
-        raise Error(f"{name}: expected 2 or more points with a position and a time, has {'; '.join([f'{len(order)}', *notes])}")
+        raise Error(f"{name}: expected 2 or more points with a position and a time, "
+                    f"has {'; '.join([f'{len(order)}', *notes])}")
     times, places, heights = read.times[order], read.places[order, :2], read.places[order, 2]
     heights = np.where(level == "clamp", np.nan, heights)
     on_ground = np.isnan(heights)
@@ -137,18 +139,17 @@ def read_trajectory(file, scene=None, start_time: Any = None, origin: Any = None
     turned[1:] *= np.cumprod(np.where((turned[1:] * turned[:-1]).sum(axis=1) < 0.0, -1.0, 1.0))[:, None]
     if notes:
         warnings.warn(f"{name}: {'; '.join(notes)}", RuntimeWarning, stacklevel=callers_level())
-    line = lines_of([np.column_stack([points, times])])
-    add_array(line.GetPointData(), "pose_orientation", turned, "1")
+    line = trajectory(points, times, turned)
     if since_1970:
         add_array(line.GetFieldData(), "start_time", np.array([start]), "s")
     return line
 
 
 def _along(times: np.ndarray, points: np.ndarray) -> Tuple[np.ndarray, np.ndarray, List[float]]:
-    """Times and headings (deg, without jumps) of a platform that heads along its way, and the times that need a point of
-    their own, as the heading begins or ends to change there. A leg begins at a point, and ends
-    at the first one more than LEAST from it. It has one heading, but for BEND at its ends, where the platform turns. A
-    platform that stands keeps its heading."""
+    """Times and headings (deg, without jumps) of a platform that heads along its way, and the times at which the heading
+    begins or ends to change between points. A leg begins at a point, and ends at the first point that is more than LEAST
+    away. It has one heading, except within BEND of its ends, where the platform turns. A platform that stands keeps its
+    heading."""
     (x, y), begin = points[:, :2].T.tolist(), 0
     knots: List[Tuple[float, float]] = []
     own: List[float] = []
@@ -173,8 +174,8 @@ def _along(times: np.ndarray, points: np.ndarray) -> Tuple[np.ndarray, np.ndarra
 
 
 def _levelled(times: np.ndarray, points: np.ndarray, angles: Any) -> Tuple[np.ndarray, np.ndarray, Any, str]:
-    """Times, points and rotations by angles, and a sentence on a missing heading or nothing. If no point has a heading,
-    points are added where the heading along the way begins or ends to change."""
+    """Times, points and rotations by angles, and a sentence if there is no heading, else an empty text. If no point has
+    a heading, points are added where the heading along the way begins or ends to change."""
     from scipy.spatial.transform import Rotation
     angles = np.full((len(times), 3), np.nan) if angles is None else angles
     unknown_heading, said = np.isnan(angles[:, 0]), ""
